@@ -236,14 +236,36 @@ static double FacePlace(Mesh mesh, const MeshGroup *group, PetscInt f, PetscReal
   return size;
 }
 
-/* Adds up the mean square of the normal motion between slave and master over the slave's faces. All pieces that the
-   master surface lies on count as masters, because it is not known before where the surfaces meet. Gaps are assumed to
-   be small against the bodies. */
+/* Adds the square of the motion along a direction between slave and master at a face. m: piece of the master; -1: it
+   moves by itself. row[n] is work space. */
+static PetscErrorCode AddBetween(FreeModes modes, PetscInt slave, PetscInt m, const PetscReal centre[3],
+                                 const double direction[3], double weight, double row[], double gram[])
+{
+  const int n = RIGID_MODES * (int)modes->n_pieces, dim = modes->mesh->dim;
+  double    across[RIGID_MODES], x[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(row, n));
+  PlaceInPiece(&modes->pieces[slave], dim, centre, x);
+  RigidRow(x, direction, &row[RIGID_MODES * slave]);
+  if (m >= 0) {
+    PlaceInPiece(&modes->pieces[m], dim, centre, x);
+    RigidRow(x, direction, across);
+    for (int i = 0; i < RIGID_MODES; i++) row[RIGID_MODES * m + i] -= across[i];
+  }
+  RigidAddRow(n, row, weight, gram);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds up the mean square of the motion between slave and master over the slave's faces: that along the normal or, with
+   friction, that along all axes. All pieces that the master surface lies on count as masters, because it is not known
+   before where the surfaces meet. Gaps are assumed to be small against the bodies. */
 static PetscErrorCode MeasurePair(FreeModes modes, const SceneContact *contact, double gram[])
 {
   Mesh             mesh  = modes->mesh;
   const int        n     = RIGID_MODES * (int)modes->n_pieces;
   const MeshGroup *slave = &mesh->groups[MeshFindGroup(mesh, mesh->dim - 1, contact->slave)];
+  const PetscBool  rubs  = (PetscBool)(contact->mu > 0 || contact->mu_expression);
   double          *row, area = 0;
   int             *on_slave, *on_master, deformable = 0;
 
@@ -254,24 +276,18 @@ static PetscErrorCode MeasurePair(FreeModes modes, const SceneContact *contact, 
   for (PetscInt p = 0; p < modes->n_pieces; p++) deformable += on_master[p];
   for (PetscInt f = 0; f < slave->n_faces; f++) {
     PetscReal    centre[3];
-    double       normal[3], x[3];
+    double       normal[3];
     PetscInt     node;
     const double size = FacePlace(mesh, slave, f, centre, normal, &node);
 
     area += size;
     for (PetscInt m = deformable ? 0 : -1; m < (deformable ? modes->n_pieces : 0); m++) {
       if (m >= 0 && !on_master[m]) continue;
-      PetscCall(PetscArrayzero(row, n));
-      PlaceInPiece(&modes->pieces[modes->piece[node]], mesh->dim, centre, x);
-      RigidRow(x, normal, &row[RIGID_MODES * modes->piece[node]]);
-      if (m >= 0) {
-        double across[RIGID_MODES];
+      for (int d = 0; d < (rubs ? mesh->dim : 1); d++) {
+        const double axis[3] = {d == 0, d == 1, d == 2};
 
-        PlaceInPiece(&modes->pieces[m], mesh->dim, centre, x);
-        RigidRow(x, normal, across);
-        for (int i = 0; i < RIGID_MODES; i++) row[RIGID_MODES * m + i] -= across[i];
+        PetscCall(AddBetween(modes, modes->piece[node], m, centre, rubs ? axis : normal, size, row, gram));
       }
-      RigidAddRow(n, row, size, gram);
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPI_DOUBLE, MPI_SUM, mesh->comm));
@@ -337,8 +353,8 @@ static PetscErrorCode FindLoose(FreeModes modes)
 
   Input Parameters:
 + mesh  - with its groups
-. scene - its contact pairs are frictionless: each, if it were closed all over, would hold what moves along the normals
-          of its surfaces
+. scene - each of its contact pairs, if it were closed all over, would hold what moves along the normals of its
+          surfaces and, with friction, along them too
 - loads - which displacements are prescribed (supports, imposed displacements, the axis of an axisymmetric scene)
 
   Output Parameter:

@@ -27,6 +27,9 @@ typedef struct {
   const PetscReal *force;         /* normal force */
   const PetscReal *pressure;      /* normal force over present tributary area */
   const PetscReal *normal;        /* n*3, out of the master; 0 where no master is near */
+  /* With friction, else NULL: n*3 the traction on the slave in the tangent plane, friction force over present tributary
+     area; the length that the node has slipped so far; 0 open, 1 sticking, 2 slipping. */
+  const PetscReal *traction, *slid, *friction;
 } ContactNodes;
 
 /* All pairs together, in the present state. */
@@ -38,6 +41,7 @@ typedef struct {
   PetscReal max_penetration_over_h; /* h: face size at the node */
   PetscReal penalty_min, penalty_max;
   PetscReal force;          /* norm of the total force on the slaves */
+  PetscReal dissipated;     /* energy that friction has taken so far; NaN: no pair has friction */
   PetscInt  outside_window; /* nodes outside the window of their penalty; -1: no pair has a window */
 } ContactSummary;
 
@@ -101,6 +105,16 @@ typedef struct {
   PetscReal peak;     /* largest pressure of a node */
 } ContactLoad;
 
+/* What friction does in a pair, over all its slave nodes. */
+typedef struct {
+  PetscReal force[3]; /* on the slave; axisymmetric: over 360 degrees */
+  PetscInt  sticking, slipping;
+  PetscReal slipped_area; /* reference area of the slipping nodes */
+  PetscReal elastic;      /* largest elastic slip (length) */
+  PetscReal slid;         /* longest slip of a node so far, without the elastic one (length) */
+  PetscReal dissipated;   /* energy that friction has taken so far */
+} ContactFriction;
+
 typedef struct _n_Contact *Contact;
 
 /* Life and state */
@@ -140,6 +154,7 @@ PetscErrorCode ContactStiffest(Contact, PetscReal *most);
 PetscErrorCode ContactScalePenalty(Contact, PetscReal factor);
 PetscErrorCode ContactStiffen(Contact, int pair, PetscReal factor);
 PetscReal      ContactPairInitialPenalty(Contact, int pair);
+PetscErrorCode ContactPairFriction(Contact, int pair, ContactFriction *);
 PetscErrorCode ContactPairLoad(Contact, int pair, const PetscReal *u, ContactLoad *);
 PetscErrorCode ContactAdjustPenalty(Contact, ContactWindowState *);
 PetscErrorCode ContactAdjustNextPenalty(Contact);
@@ -165,6 +180,7 @@ PetscErrorCode      ContactPairText(Contact, int pair, char *text, size_t size);
 PetscErrorCode      ContactPairSurface(Contact, int pair, const MeshGroup **slave, PetscReal *mean_face_size);
 PetscErrorCode      ContactPairTermStiffness(Contact, int pair, PetscReal *stiffness);
 PetscErrorCode      ContactPairClosed(Contact, int pair, const PetscInt *label, PetscInt n, PetscInt *closed);
+PetscBool           ContactHasFriction(Contact);
 MPI_Comm            ContactComm(Contact);
 /* Probes and reports */
 PetscErrorCode ContactSummarise(Contact, ContactSummary *);

@@ -107,6 +107,7 @@ static PetscErrorCode PairTakeNext(ContactPair *pair)
   pair->projected = PETSC_FALSE;
   PetscCall(PetscArraycpy(pair->factor, pair->next_factor, pair->lists->n_slaves));
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) pair->seed[q] = -1;
+  for (PetscInt q = 0; pair->friction && q < pair->lists->n_slaves; q++) pair->friction->facet[q] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -183,6 +184,8 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
     if (pair->next) PetscCall(PairTakeNext(pair));
     PetscCall(PetscArrayzero(pair->factor_change, pair->lists->n_slaves));
+    if (pair->friction) PetscCall(ContactPairProject(contact, pair, u, t));
+    if (pair->friction) PetscCall(FrictionBegin(pair, t));
     pair->lost    = (ContactLost){0, NAN, 0, -1};
     pair->updates = 0;
   }

@@ -108,8 +108,10 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
 /* Creates slave points, terms and offsets, as the formulation asks for. */
 static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
 {
-  const int finer = pair->master && (scene->geometry == GEOMETRY_AXISYMMETRIC ||
-                                     pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size);
+  /* With friction too: half as many points leave twice the noise in tractions that stick. */
+  const int finer =
+    pair->master && (scene->geometry == GEOMETRY_AXISYMMETRIC || pair->scene->mu > 0 || pair->scene->mu_expression ||
+                     pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size);
 
   PetscFunctionBeginUser;
   if (pair->formulation.surface) {
@@ -235,7 +237,8 @@ static PetscErrorCode PairTurnMaster(Scene scene, Loads loads, const ContactPair
 PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads,
                                  const SceneContact *contact, ContactPair *pair)
 {
-  PetscReal penalty;
+  const PetscBool friction = (PetscBool)(contact->mu > 0 || contact->mu_expression);
+  PetscReal       penalty;
 
   PetscFunctionBeginUser;
   pair->mesh     = mesh;
@@ -271,12 +274,13 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   pair->trial_factor = 1;
   penalty            = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
   pair->initial      = penalty;
-  PetscCall(ContactStateCreate(pair->n, penalty, &pair->now));
-  PetscCall(ContactStateCreate(pair->n, penalty, &pair->accepted));
+  PetscCall(ContactStateCreate(pair->n, penalty, friction, &pair->now));
+  PetscCall(ContactStateCreate(pair->n, penalty, friction, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images,
                          &pair->fit, pair->slaves, pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL,
                          pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL, &pair->search));
   PetscCall(PetscCalloc2(pair->n, &pair->held, pair->n, &pair->predicted));
+  if (friction) PetscCall(FrictionCreate(pair));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
   if (contact->augment) PetscCall(AndersonCreate(mesh->comm, pair->n, pair->area, &pair->mixing));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -315,6 +319,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree(pair->before));
   PetscCall(AndersonDestroy(&pair->mixing));
   PetscCall(PetscFree2(pair->held, pair->predicted));
+  PetscCall(FrictionDestroy(&pair->friction));
   PetscCall(PetscFree(pair->carried));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -374,6 +379,22 @@ int ContactFindPair(Contact contact, const char *name)
   for (int p = 0; p < ContactPairs(contact); p++)
     if (!strcmp(contact->pairs[p].scene->name, name)) return p;
   return -1;
+}
+
+/*@
+  ContactHasFriction - says whether some pair has friction, so that forces have no potential and the tangent is not
+  symmetric.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact, or NULL
+@*/
+PetscBool ContactHasFriction(Contact contact)
+{
+  for (int p = 0; p < ContactPairs(contact); p++)
+    if (contact->pairs[p].friction) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 /*@

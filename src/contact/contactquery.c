@@ -34,6 +34,17 @@ static PetscErrorCode LeastPenetration(Contact contact, PetscReal largest, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Energy that friction has taken so far in all pairs, of all ranks; NaN without friction. */
+static PetscErrorCode Dissipated(Contact contact, PetscReal *energy)
+{
+  PetscFunctionBeginUser;
+  *energy = 0;
+  for (int p = 0; p < contact->n_pairs; p++) *energy += contact->pairs[p].now.dissipated;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy, 1, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
+  if (!ContactHasFriction(contact)) *energy = NAN;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactSummarise - counts contact and collects penetrations (length), penalties and the total force of all pairs in
   the present state.
@@ -51,7 +62,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
   PetscInt  count[3] = {0, 0, 0};
   PetscReal most[5]  = {0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0}; /* penetration, over h, -penalty_min, penalty_max,
                                                                      force of a term */
-  PetscReal total[3] = {0, 0, 0}, least;
+  PetscReal total[3] = {0, 0, 0}, least, dissipated;
   PetscInt  outside;
 
   PetscFunctionBeginUser;
@@ -76,6 +87,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 5, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, total, 3, MPIU_REAL, MPI_SUM, contact->mesh->comm));
+  PetscCall(Dissipated(contact, &dissipated));
   PetscCall(LeastPenetration(contact, most[4], &least));
   PetscCall(CountOutside(contact, &outside));
   *summary = (ContactSummary){.nodes                  = count[0],
@@ -87,6 +99,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
                               .penalty_min            = -most[2],
                               .penalty_max            = most[3],
                               .outside_window         = outside,
+                              .dissipated             = dissipated,
                               .force = PetscSqrtReal(PetscSqr(total[0]) + PetscSqr(total[1]) + PetscSqr(total[2]))};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -142,9 +155,16 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
   else
     PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
   for (PetscInt c = 0; c < pair->n; c++) pair->pressure[c] = pair->force[c] / area[pair->node[c]];
+  *nodes = (ContactNodes){.n        = pair->n,
+                          .node     = pair->node,
+                          .area     = pair->area,
+                          .gap      = pair->now.gap,
+                          .penalty  = pair->now.penalty,
+                          .force    = pair->force,
+                          .pressure = pair->pressure,
+                          .normal   = pair->normal};
+  if (pair->friction) PetscCall(FrictionShow(pair, area, nodes));
   PetscCall(PetscFree(area));
-  *nodes = (ContactNodes){pair->n,           pair->node,  pair->area,     pair->now.gap,
-                          pair->now.penalty, pair->force, pair->pressure, pair->normal};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

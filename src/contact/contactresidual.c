@@ -80,6 +80,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscCall(PetscArrayzero(pair->total, 3));
   PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
   PetscCall(PairForces(pair, values));
+  if (pair->friction) PetscCall(FrictionResidual(pair, t, values));
   PetscCall(NeighbourListsReduce(pair->lists, values, f));
   if (pair->formulation.surface) PetscCall(PairSharedForces(pair));
   for (PetscInt c = 0; c < pair->n && !pair->formulation.surface; c++)
@@ -170,8 +171,8 @@ PetscErrorCode ContactMarkPredicted(Contact contact)
 }
 
 /*@
-  ContactPredictionMissed - says whether a prediction counted on surface to surface contact, whose mean gaps it closed, and
-  the present state has no contact.
+  ContactPredictionMissed - says whether a prediction counted on surface to surface contact, whose mean gaps it closed,
+and the present state has no contact.
 
   Collective
 

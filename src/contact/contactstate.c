@@ -7,13 +7,14 @@
   Not collective
 
   Input Parameters:
-+ n       - slave nodes of this rank
-- penalty - of every node (force per length and area)
++ n        - slave nodes of this rank
+. penalty  - of every node (force per length and area)
+- friction - the state has room for that of friction
 
   Output Parameter:
 . state - the state
 @*/
-PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, ContactState *state)
+PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, PetscBool friction, ContactState *state)
 {
   PetscFunctionBeginUser;
   state->n = n;
@@ -23,6 +24,7 @@ PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, ContactState *s
     state->penalty[c] = penalty;
     state->gap[c]     = NAN;
   }
+  if (friction) PetscCall(PetscCalloc3(3 * n, &state->traction, n, &state->slid, n, &state->slips));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -45,6 +47,12 @@ PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to)
   PetscCall(PetscArraycpy(to->gap, from->gap, from->n));
   PetscCall(PetscArraycpy(to->offset, from->offset, from->n));
   PetscCall(PetscArraycpy(to->multiplier, from->multiplier, from->n));
+  if (from->traction) {
+    PetscCall(PetscArraycpy(to->traction, from->traction, 3 * from->n));
+    PetscCall(PetscArraycpy(to->slid, from->slid, from->n));
+    PetscCall(PetscArraycpy(to->slips, from->slips, from->n));
+    to->dissipated = from->dissipated;
+  }
   to->raised    = from->raised;
   to->lowered   = from->lowered;
   to->clamped   = from->clamped;
@@ -66,6 +74,34 @@ PetscErrorCode ContactStateDestroy(ContactState *state)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree5(state->penalty, state->status, state->gap, state->offset, state->multiplier));
+  PetscCall(PetscFree3(state->traction, state->slid, state->slips));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Saves or loads what belongs to friction. The energy is stored as the sum over all ranks, and loaded on rank 0. */
+static PetscErrorCode ArchiveFriction(ContactState *state, Archive archive, const char *name, const Hdf5Table *nodes)
+{
+  const MPI_Comm comm = PetscObjectComm((PetscObject)nodes->sf);
+  PetscReal     *slips, dissipated = state->dissipated;
+  PetscMPIInt    rank;
+  char           path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(state->n, &slips));
+  for (PetscInt c = 0; c < state->n; c++) slips[c] = state->slips[c];
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/traction", name));
+  PetscCall(ArchiveRows(archive, path, nodes, 3, state->traction));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/slid", name));
+  PetscCall(ArchiveRows(archive, path, nodes, 1, state->slid));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/slips", name));
+  PetscCall(ArchiveRows(archive, path, nodes, 1, slips));
+  for (PetscInt c = 0; c < state->n; c++) state->slips[c] = (PetscBool)(slips[c] != 0);
+  PetscCall(PetscFree(slips));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &dissipated, 1, MPIU_REAL, MPIU_SUM, comm));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/dissipated", name));
+  PetscCall(ArchiveReals(archive, path, 1, &dissipated));
+  if (ArchiveLoads(archive)) state->dissipated = rank ? 0 : dissipated;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -105,6 +141,7 @@ PetscErrorCode ContactStateArchive(ContactState *state, Archive archive, const c
   }
   for (PetscInt c = 0; c < state->n; c++) state->status[c] = (ContactStatus)status[c];
   PetscCall(PetscFree(status));
+  if (state->traction) PetscCall(ArchiveFriction(state, archive, name, nodes));
   PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)nodes->sf), &rank));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(updates); k++) all[k] = *updates[k];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, PETSC_STATIC_ARRAY_LENGTH(updates), MPIU_INT, MPI_SUM,

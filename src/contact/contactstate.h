@@ -13,11 +13,16 @@ typedef struct {
   PetscReal     *offset;                          /* g_0, subtracted from the gap (length) */
   PetscReal     *multiplier;                      /* pressure where the gap is at its offset; 0 without augmentation */
   PetscInt       raised, lowered, clamped, light; /* what the adjustment of the penalty did so far, on this rank */
-  PetscInt       augmented;                       /* times that pressures became multipliers; on rank 0 */
-  PetscInt       missed;                          /* steps that ended beyond the bound after all updates; on rank 0 */
+  /* Of friction, NULL without it: traction against the slip (three components, force per area), whether the node slips,
+     and the length that it has slipped so far. */
+  PetscReal *traction, *slid;
+  PetscBool *slips;
+  PetscReal  dissipated; /* energy that friction has taken so far on this rank */
+  PetscInt   augmented;  /* times that pressures became multipliers; on rank 0 */
+  PetscInt   missed;     /* steps that ended beyond the bound after all updates; on rank 0 */
 } ContactState;
 
-PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, ContactState *);
+PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, PetscBool friction, ContactState *);
 PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to);
 PetscErrorCode ContactStateDestroy(ContactState *);
 PetscErrorCode ContactStateArchive(ContactState *, Archive, const char *name, const Hdf5Table *nodes);

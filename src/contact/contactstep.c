@@ -295,6 +295,41 @@ PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscRea
 }
 
 /*@
+  ContactStepSlide - computes how local displacements move the slave against its anchors on the master, where there is
+  friction.
+
+  Collective
+
+  Input Parameters:
++ step   - the step
+. du     - local displacements, du[n_nodes*dim] (length), prescribed ones included
+. t      - load parameter where the motion of tools begins
+- t_next - load parameter where it ends
+
+  Output Parameter:
+. slide - slide[3*n] of the terms of all ranks (length), 0 without friction
+@*/
+PetscErrorCode ContactStepSlide(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *slide)
+{
+  PetscReal *mine, *values;
+  PetscInt   i = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(3 * step->mine, &mine));
+  for (int p = 0; p < step->contact->n_pairs; p++) {
+    const ContactPair *pair = &step->contact->pairs[p];
+
+    PetscCall(PairMove(step->contact, &step->contact->pairs[p], du, t, t_next, &values));
+    for (; i < step->mine && step->pair[i] == p; i++)
+      if (pair->friction) PetscCall(FrictionTermMotion(pair, step->term[i], values, &mine[3 * i]));
+    PetscCall(PetscFree(values));
+  }
+  PetscCall(Gather(step, 3, mine, slide));
+  PetscCall(PetscFree(mine));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactStepWithin - says whether local displacements go no farther than the terms were chosen for.
 
   Collective

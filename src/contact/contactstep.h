@@ -2,7 +2,8 @@
    first order.
 
    ContactStepCreate() chooses the terms from the state at its start. The active set (activeset.h) finds out which of
-   them press at its end, from ContactStepTravel() and the columns that follow from ContactStepForces(). */
+   them press at its end, from ContactStepTravel() and the columns that follow from ContactStepForces(). ContactStepSlide()
+   tells how the sides of the terms with friction move along each other. */
 #pragma once
 #include "contact/contact.h"
 #include "contact/activeset.h"
@@ -14,6 +15,8 @@ PetscErrorCode ContactStepCreate(Contact, const PetscReal *u, const PetscReal *d
 PetscErrorCode ContactStepDestroy(ContactStep *);
 PetscErrorCode ContactStepGetTerms(ContactStep, PetscInt *n, const ActiveSetTerm **);
 PetscErrorCode ContactStepTravel(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *travel);
+PetscErrorCode ContactStepSlide(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *slide);
+PetscErrorCode ContactStepSlide(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *slide);
 PetscErrorCode ContactStepWithin(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscBool *within);
 PetscErrorCode ContactStepForces(ContactStep, PetscInt rows, PetscInt m, const PetscInt *which, Mat *B);
 PetscErrorCode ContactStepMarkPredicted(ContactStep, const PetscBool *pressed);

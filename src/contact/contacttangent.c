@@ -34,13 +34,34 @@ static PetscErrorCode PairStiffness(Contact contact, ContactPair *pair, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Names the block over the nodes that were listed last. */
+static PetscErrorCode NameListed(Contact contact, const ContactPair *pair, int p)
+{
+  PetscFunctionBeginUser;
+  PetscCall(
+    BlockMatrixName(contact->blocks, p, pair->work->count, pair->work->number, (PetscBool)(contact->product != NULL)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Names the block over the nodes of some slave points, unless there are none. */
 static PetscErrorCode NameBlock(Contact contact, const ContactPair *pair, int p, PetscInt n, const PetscInt *points)
 {
   PetscFunctionBeginUser;
   PetscCall(ContactVariationsNodes(pair, n, points));
-  PetscCall(
-    BlockMatrixName(contact->blocks, p, pair->work->count, pair->work->number, (PetscBool)(contact->product != NULL)));
+  PetscCall(NameListed(contact, pair, p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Names the block of an active term, with the nodes of its friction where there is any. */
+static PetscErrorCode NameTerm(Contact contact, const ContactPair *pair, int p, PetscInt c)
+{
+  PetscFunctionBeginUser;
+  if (pair->friction) {
+    PetscCall(FrictionTermNodes(pair, c));
+    PetscCall(NameListed(contact, pair, p));
+  } else
+    PetscCall(
+      NameBlock(contact, pair, p, pair->term_ptr[c + 1] - pair->term_ptr[c], &pair->term_point[pair->term_ptr[c]]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -62,9 +83,7 @@ static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n; c++)
-    if (pair->stiffness[c] > 0)
-      PetscCall(
-        NameBlock(contact, pair, p, pair->term_ptr[c + 1] - pair->term_ptr[c], &pair->term_point[pair->term_ptr[c]]));
+    if (pair->stiffness[c] > 0) PetscCall(NameTerm(contact, pair, p, c));
   for (PetscInt face = 0; pair->formulation.surface && face < pair->slaves->n_faces; face++)
     PetscCall(NameBlock(contact, pair, p, FacePoints(pair, face, points), points));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -141,7 +160,7 @@ static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p,
 }
 
 /* Adds the blocks of a pair in the order in which PairName() named them, from block number *block on. */
-static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, PetscInt *block)
+static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, PetscReal t, PetscInt *block)
 {
   const PetscInt  faces = pair->formulation.surface ? pair->slaves->n_faces : 0;
   const PetscInt *nodes;
@@ -155,6 +174,7 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, Pets
     BlockMatrixGetNodes(contact->blocks, (*block)++, &n, &nodes);
     if (!n) continue;
     PetscCall(ContactWorkBlockBegin(pair->work, pair->lists->n_nodes, n, nodes));
+    if (k < pair->n && pair->friction) PetscCall(FrictionTermBlock(pair, contact->blocks, p, k, t, n, nodes));
     if (k < pair->n)
       PetscCall(TermBlock(contact, pair, p, k, n, nodes, own));
     else
@@ -222,8 +242,8 @@ static PetscErrorCode PlaceBlocks(Contact contact, PetscBool *changed)
 - changed - PETSC_TRUE where its pattern is new
 
   Note:
-  It is the sum of A (psi'' N N^T - p M) over the closed terms, p being the pressure. Source: Chamoret et al. (2004),
-  eq. 14.
+  It is the sum of A (psi'' N N^T - p M) over the closed terms, p being the pressure, and of friction's part, which is
+  not symmetric. Source: Chamoret et al. (2004), eq. 14.
 @*/
 PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed)
 {
@@ -235,7 +255,7 @@ PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, 
   PetscCall(PlaceBlocks(contact, changed));
   for (int p = 0; p < contact->n_pairs; p++) {
     if (contact->product) BlockMatrixMultiply(contact->blocks, contact->product[p].x, contact->product[p].y);
-    PetscCall(PairBlocks(contact, &contact->pairs[p], p, &block));
+    PetscCall(PairBlocks(contact, &contact->pairs[p], p, t, &block));
   }
   PetscCall(BlockMatrixEnd(contact->blocks, C));
   PetscCall(PetscLogEventEnd(contact->event_tangent, 0, 0, 0, 0));

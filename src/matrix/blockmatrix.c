@@ -1,5 +1,6 @@
 /* Block matrix: lists the pairs of nodes that blocks couple, adds the blocks into one sum for each pair, and hands the
-   sums to a NodeMatrix. Only sums on and above the diagonal are stored, because every block is symmetric. */
+   sums to a NodeMatrix. Of symmetric blocks only the sums on and above the diagonal are stored. Blocks that are not
+   symmetric have sums of their own for all pairs. */
 #include "matrix/blockmatrix.h"
 #include "matrix/nodematrix.h"
 
@@ -57,6 +58,8 @@ struct _n_BlockMatrix {
      at: numbers of the nodes of the block that is being added. */
   PetscInt        *seen, *at;
   SumRow          *sum;     /* [pairs not below the diagonal][size] */
+  PetscReal       *whole;   /* [pairs][size*size]: of blocks that are not symmetric; NULL: there are none */
+  PetscBool        uneven;  /* such a block was added */
   PetscInt        *coupled; /* room for the result of BlockMatrixGetCoupled() */
   const PetscReal *along;   /* vector that blocks are multiplied by when they are added, or NULL */
   PetscReal       *product;
@@ -133,6 +136,7 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscCall(PetscFree((*blocks)->row));
   PetscCall(PetscFree2((*blocks)->seen, (*blocks)->at));
   PetscCall(PetscFree((*blocks)->sum));
+  PetscCall(PetscFree((*blocks)->whole));
   PetscCall(PetscFree((*blocks)->coupled));
   PetscCall(NodeMatrixDestroy(&(*blocks)->matrix));
   PetscCall(PetscFree(*blocks));
@@ -515,6 +519,7 @@ static PetscErrorCode BlockMatrixCreateMat(BlockMatrix blocks, PetscInt rows)
   PetscCall(NodeMatrixCreate(blocks->comm, rows, &pairs, &blocks->matrix));
   PetscCall(NodeMatrixJoin(blocks->matrix, NULL));
   PetscCall(PetscFree(blocks->sum));
+  PetscCall(PetscFree(blocks->whole));
   PetscCall(PetscFree(blocks->coupled));
   PetscCall(PetscMalloc1(blocks->above[blocks->own.n_nodes] * blocks->size, &blocks->sum));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -568,6 +573,7 @@ PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *ch
   }
   PetscCall(PetscArrayzero(blocks->sum, blocks->above[blocks->own.n_nodes] * blocks->size));
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++) blocks->seen[r] = -1;
+  blocks->uneven   = PETSC_FALSE;
   *changed         = all && !blocks->restored ? PETSC_FALSE : PETSC_TRUE;
   blocks->restored = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -728,6 +734,79 @@ PetscErrorCode BlockMatrixAddOuter(BlockMatrix blocks, int list, PetscInt n, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* product += rows * along, the rows of a block that is not symmetric. */
+static void MultiplyRows(BlockMatrix blocks, PetscInt n_rows, const PetscInt *row, PetscInt n, const PetscInt *node,
+                         const PetscReal *value)
+{
+  const int size = blocks->size;
+
+  for (PetscInt i = 0; i < n_rows * size; i++) {
+    PetscReal sum = 0;
+
+    for (PetscInt j = 0; j < n * size; j++)
+      sum += value[i * n * size + j] * blocks->along[node[j / size] * size + j % size];
+    blocks->product[row[i / size] * size + i % size] += sum;
+  }
+}
+
+/* The sums of all pairs for blocks that are not symmetric, 0 before the first of them. */
+static PetscErrorCode TakeUneven(BlockMatrix blocks)
+{
+  const PetscInt n = blocks->own.pair_ptr[blocks->own.n_nodes] * blocks->size * blocks->size;
+
+  PetscFunctionBeginUser;
+  if (!blocks->whole) PetscCall(PetscMalloc1(n, &blocks->whole));
+  if (!blocks->uneven) PetscCall(PetscArrayzero(blocks->whole, n));
+  blocks->uneven = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BlockMatrixAddRows - adds some rows of a block that is not symmetric to the sum.
+
+  Not collective
+
+  Input Parameters:
++ blocks - the block matrix, after BlockMatrixPlace()
+. list   - number of the list
+. n_rows - number of nodes whose rows are added
+. row    - these nodes, places in the list
+. n      - number of nodes of the columns
+. node   - these nodes, in any order; each pair of a row and a column belongs to some named block
+- value  - [n_rows*size][n*size], row-major (force per length)
+
+  Note:
+  The values are added at once and not kept. Fails if a pair belongs to no named block.
+@*/
+PetscErrorCode BlockMatrixAddRows(BlockMatrix blocks, int list, PetscInt n_rows, const PetscInt row[], PetscInt n,
+                                  const PetscInt node[], const PetscReal value[])
+{
+  const PetscInt *number = &blocks->list_number[blocks->list[list]], *ptr = blocks->own.pair_ptr;
+  const int       size = blocks->size;
+
+  PetscFunctionBeginUser;
+  PetscCall(TakeUneven(blocks));
+  for (PetscInt i = 0; i < n_rows; i++) {
+    const PetscInt r = number[row[i]];
+
+    if (r < 0) continue;
+    for (PetscInt j = 0; j < n; j++) {
+      const PetscInt c = number[node[j]];
+      PetscReal     *to;
+      PetscInt       k;
+
+      if (c < 0) continue;
+      PetscCall(PetscFindInt(c, ptr[r + 1] - ptr[r], &blocks->own.pair[ptr[r]], &k));
+      PetscCheck(k >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "a block couples nodes that no named one does");
+      to = &blocks->whole[(ptr[r] + k) * size * size];
+      for (int d = 0; d < size; d++)
+        for (int e = 0; e < size; e++) to[d * size + e] += value[(i * size + d) * n * size + j * size + e];
+    }
+  }
+  if (blocks->along) MultiplyRows(blocks, n_rows, row, n, node, value);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BlockMatrixMultiply - sets vectors with which blocks are multiplied when they are added: y += block * x.
 
@@ -758,6 +837,23 @@ static void FillDiagonal(BlockMatrix blocks)
   }
 }
 
+/* Adds the symmetric blocks to the sums of all pairs. */
+static void AddSymmetric(BlockMatrix blocks)
+{
+  const int       size = blocks->size;
+  const PetscInt *ptr  = blocks->own.pair_ptr;
+
+  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
+    for (PetscInt k = ptr[r]; k < ptr[r + 1]; k++) {
+      const SumRow *sum = &blocks->sum[blocks->of_pair[k] * size];
+      PetscReal    *to  = &blocks->whole[k * size * size];
+
+      for (int d = 0; d < size; d++)
+        for (int e = 0; e < size; e++) to[d * size + e] += k < blocks->diagonal[r] ? sum[e][d] : sum[d][e];
+    }
+  }
+}
+
 /*@
   BlockMatrixEnd - assembles the sum of all ranks' blocks.
 
@@ -775,7 +871,11 @@ PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
 
   PetscFunctionBeginUser;
   FillDiagonal(blocks);
-  PetscCall(NodeMatrixSetUpper(blocks->matrix, &values));
+  if (blocks->uneven) {
+    AddSymmetric(blocks);
+    PetscCall(NodeMatrixSet(blocks->matrix, blocks->whole, NULL, NULL));
+  } else
+    PetscCall(NodeMatrixSetUpper(blocks->matrix, &values));
   *matrix = NodeMatrixGet(blocks->matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

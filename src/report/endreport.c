@@ -75,6 +75,19 @@ static void PrintSides(const PairFigures *pair, FILE *stream)
             (double)master->depth, (double)master->over_h);
 }
 
+/* Prints what sticks and what slips. */
+static void PrintFriction(const PairFigures *pair, FILE *stream)
+{
+  const ContactFriction *friction = &pair->friction;
+
+  if (!(pair->scene->mu > 0 || pair->scene->mu_expression)) return;
+  fprintf(stream,
+          "friction %s: %lld nodes stick, %lld slip; elastic slip up to %.3g, slip so far up to %.3g; energy taken "
+          "%.4g\n",
+          pair->name, (long long)friction->sticking, (long long)friction->slipping, (double)friction->elastic,
+          (double)friction->slid, (double)friction->dissipated);
+}
+
 /* Prints what penetration leaves of error, as estimated at the end of the load. */
 static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
 {
@@ -232,6 +245,7 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
   PrintTime(figures, stream);
   for (int p = 0; p < figures->n_pairs && figures->last; p++) {
     PrintPair(&figures->pairs[p], stream);
+    PrintFriction(&figures->pairs[p], stream);
     PrintPenaltyError(&figures->pairs[p], stream);
     PrintSides(&figures->pairs[p], stream);
   }

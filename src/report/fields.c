@@ -24,7 +24,7 @@ struct _n_Fields {
 };
 
 /* What output.fields may ask for, and what ParaView sees of it */
-enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT, SHOW_SOLID_PRESSURE, SHOW_PLASTIC, SHOW_KINDS };
+enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT, SHOW_SOLID_PRESSURE, SHOW_PLASTIC, SHOW_FRICTION, SHOW_KINDS };
 static const XdmfArray shown[] = {
   {"displacement", 3, SHOW_DISPLACEMENT},
   {"von_mises", 1, SHOW_STRESS},
@@ -35,6 +35,9 @@ static const XdmfArray shown[] = {
   {"penalty", 1, SHOW_CONTACT},
   {"pressure", 1, SHOW_CONTACT},
   {"normal", 3, SHOW_CONTACT},
+  {"traction", 3, SHOW_FRICTION},
+  {"slip", 1, SHOW_FRICTION},
+  {"friction", 1, SHOW_FRICTION},
   {"solid_pressure", 1, SHOW_SOLID_PRESSURE},
 };
 
@@ -45,7 +48,10 @@ enum {
   COLUMN_PENALTY,
   COLUMN_PRESSURE,
   COLUMN_NORMAL,
-  COLUMN_PRESENT = COLUMN_NORMAL + 3,
+  COLUMN_TRACTION = COLUMN_NORMAL + 3,
+  COLUMN_SLIP     = COLUMN_TRACTION + 3,
+  COLUMN_FRICTION,
+  COLUMN_PRESENT,
   COLUMNS
 };
 static const struct {
@@ -55,8 +61,11 @@ static const struct {
 } contact_fields[] = {
   {"gap", COLUMN_GAP, 1, NAN},         {"penetration", COLUMN_PENETRATION, 1, 0.0},
   {"penalty", COLUMN_PENALTY, 1, NAN}, {"pressure", COLUMN_PRESSURE, 1, 0.0},
-  {"normal", COLUMN_NORMAL, 3, 0.0},
+  {"normal", COLUMN_NORMAL, 3, 0.0},   {"traction", COLUMN_TRACTION, 3, 0.0},
+  {"slip", COLUMN_SLIP, 1, 0.0},       {"friction", COLUMN_FRICTION, 1, 0.0},
 };
+/* The last ones of these, which only scenes with friction have */
+enum { FRICTION_FIELDS = 3 };
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 
 /* Writes an attribute: a scalar, or n > 1 values. */
@@ -80,6 +89,7 @@ static PetscBool FieldsShows(Fields fields, int kind)
   case SHOW_DISPLACEMENT: return fields->scene->output.displacement ? PETSC_TRUE : PETSC_FALSE;
   case SHOW_STRESS: return fields->scene->output.stress ? PETSC_TRUE : PETSC_FALSE;
   case SHOW_PLASTIC: return fields->scene->output.stress && SceneIsPlastic(fields->scene) ? PETSC_TRUE : PETSC_FALSE;
+  case SHOW_FRICTION: return (PetscBool)(fields->scene->output.contact && ContactHasFriction(fields->model->contact));
   case SHOW_SOLID_PRESSURE:
     return (PetscBool)(fields->scene->output.stress &&
                        ProblemHasFormulation(fields->model->problem, FORMULATION_MIXED));
@@ -359,6 +369,12 @@ static PetscErrorCode FieldsWriteMaster(Fields fields, hid_t file, int pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The number of contact fields that the scene has. */
+static int ContactFields(Fields fields)
+{
+  return COUNT(contact_fields) - (FieldsShows(fields, SHOW_FRICTION) ? 0 : FRICTION_FIELDS);
+}
+
 /* Writes the tables of one pair. Its values also go to the nodal array (COLUMNS per local node, owned nodes only),
    where the larger pressure counts if pairs share a slave node. */
 static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, PetscReal *nodal)
@@ -378,11 +394,14 @@ static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, Petsc
     value[COLUMN_PENALTY]     = slaves.penalty[k];
     value[COLUMN_PRESSURE]    = slaves.pressure[k];
     for (int i = 0; i < 3; i++) value[COLUMN_NORMAL + i] = slaves.normal[k * 3 + i];
-    value[COLUMN_PRESENT] = 1.0;
+    for (int i = 0; i < 3; i++) value[COLUMN_TRACTION + i] = slaves.traction ? slaves.traction[k * 3 + i] : 0.0;
+    value[COLUMN_SLIP]     = slaves.slid ? slaves.slid[k] : 0.0;
+    value[COLUMN_FRICTION] = slaves.friction ? slaves.friction[k] : 0.0;
+    value[COLUMN_PRESENT]  = 1.0;
     if (node[COLUMN_PRESENT] == 0.0 || value[COLUMN_PRESSURE] > node[COLUMN_PRESSURE])
       PetscCall(PetscArraycpy(node, value, COLUMNS));
   }
-  for (int f = 0; f < COUNT(contact_fields); f++) {
+  for (int f = 0; f < ContactFields(fields); f++) {
     const int width = contact_fields[f].width;
 
     for (PetscInt k = 0; k < slaves.n; k++)
@@ -443,11 +462,11 @@ static PetscErrorCode FieldsWriteContact(Fields fields, hid_t file)
     const PetscReal weight = fill[n * COLUMNS + COLUMN_PRESENT];
 
     if (value[COLUMN_PRESENT] > 0.0) continue;
-    for (int f = 0; f < COUNT(contact_fields); f++)
+    for (int f = 0; f < ContactFields(fields); f++)
       for (int i = contact_fields[f].column; i < contact_fields[f].column + contact_fields[f].width; i++)
         value[i] = weight > 0.0 ? fill[n * COLUMNS + i] / weight : contact_fields[f].absent;
   }
-  for (int f = 0; f < COUNT(contact_fields); f++)
+  for (int f = 0; f < ContactFields(fields); f++)
     PetscCall(FieldsWriteNodal(fields, file, contact_fields[f].name, nodal, COLUMNS, contact_fields[f].column,
                                contact_fields[f].width));
   PetscCall(PetscFree2(nodal, fill));

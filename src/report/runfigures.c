@@ -43,6 +43,7 @@ static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
   PetscCall(ContactPairPenalty(contact, p, &pair->penalty_min, &pair->penalty_max));
   pair->stiffened = pair->penalty_max > 0 ? pair->penalty_max / ContactPairInitialPenalty(contact, p) : 1;
   PetscCall(ContactPairWindow(contact, p, &pair->window));
+  PetscCall(ContactPairFriction(contact, p, &pair->friction));
   PetscCall(ContactPairScatter(contact, p, model->u, &pair->scatter));
   PetscCall(ContactPairMasterDepth(contact, p, model->u, model->t, &pair->master));
   pair->master_deepest = pair->master.depth;

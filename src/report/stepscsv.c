@@ -146,6 +146,7 @@ static void FillContact(const StepRecord *step, PetscReal row[STEP_COLUMNS])
   row[COLUMN_PENALTY_MIN]     = contact->penalty_min;
   row[COLUMN_PENALTY_MAX]     = contact->penalty_max;
   row[COLUMN_CONTACT_FORCE]   = contact->force;
+  row[COLUMN_DISSIPATED]      = contact->dissipated;
   row[COLUMN_BETA]            = step->beta;
   if (contact->outside_window >= 0) row[COLUMN_OUTSIDE_WINDOW] = (PetscReal)contact->outside_window;
 }

@@ -217,6 +217,20 @@ static void AddMasterDepth(cJSON *pair, const PairFigures *figure)
   cJSON_AddNumberToObject(pair, "master_depth_nodes", (double)master->nodes);
 }
 
+/* Adds what friction does in a pair that has some. */
+static void AddFriction(cJSON *pair, const ContactFriction *friction)
+{
+  cJSON *map = cJSON_AddObjectToObject(pair, "friction");
+
+  cJSON_AddItemToObject(map, "force", cJSON_CreateDoubleArray(friction->force, 3));
+  cJSON_AddNumberToObject(map, "sticking", (double)friction->sticking);
+  cJSON_AddNumberToObject(map, "slipping", (double)friction->slipping);
+  AddReal(map, "slipping_area", friction->slipped_area);
+  AddReal(map, "elastic_slip", friction->elastic);
+  AddReal(map, "slip", friction->slid);
+  AddReal(map, "dissipated", friction->dissipated);
+}
+
 static void AddContact(cJSON *json, const RunFigures *figures)
 {
   cJSON *list = cJSON_AddArrayToObject(json, "contact");
@@ -252,6 +266,7 @@ static void AddContact(cJSON *json, const RunFigures *figures)
     cJSON_AddNumberToObject(penalty, "missed", (double)window->missed);
     cJSON_AddNumberToObject(penalty, "outside_window", (double)window->outside);
     cJSON_AddNumberToObject(penalty, "largest_excess", (double)window->excess);
+    if (figure->scene->mu > 0 || figure->scene->mu_expression) AddFriction(pair, &figure->friction);
   }
 }
 

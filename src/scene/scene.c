@@ -541,6 +541,23 @@ static PetscErrorCode SceneReadOverlap(Scene scene, SceneContact *contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads the friction of a pair. */
+static PetscErrorCode SceneReadFriction(Scene scene, SceneContact *contact)
+{
+  Document *document = SceneDocument(scene);
+
+  PetscFunctionBeginUser;
+  if (!SceneHas(scene, contact->path, "friction")) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SceneReadValue(scene, contact->path, "friction.mu", &contact->mu, &contact->mu_expression));
+  if (contact->penalty_may_stiffen && (contact->mu > 0 || contact->mu_expression))
+    contact->penalty_scale = SCENE_FRICTION_SCALE;
+  if (contact->mu < 0)
+    PetscCall(SceneRefuse(scene, contact->path, "friction.mu", "is below 0; allowed: 0 and above", NULL));
+  if (SchemaChoice(document, "%s.friction.stick.penalty", contact->path) != 0)
+    contact->stick_penalty = SchemaReal(document, "%s.friction.stick.penalty", contact->path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
 {
   Node symmetry = SceneNode(scene, contact->path, "symmetry");
@@ -573,6 +590,7 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->stabilise     = (Stabilise)SchemaChoice(SceneDocument(scene), "%s.stabilise", contact->path);
   contact->feature_angle = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
   PetscCall(SceneReadPenalty(scene, contact));
+  PetscCall(SceneReadFriction(scene, contact));
   contact->find_symmetry = !symmetry;
   contact->n_symmetry    = symmetry ? symmetry->n : 0;
   PetscCall(PetscCalloc1(contact->n_symmetry, &contact->symmetry));
@@ -876,6 +894,7 @@ static PetscErrorCode SceneDestroyContacts(Scene scene)
 
     for (int k = 0; k < contact->n_symmetry; k++) PetscCall(PetscFree(contact->symmetry[k]));
     PetscCall(ExpressionDestroy(&contact->overlap_expression));
+    PetscCall(ExpressionDestroy(&contact->mu_expression));
     PetscCall(PetscFree(contact->symmetry));
     PetscCall(PetscFree(contact->path));
     PetscCall(PetscFree(contact->name));

@@ -85,7 +85,10 @@ typedef struct {
   Expression     overlap_expression; /* in its place, where it is not NULL; one with t is the overlap at t */
   Stabilise      stabilise;          /* which of the pair's bodies are moved into contact and held by springs */
   ContactLawKind law;
-  int            penalty_auto; /* 1 if the penalty is the automatic one */
+  double         mu;            /* coefficient of friction; 0: there is none */
+  Expression     mu_expression; /* in its place, where it is not NULL */
+  double         stick_penalty; /* force per length and area; 0: automatic */
+  int            penalty_auto;  /* 1 if the penalty is the automatic one */
   /* Penalty (force per length and area), 0 if it is automatic, and the factor on the automatic penalty. */
   double penalty, penalty_scale;
   int    penalty_may_stiffen; /* 1 if the run chooses the penalty: no key of the scene sets it or lets it follow */

@@ -174,13 +174,21 @@ const SchemaKey SchemaKeys[] = {
            "springs hold what contact does not; true: so are bodies that supports hold; false: nothing is done"},
   {"contact.*.law", CHOICE, .values = CHOICE_WORDS(CONTACT_LAWS), .preset = "penalty",
    .help = "law of the contact pressure over the gap"},
+  {"contact.*.friction", MAP, .help = "Coulomb friction; without the key there is none"},
+  {"contact.*.friction.mu", REAL | FORMULA, REQUIRED, .range = "[0, inf)",
+   .help = "coefficient of friction, or an expression, as in loads; where that is below 0 it counts as 0"},
+  {"contact.*.friction.stick", MAP, .help = "how surfaces stick"},
+  {"contact.*.friction.stick.penalty", REAL | CHOICE, .values = "auto", .range = "(0, inf)",
+   .unit = "force per length and area", .preset = "auto",
+   .help = "traction over the elastic slip of surfaces that stick; auto: the stiffness of the softer body's elements "
+           "below the surface, or penalty.initial if that is less"},
   {"contact.*.penalty", MAP, .help = "the penalty (force per penetration and area) and its adjustment"},
   {"contact.*.penalty.initial", REAL | CHOICE, .values = "auto", .range = "(0, inf)",
    .unit = "force per length and area", .preset = "auto",
    .help = "penalty at the start of the run"},
   {"contact.*.penalty.scale", REAL | CHOICE, .values = "auto", .range = "(0, inf)", .preset = "auto",
    .help = "factor on the penalty; for initial: auto, 1 is the stiffness of the softer body's elements below the "
-           "surface; auto: " SCENE_PENALTY_SCALE_TEXT ", raised by the run where penetration leaves more than 0.4 % of error; "
+           "surface; auto: " SCENE_PENALTY_SCALE_TEXT " (" SCENE_FRICTION_SCALE_TEXT " with friction), raised by the run where penetration leaves more than 0.4 % of error; "
            "1 with another initial value, adjust or augment"},
   {"contact.*.penalty.adjust", BOOLEAN, .preset = "false",
    .help = "true: the penalty follows the penetration; needs g_min, g_max and unit"},

@@ -23,5 +23,6 @@ const char *const StepColumnNames[STEP_COLUMNS] = {
   [COLUMN_ELASTIC_ENERGY]  = "elastic_energy",
   [COLUMN_PLASTIC_WORK]    = "plastic_work",
   [COLUMN_WORK]            = "work",
+  [COLUMN_DISSIPATED]      = "dissipated",
   [COLUMN_WALL_S]          = "wall_s",
 };

@@ -27,6 +27,7 @@ typedef enum {
   COLUMN_ELASTIC_ENERGY,
   COLUMN_PLASTIC_WORK,
   COLUMN_WORK,
+  COLUMN_DISSIPATED, /* only with friction */
   COLUMN_WALL_S,
   STEP_COLUMNS
 } StepColumn;

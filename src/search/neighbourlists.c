@@ -909,6 +909,33 @@ PetscReal NeighbourListsAverse(NeighbourLists lists, PetscInt q, const PetscReal
 }
 
 /*@
+  NeighbourListsFindFace - finds a face of the master by its tag.
+
+  Not collective
+
+  Input Parameters:
++ lists - the lists of a search after SearchKeepFaces()
+- tag   - of the face or of its mirror image
+
+  Note:
+  Returns its number among the lists' faces, or -1 if it is too far from the slave points of this rank.
+@*/
+PetscInt NeighbourListsFindFace(NeighbourLists lists, long tag)
+{
+  PetscInt low = 0, high = lists->n_faces;
+
+  while (low < high) {
+    const PetscInt middle = (low + high) / 2;
+
+    if (lists->face[middle].tag < tag)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < lists->n_faces && lists->face[low].tag == tag ? low : -1;
+}
+
+/*@
   NeighbourListsDestroy - frees the lists.
 
   Collective
@@ -938,6 +965,7 @@ PetscErrorCode NeighbourListsDestroy(NeighbourLists *lists)
   PetscCall(PetscFree(l->list_point));
   PetscCall(PetscFree(l->facet));
   PetscCall(PetscFree(l->facet_size));
+  PetscCall(PetscFree(l->face));
   PetscCall(PetscFree(*lists));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -75,7 +75,9 @@ typedef struct {
   /* Part of each slave point's area that takes part: less than 1 where its normal hardly opposes the master's, and near
      a convex edge where what it faces of the master ends. */
   PetscReal *share;
-  PetscBool *averse; /* the master is near each slave point, but does not face it */
+  PetscBool *averse;  /* the master is near each slave point, but does not face it */
+  PetscInt   n_faces; /* all faces of the master around this rank's slave points, by ascending tag; 0: not kept */
+  Facet     *face;    /* their nodes count among all points */
 } *NeighbourLists;
 
 PetscErrorCode NeighbourListsDestroy(NeighbourLists *);
@@ -88,6 +90,7 @@ PetscReal      NeighbourListsOpposing(const PetscReal own[3], const PetscReal no
 PetscReal      NeighbourListsOpposed(NeighbourLists, PetscInt q, const PetscReal normal[3]);
 PetscBool      NeighbourListsSquare(NeighbourLists, PetscInt q, const PetscReal normal[3]);
 PetscReal      NeighbourListsAverse(NeighbourLists, PetscInt q, const PetscReal normal[3]);
+PetscInt       NeighbourListsFindFace(NeighbourLists, long tag);
 PetscErrorCode NeighbourListsBroadcast(ContactSearch, NeighbourLists, const PetscReal *x, PetscReal t, PetscReal t_next,
                                        PetscReal *values);
 PetscErrorCode NeighbourListsReduce(NeighbourLists, const PetscReal *values, PetscReal *y);

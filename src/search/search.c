@@ -384,6 +384,37 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static int CompareTags(const void *a, const void *b)
+{
+  const long left = ((const Facet *)a)->tag, right = ((const Facet *)b)->tag;
+
+  return (left > right) - (left < right);
+}
+
+/* Keeps all faces that were collected, by ascending tag. */
+static PetscErrorCode NeighbourListsTakeFaces(NeighbourLists lists, const SearchField *field)
+{
+  PetscFunctionBeginUser;
+  lists->n_faces = field->n_candidates;
+  PetscCall(PetscMalloc1(lists->n_faces, &lists->face));
+  for (PetscInt c = 0; c < lists->n_faces; c++) lists->face[c] = field->candidates[c].facet;
+  qsort(lists->face, lists->n_faces, sizeof(Facet), CompareTags);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SearchKeepFaces - has lists keep all faces of the master around the slave points, for NeighbourListsFindFace().
+
+  Not collective
+
+  Input Parameter:
+. s - the search
+@*/
+void SearchKeepFaces(ContactSearch s)
+{
+  s->keeps_faces = PETSC_TRUE;
+}
+
 /*@
   SearchLists - lists for every slave point of this rank the facets near it and the points of which these are made, from
   whatever rank.
@@ -424,6 +455,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
     PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));
   PetscCall(NeighbourListsFill(s, lists, &field, s->fit->fitted ? &fit : NULL, motion));
   if (s->fit->fitted) PetscCall(FitSupportDestroy(&fit));
+  if (s->keeps_faces) PetscCall(NeighbourListsTakeFaces(lists, &field));
   PetscCall(NeighbourListsUpdate(s, lists, u, t, NULL));
   for (PetscInt q = 0; q < lists->n_slaves; q++) NeighbourListsCentre(lists, q, &lists->centre[2 * q]);
   PetscCall(SearchFieldDestroy(&field));

@@ -34,6 +34,7 @@ PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface master, PetscReal
                             const SurfaceImage *, const FitSettings *, SlavePoints slaves, const PetscReal *offset,
                             const FaceMaps *maps, ContactSearch *);
 PetscErrorCode SearchDestroy(ContactSearch *);
+void           SearchKeepFaces(ContactSearch);
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
 PetscErrorCode SearchLeastDistance(ContactSearch, const PetscReal *u, PetscReal t, PetscReal *distance);
 PetscErrorCode SearchDistance(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap);

@@ -349,6 +349,37 @@ void FitDerivativesFirst(int dim, int n, const double *N, const FitDerivatives *
 }
 
 /*@
+  FitDerivativesSlave - gives a row of M that belongs to the slave point: the derivative of one component of its own N.
+
+  Not collective
+
+  Input Parameters:
++ factors   - of M
+- component - of the slave point
+
+  Output Parameter:
+. row - row[(1 + n)*dim], over slave point and points
+
+  Note:
+  Plain C.
+@*/
+void FitDerivativesSlave(const FitFactors *factors, int component, double *row)
+{
+  const int     dim = factors->dim, terms = FitTerms(dim, factors->degree), stride = factors->stride;
+  const double *K = &factors->rows[component * stride], *J = K + terms;
+
+  for (int i = 0; i < (1 + factors->n) * dim; i++) {
+    const int point = i / dim, high = component > i % dim ? component : i % dim,
+              low       = component > i % dim ? i % dim : component;
+    const double *other = &factors->rows[(long)i * stride],
+                 own    = factors->hessians[(long)point * factors->hessianstride + high * (high + 1) / 2 + low];
+
+    row[i] = point ? -own : own;
+    for (int k = 0; k < terms; k++) row[i] += K[k] * other[terms + k] + J[k] * other[k];
+  }
+}
+
+/*@
   FitDerivativesBegin - begins a sum of second variations over the same nodes.
 
   Not collective

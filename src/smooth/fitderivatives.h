@@ -4,7 +4,8 @@
 
    FitDerivativesFirst() makes the first variation of one slave point. The second variations of slave points over the
    same nodes are summed: FitDerivativesBegin(), then FitDerivativesAdd() for each slave point (FitDerivativesAddDense()
-   where M itself is given, FitDerivativesAddOuter() for factor v v^T), then FitDerivativesEnd(). FitDerivativesOwn()
+   where M itself is given, FitDerivativesAddOuter() for factor v v^T), then FitDerivativesEnd(). FitDerivativesSlave()
+   gives the rows of M that belong to the slave point, which are the derivatives of its own N. FitDerivativesOwn()
    collects the points' own H, and FitDerivativesAddOwn() adds them separately. The workspace of the sum must not be the
    one in which the factors lie.
 
@@ -45,6 +46,7 @@ void FitDerivativesAdd(FitDerivativesSum *, double factor, const FitFactors *, c
 void FitDerivativesAddDense(FitDerivativesSum *, double factor, int n, const double *M, const FitDerivatives *);
 void FitDerivativesAddOuter(FitDerivativesSum *, double factor, const double *v);
 void FitDerivativesEnd(FitDerivativesSum *, double *M);
+void FitDerivativesSlave(const FitFactors *, int component, double *row);
 void FitDerivativesOwn(double factor, const FitFactors *, int i, double own[FIT_DERIVATIVES_OWN]);
 void FitDerivativesAddOwn(int dim, int first, int end, const double (*own)[FIT_DERIVATIVES_OWN], const FitDerivatives *,
                           double *M);

@@ -79,7 +79,7 @@ PetscErrorCode ModelCountCut(Model model, Vec x)
   if (!(lambda < 1)) PetscFunctionReturn(PETSC_SUCCESS);
   if (lambda == damping)
     cause = CUT_CYCLE;
-  else if (work->objective == OBJECTIVE_ENERGY && LoadsConservative(model->problem->loads)) {
+  else if (work->objective == OBJECTIVE_ENERGY && ProblemConservative(model->problem)) {
     PetscCall(VecDuplicate(x, &start));
     PetscCall(VecDuplicate(x, &end));
     PetscCall(VecWAXPY(start, lambda, work->step, x));

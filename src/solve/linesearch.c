@@ -13,6 +13,8 @@
 #define LINE_RESIDUAL_WEIGHT 1e30
 /* Part of Newton's step over which smooth quantities do not change noticeably. What changes over it is a jump. */
 #define LINE_TRIFLE 1e-3
+/* With friction a step is shortened to 1 over 2 to this power. */
+#define LINE_HALVINGS 5
 /* Energies that differ by less than this many machine epsilons of the energy differ by round-off only. */
 #define LINE_RISE 64
 
@@ -96,7 +98,7 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
   PetscFunctionBeginUser;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
   PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, y));
-  if (model->work->objective == OBJECTIVE_RESIDUAL || !LoadsConservative(model->problem->loads))
+  if (model->work->objective == OBJECTIVE_RESIDUAL || !ProblemConservative(model->problem))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESLineSearchGetSNES(search, &snes));
   if (model->work->energy == 0)
@@ -150,7 +152,7 @@ PetscErrorCode ModelLocateEdge(Model model, PetscBool *found, ContactPlace *plac
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
   PetscCall(SNESGetSolutionUpdate(model->snes, &y));
-  if (!model->contact || !LoadsConservative(model->problem->loads) || !y || work->objective == OBJECTIVE_RESIDUAL)
+  if (!model->contact || !ProblemConservative(model->problem) || !y || work->objective == OBJECTIVE_RESIDUAL)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetFunction(model->snes, &F, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
@@ -170,6 +172,69 @@ PetscErrorCode ModelLocateEdge(Model model, PetscBool *found, ContactPlace *plac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Norm of the residual at x - lambda y, in w and G. Where an element is inverted it is infinite. */
+static PetscErrorCode NormAlong(SNESLineSearch search, PetscReal lambda, PetscReal *norm)
+{
+  SNES      snes;
+  PetscBool inverted;
+  Vec       x, F, y, w, G;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESLineSearchGetSNES(search, &snes));
+  PetscCall(SNESLineSearchGetVecs(search, &x, &F, &y, &w, &G));
+  PetscCall(VecWAXPY(w, -lambda, y, x));
+  PetscCall(SNESComputeFunction(snes, w, G));
+  PetscCall(SNESGetFunctionDomainError(snes, &inverted));
+  PetscCall(VecNorm(G, NORM_2, norm));
+  if (inverted || PetscIsInfOrNanReal(*norm)) *norm = PETSC_MAX_REAL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The search where friction leaves no energy: the first of the steps 1, 1/2, 1/4, ... after which the residual is below
+   the largest of the last iterates, or else that with the least residual. A search that asked for less at each iterate
+   would stop where a node changes between sticking and slipping: there the residual has a kink, and may rise to
+   either side. */
+static PetscErrorCode ModelSearchResidual(SNESLineSearch search, void *context)
+{
+  Model      model = context;
+  ModelWork *work  = model->work;
+  PetscReal  lambda, norm, before, best = PETSC_MAX_REAL, at = 0, largest = 0;
+  PetscBool  changed, changed_w;
+  PetscInt   iterate;
+  SNES       snes;
+  Vec        x, F, y, w, G;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESLineSearchGetSNES(search, &snes));
+  PetscCall(SNESGetIterationNumber(snes, &iterate));
+  PetscCall(SNESLineSearchGetVecs(search, &x, &F, &y, &w, &G));
+  PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_SUCCEEDED));
+  PetscCall(SNESLineSearchGetDamping(search, &lambda));
+  PetscCall(SNESLineSearchPreCheck(search, x, y, &changed));
+  PetscCall(VecNorm(F, NORM_2, &before));
+  work->norms[iterate % LINE_MEMORY] = before;
+  for (PetscInt i = 0; i < PetscMin(iterate + 1, LINE_MEMORY); i++) largest = PetscMax(largest, work->norms[i]);
+  for (int i = 0; i <= LINE_HALVINGS; i++, lambda /= 2) {
+    PetscCall(NormAlong(search, lambda, &norm));
+    if (norm < best) {
+      best = norm;
+      at   = lambda;
+    }
+    if (norm < largest) break;
+  }
+  if (best == PETSC_MAX_REAL) {
+    PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_FAILED_REDUCT));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (at != lambda) PetscCall(NormAlong(search, at, &norm));
+  PetscCall(SNESLineSearchPostCheck(search, x, y, w, &changed, &changed_w));
+  PetscCall(VecCopy(w, x));
+  PetscCall(VecCopy(G, F));
+  PetscCall(SNESLineSearchSetLambda(search, at));
+  PetscCall(SNESLineSearchComputeNorms(search));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelCreateLineSearch - gives the line search of the model's SNES its objective and the correction of Newton's
   step for contact.
@@ -180,15 +245,20 @@ PetscErrorCode ModelLocateEdge(Model model, PetscBool *found, ContactPlace *plac
 . model - its SNES has its line search
 
   Note:
-  With follower loads there is no energy. SNES then compares residuals by itself.
+  With follower loads there is no energy. SNES then compares residuals by itself. With friction there is none either,
+  and residuals are compared with those of several iterates.
 @*/
 PetscErrorCode ModelCreateLineSearch(Model model)
 {
   SNESLineSearch search;
 
   PetscFunctionBeginUser;
-  if (LoadsConservative(model->problem->loads)) PetscCall(SNESSetObjective(model->snes, ModelObjective, model));
+  if (ProblemConservative(model->problem)) PetscCall(SNESSetObjective(model->snes, ModelObjective, model));
   PetscCall(SNESGetLineSearch(model->snes, &search));
+  if (ContactHasFriction(model->contact)) {
+    PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
+    PetscCall(SNESLineSearchShellSetUserFunc(search, ModelSearchResidual, model));
+  }
   PetscCall(SNESLineSearchSetPreCheck(search, ModelPrepareStep, model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,12 +9,23 @@
 /* Bodies that were moved into contact touch with the terms that are open by less than this part of a face size. */
 #define FREE_BODIES_TOUCH 1e-4
 
-/* Stiffness gram[n][n] of the terms in contact, or touching, along the motions at (u, t), over the largest diagonal
-   entry. */
-PetscErrorCode FreeBodiesContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, double gram[])
+/* Product of two motions as term i of n sees them: of their travels and, where there are four values, slides. */
+static PetscReal Together(int across, PetscBool along, PetscInt n, PetscInt i, const PetscReal *a, const PetscReal *b)
 {
-  const PetscInt       size = b->mesh->n_nodes * b->mesh->dim;
-  const int            n    = b->n;
+  PetscReal sum = along ? 0 : a[i] * b[i];
+
+  for (int d = 0; d < across - 1; d++) sum += a[n + 3 * i + d] * b[n + 3 * i + d];
+  return sum;
+}
+
+/* Stiffness gram[n][n] of the terms in contact, or touching, along the motions at (u, t), over the largest diagonal
+   entry. Friction counts as if nothing slipped. along: it alone counts. */
+static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, PetscBool along,
+                                  double gram[])
+{
+  const PetscInt       size   = b->mesh->n_nodes * b->mesh->dim;
+  const int            n      = b->n;
+  const int            across = ContactHasFriction(b->contact) ? 4 : 1; /* values of a term: travel, slide */
   PetscReal           *du, **travel, largest = 0;
   double              *a;
   PetscInt             n_terms;
@@ -33,14 +44,16 @@ PetscErrorCode FreeBodiesContactGram(FreeBodies b, const PetscReal *u, PetscReal
     a[k] = 1;
     FreeBodiesVelocity(b, u, a, du);
     a[k] = 0;
-    PetscCall(PetscMalloc1(n_terms, &travel[k]));
+    PetscCall(PetscMalloc1(across * n_terms, &travel[k]));
     PetscCall(ContactStepTravel(step, du, t, t, travel[k]));
+    if (across > 1) PetscCall(ContactStepSlide(step, du, t, t, &travel[k][n_terms]));
   }
   for (PetscInt i = 0; i < n_terms; i++) {
     if (terms[i].pressure == 0 && !(touching && terms[i].opening <= FREE_BODIES_TOUCH * b->face)) continue;
     for (int k = 0; k < n; k++)
       for (int l = 0; l < n; l++)
-        gram[k * n + l] += travel[k][i] * travel[l][i] / (b->pieces[b->owner[k]].size * b->pieces[b->owner[l]].size);
+        gram[k * n + l] += Together(across, along, n_terms, i, travel[k], travel[l]) /
+                           (b->pieces[b->owner[k]].size * b->pieces[b->owner[l]].size);
   }
   for (int k = 0; k < n; k++) largest = PetscMax(largest, gram[k * n + k]);
   for (int k = 0; k < n * n && largest > 0; k++) gram[k] /= largest;
@@ -49,6 +62,32 @@ PetscErrorCode FreeBodiesContactGram(FreeBodies b, const PetscReal *u, PetscReal
   PetscCall(PetscFree(travel));
   PetscCall(PetscFree(a));
   PetscCall(PetscFree(du));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stiffness gram[n][n] of the terms in contact, or touching, along the motions at (u, t), over the largest diagonal
+   entry. Friction counts as if nothing slipped. */
+PetscErrorCode FreeBodiesContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, double gram[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(ContactGram(b, u, t, touching, PETSC_FALSE, gram));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes bodies that touch with friction at (u, t) hardly slide: gram[n][n], the products of their motions, grows by
+   `factor` of its largest diagonal entry along them. */
+PetscErrorCode FreeBodiesRub(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal factor, double gram[])
+{
+  const int n = b->n;
+  double   *along, largest = 0;
+
+  PetscFunctionBeginUser;
+  if (!ContactHasFriction(b->contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n * n, &along));
+  PetscCall(ContactGram(b, u, t, PETSC_TRUE, PETSC_TRUE, along));
+  for (int k = 0; k < n; k++) largest = PetscMax(largest, gram[k * n + k]);
+  for (int k = 0; k < n * n; k++) gram[k] += factor * largest * along[k];
+  PetscCall(PetscFree(along));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

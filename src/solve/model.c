@@ -356,8 +356,9 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
   if (ProblemIsPlastic(model->problem)) PetscCall(PetscStrlcat(text, ", plasticity", size));
   PetscCall(ModelContactEffects(scene, text, size));
   PetscCall(PetscStrlen(text, &start));
-  PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s%s%s", surface ? ", surface to surface" : "",
-                          adjusted ? ", adjusted penalty" : "", augmented ? ", augmented penalty" : "",
+  PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s%s%s%s", surface ? ", surface to surface" : "",
+                          ContactHasFriction(model->contact) ? ", friction" : "", adjusted ? ", adjusted penalty" : "",
+                          augmented ? ", augmented penalty" : "",
                           LoadsConservative(model->problem->loads) ? "" : ", follower load",
                           model->problem->fluids ? ", fluid between surfaces" : "", body_force ? ", body force" : "",
                           moving ? ", rigid motion" : ""));

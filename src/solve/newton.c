@@ -366,7 +366,7 @@ static PetscErrorCode ModelReadOptions(Model model, PetscErrorCode (*read)(SNES)
 @*/
 PetscErrorCode ModelCreateSNES(Model model)
 {
-  const PetscBool symmetric = LoadsConservative(model->problem->loads);
+  const PetscBool symmetric = ProblemConservative(model->problem);
   SNESLineSearch  search;
   KSP             ksp;
 

@@ -33,9 +33,9 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   problem->inverted = -1;
   PetscCall(LoadsCreate(mesh, scene, &problem->loads));
   PetscCall(ElasticityCreate(mesh, scene, &problem->elasticity));
-  PetscCall(ElasticitySetSymmetric(problem->elasticity, LoadsConservative(problem->loads)));
-  PetscCall(ElasticityCheckEnclosed(problem->elasticity, scene, LoadsConstrained(problem->loads)));
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, problem->elasticity, problem->loads, &problem->contact));
+  PetscCall(ElasticitySetSymmetric(problem->elasticity, ProblemConservative(problem)));
+  PetscCall(ElasticityCheckEnclosed(problem->elasticity, scene, LoadsConstrained(problem->loads)));
   PetscCall(FluidCreate(mesh, scene, problem->loads, problem->contact, &problem->fluids));
   PetscCall(PetscCalloc2(n, &problem->f, n, &problem->trial));
   PetscCall(ElasticityTangent(problem->elasticity, problem->trial, NULL));
@@ -571,6 +571,20 @@ PetscBool ProblemIsLinear(Problem problem)
 PetscBool ProblemIsPlastic(Problem problem)
 {
   return SceneIsPlastic(problem->scene) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/*@
+  ProblemConservative - returns whether all forces have a potential, so that there is an energy to compare and the
+  tangent is symmetric.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. problem - the problem
+@*/
+PetscBool ProblemConservative(Problem problem)
+{
+  return (PetscBool)(LoadsConservative(problem->loads) && !ContactHasFriction(problem->contact));
 }
 
 /*@

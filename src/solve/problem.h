@@ -88,4 +88,5 @@ PetscErrorCode ProblemRenewLists(Problem, const PetscReal *u_0, PetscReal t_0, P
 PetscErrorCode ProblemReaction(Problem, const MeshGroup *, PetscReal force[3]);
 PetscBool      ProblemIsLinear(Problem);
 PetscBool      ProblemIsPlastic(Problem);
+PetscBool      ProblemConservative(Problem);
 PetscBool      ProblemHasFormulation(Problem, Formulation);

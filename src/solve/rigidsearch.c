@@ -29,6 +29,9 @@
 #define SEARCH_HEAVY 100
 /* They go on and turn freely where the loads would then do more than this part of the work that they could do. */
 #define SEARCH_FALL 0.1
+/* Bodies that touch with friction slide this many times less readily than they move otherwise: friction may hold them.
+ */
+#define SEARCH_RUBS 1e9
 /* A body without a load gives way to those with one: its weight in theirs. */
 #define SEARCH_LIGHT 1e-3
 
@@ -66,8 +69,8 @@ static PetscErrorCode PassDestroy(Pass *pass)
 /* Where the loads would take each body if nothing was in its way: as they would accelerate it, over a distance of
    `move`. The weights of the pieces are such that the wish balances the loads. heavy: bodies hardly turn. *any: a load
    drives some body. */
-static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal move, PetscBool heavy, Pass *pass,
-                           PetscBool *any)
+static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscReal move,
+                           PetscBool heavy, Pass *pass, PetscBool *any)
 {
   const int  n = b->n;
   PetscReal *longest, lightest = PETSC_MAX_REAL;
@@ -76,7 +79,8 @@ static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscR
   PetscCall(FreeBodiesGram(b, u, pass->gram));
   for (int k = 0; k < n && heavy; k++)
     if (FreeBodiesTurns(b, k)) pass->gram[k * n + k] *= SEARCH_HEAVY;
-  PetscCall(FreeBodiesForce(b, u, t, pass->force, pass->scale));
+  PetscCall(FreeBodiesRub(b, u, t, SEARCH_RUBS, pass->gram));
+  PetscCall(FreeBodiesForce(b, u, t_loads, pass->force, pass->scale));
   PetscCall(PetscMalloc1(b->n_pieces, &longest));
   PetscCall(PetscArraycpy(pass->wish, pass->force, n));
   RigidCholesky(n, pass->gram, pass->factor);
@@ -249,7 +253,8 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
   for (PetscInt it = 0; rests < SEARCH_RESTS && touched < SEARCH_PASSES; it++) {
     PetscReal most = 0, work = 0, wished = 0;
 
-    PetscCall(Wish(b, u, t_loads, move, heavy, &pass, &any));
+    if (ContactHasFriction(b->contact)) PetscCall(ContactGather(b->contact, u, t, t, move));
+    PetscCall(Wish(b, u, t, t_loads, move, heavy, &pass, &any));
     if (!any) break;
     PetscCall(ContactGather(b->contact, u, t, t, move));
     PetscCall(Bounds(b, u, t, move, (PetscBool)!it, &pass, &overlap));

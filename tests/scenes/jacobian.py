@@ -72,6 +72,30 @@ CASES["rings, live offsets, order 2"] = (
 CASES["coarse pinched pipe, live offsets"] = (RUNS / "pipe_pinch.yaml", COARSE_PIPE +
                                               ["mesh.order=1", "loads.0.uy=-2", "stepping.initial=0.5"] + LIVE)
 
+SLIPPING = ["contact.0.friction.mu=0.2"]
+STICKING = ["contact.0.friction.mu=2"]
+for name, own in (("sticks", STICKING), ("slips", SLIPPING)):
+    CASES[f"turning rigid cylinder, surface to surface, {name}"] = (
+        RUNS / "slide_facets.yaml", ["mesh.parameters.n_x=4", "stepping.initial=0.1"] + DIFFUSE + own)
+    CASES[f"turning rigid cylinder, facets, surface to surface, {name}"] = (
+        RUNS / "slide_facets.yaml",
+        ["mesh.parameters.n_x=4", "stepping.initial=0.1", "contact.0.smoother=facet"] + SURFACE + own)
+    CASES[f"coarse pinched pipe, surface to surface, {name}"] = (
+        RUNS / "pipe_pinch.yaml", COARSE_PIPE + ["loads.0.uy=-2", "stepping.initial=0.5"] + DIFFUSE + own)
+CASES["coarse pinched pipe, live offsets, slips"] = (
+    RUNS / "pipe_pinch.yaml",
+    COARSE_PIPE + ["mesh.order=1", "loads.0.uy=-2", "stepping.initial=0.5"] + LIVE + SLIPPING)
+CASES["rings, live offsets, order 2, sticks"] = (
+    RUNS / "ring_in_ring.yaml",
+    ["kinematics=finite", "mesh.order=2", "mesh.parameters={n_inner: 4, n_outer: 5, jitter: 0.2}"] + LIVE + STICKING)
+CASES["point contact about the axis, surface to surface, order 1, slips"] = (RUNS / "hertz_line.yaml", [
+    "geometry=axisymmetric", "kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk",
+    "mesh.parameters={h: 1, growth: 0.5}", "loads.0.pressure=20", "stepping.initial=0.5"
+] + DIFFUSE + ["contact.0.friction.mu=0.01"])
+CASES["belt on a turning analytic drum"] = (SCENES / "belt.yaml", [
+    "mesh.parameters.n=12", "stepping.initial=0.1", "contact.0.penalty={initial: 100, scale: 1}"
+])
+
 args = arguments()
 check = Check()
 for name, (scene, overrides) in CASES.items():

@@ -6,7 +6,8 @@
 
    The files call each other downwards in this order: contactwork (room), contactpair and contactterm (a pair, one of
    its terms), contactpoint (one slave point), contactvariation (first variations that are kept), contactprojection
-   (gaps of all points), contactvectors (first variations over dofs), contactresidual, contacttangent, contactlists,
+   (gaps of all points), contactvectors (first variations over dofs), friction,
+   frictiontangent, contactresidual, contacttangent, contactlists,
    contact. */
 #pragma once
 #include "matrix/blockmatrix.h"
@@ -15,6 +16,7 @@
 #include "contactlaw.h"
 #include "anderson.h"
 #include "contactwork.h"
+#include "friction.h"
 #include "search/offset.h"
 #include "search/search.h"
 #include "smooth/smoother.h"
@@ -90,7 +92,8 @@ typedef struct {
   int               *seed;      /* of each slave point: facet of the last projection */
   PetscReal         *point_gap, *point_normal, *point_force; /* of each slave point, at the last projection */
   ContactVariations *variations;
-  ContactLost        lost; /* since the step began */
+  Friction           friction; /* NULL: there is none */
+  ContactLost        lost;     /* since the step began */
 
   PetscReal   *stiffness, *stiffness_before; /* of the terms in the last tangent, and in the one before */
   PetscReal   *force, *normal;               /* of the last residual: normal nodal force, direction of contact (3*n) */
@@ -172,6 +175,25 @@ PetscErrorCode ContactPairMove(Contact, ContactPair *, const PetscReal *x, Petsc
 PetscErrorCode ContactVectorsAdd(ContactVectors *, const ContactPair *, PetscInt term, PetscReal scale);
 PetscErrorCode ContactVectorsAddZeros(ContactVectors *, PetscInt n, const PetscInt row[]);
 PetscErrorCode ContactVectorsFree(ContactVectors *);
+/* friction.c */
+PetscErrorCode FrictionCreate(ContactPair *);
+PetscErrorCode FrictionDestroy(Friction *);
+void           FrictionForget(const ContactPair *);
+PetscErrorCode FrictionBegin(ContactPair *, PetscReal t);
+PetscErrorCode FrictionTerm(const ContactPair *, PetscInt term, PetscReal t, FrictionInput *, FrictionTraction *,
+                            PetscBool *acts);
+PetscBool      FrictionTermTakes(const ContactPair *, PetscInt k);
+PetscErrorCode FrictionPointFoot(const ContactPair *, PetscInt q, const FrictionFoot **, PetscBool *found);
+PetscInt       FrictionOwnNodes(const ContactPair *, PetscInt q, const PetscInt **node, const PetscReal **S);
+void           FrictionNodeSign(const ContactPair *, PetscInt point, PetscInt *node, PetscReal sign[3]);
+PetscInt       FrictionFootPoint(const ContactPair *, PetscInt q, int node);
+PetscErrorCode FrictionResidual(ContactPair *, PetscReal t, PetscReal *values);
+PetscErrorCode FrictionTermMotion(const ContactPair *, PetscInt term, const PetscReal *values, PetscReal motion[3]);
+PetscErrorCode FrictionShow(const ContactPair *, const PetscReal *area, ContactNodes *);
+/* frictiontangent.c */
+PetscErrorCode FrictionTermNodes(const ContactPair *, PetscInt term);
+PetscErrorCode FrictionTermBlock(const ContactPair *, BlockMatrix, int list, PetscInt term, PetscReal t, PetscInt n,
+                                 const PetscInt nodes[]);
 /* contacttangent.c */
 PetscErrorCode ContactMatrixRows(Contact, PetscInt *rows);
 /* contactlists.c */

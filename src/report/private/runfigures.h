@@ -12,6 +12,7 @@ typedef struct {
   ContactFits         fits;
   ContactQuality      quality;
   ContactWindow       window;
+  ContactFriction     friction;
   PetscReal           penalty_min, penalty_max;
   PetscReal           scatter;        /* of the nodal pressures, over their smooth part; NaN: not known */
   NodeDepth           master;         /* the master's nodes in the slave */

@@ -51,6 +51,7 @@ PetscErrorCode FreeBodiesLongest(FreeBodies, const PetscReal *u, const double a[
 PetscErrorCode FreeBodiesMeanMotion(FreeBodies, const PetscReal *u, Vec x, int k, PetscReal *mean);
 PetscBool      FreeBodiesTurns(FreeBodies, int k);
 /* loosemotions.c */
+PetscErrorCode FreeBodiesRub(FreeBodies, const PetscReal *u, PetscReal t, PetscReal factor, double gram[]);
 PetscErrorCode FreeBodiesContactGram(FreeBodies, const PetscReal *u, PetscReal t, PetscBool touching, double gram[]);
 PetscErrorCode FreeBodiesBasis(FreeBodies, const double gram[], PetscReal part, int *m, double free[], int pivot[]);
 PetscErrorCode FreeBodiesDriven(FreeBodies, const PetscReal *u, PetscReal t, PetscReal part, int m, const double free[],

@@ -22,6 +22,10 @@
    the residual, for iterates so close to equilibrium that energies differ by round-off only. */
 typedef enum { OBJECTIVE_ENERGY, OBJECTIVE_RESIDUAL } Objective;
 
+/* Iterates whose residuals a line search with friction looks back to (Grippo, Lampariello, Lucidi, SIAM J. Numer. Anal.
+   23, 1986). With one alone searches end in kinks; with ten nothing is gained. */
+enum { LINE_MEMORY = 4 };
+
 typedef struct _n_ModelWork {
   LinearSolver  solver;
   PetscBool     ordered;       /* the linear solver has chosen the order of its unknowns */
@@ -65,12 +69,13 @@ typedef struct _n_ModelWork {
 
   /* One solve by SNES */
   Objective objective;
-  PetscBool soft;             /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
-  PetscBool balanced;         /* the residual of the iterate is within the tolerance */
-  PetscBool left;             /* the solve ended because a slave point slid out of its lists */
-  PetscBool cycling;          /* the solve ended because the contact set repeats itself with shorter steps too */
-  PetscInt  cuts[CUT_CAUSES]; /* iterations that the line search shortened, by their cause */
-  PetscInt  turned;           /* iterations whose step led uphill and was turned round */
+  PetscReal norms[LINE_MEMORY]; /* residuals of the last iterates, where there is friction */
+  PetscBool soft;               /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
+  PetscBool balanced;           /* the residual of the iterate is within the tolerance */
+  PetscBool left;               /* the solve ended because a slave point slid out of its lists */
+  PetscBool cycling;            /* the solve ended because the contact set repeats itself with shorter steps too */
+  PetscInt  cuts[CUT_CAUSES];   /* iterations that the line search shortened, by their cause */
+  PetscInt  turned;             /* iterations whose step led uphill and was turned round */
 } ModelWork;
 
 /* linearcontact.c */

@@ -1,0 +1,616 @@
+/* Friction of a pair: anchors, slip, tractions and forces. */
+#include "contactimpl.h"
+#include "mesh/mesh.h"
+
+/* A foot that is outside of its reference face by less than this is on it: rounding. */
+#define FRICTION_ON_FACE 1e-9
+/* Allocates the friction of a pair, without anchors. The penalty of what sticks is the automatic one, without the
+   factor that the pressure's has: on a pinched pipe Newton's method takes 90 iterations with it, and with ten times as
+   much it fails where many nodes change between sticking and slipping. */
+PetscErrorCode FrictionCreate(ContactPair *pair)
+{
+  const PetscInt q = pair->slaves->n, n = pair->n;
+  Friction       f;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&f));
+  pair->friction = f;
+  f->stiffness = pair->scene->stick_penalty > 0 ? pair->scene->stick_penalty : PetscMin(pair->initial, pair->automatic);
+  PetscCall(PetscCalloc5(q, &f->face, 2 * q, &f->xi, 3 * q, &f->place, q, &f->at, 3 * q, &f->force));
+  PetscCall(PetscCalloc4(q, &f->foot, q, &f->facet, q, &f->known, q, &f->first));
+  PetscCall(PetscCalloc4(n, &f->anchored, 2 * n, &f->kept, n, &f->began, n, &f->axis));
+  PetscCall(PetscCalloc4(3 * n, &f->nodal, n, &f->elastic, 3 * n, &f->traction, n, &f->status));
+  for (PetscInt i = 0; i < q; i++) f->face[i] = f->facet[i] = f->at[i] = f->first[i] = -1;
+  SearchKeepFaces(pair->search);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Frees the friction of a pair. */
+PetscErrorCode FrictionDestroy(Friction *friction)
+{
+  Friction f = *friction;
+
+  PetscFunctionBeginUser;
+  if (!f) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree5(f->face, f->xi, f->place, f->at, f->force));
+  PetscCall(PetscFree4(f->foot, f->facet, f->known, f->first));
+  PetscCall(PetscFree4(f->anchored, f->kept, f->began, f->axis));
+  PetscCall(PetscFree4(f->nodal, f->elastic, f->traction, f->status));
+  PetscCall(PetscFree(f->turns));
+  PetscCall(PetscFree(*friction));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Forgets what belongs to the last projection, because points have moved or lists are new, and finds the anchors' faces
+   in the lists in force. */
+void FrictionForget(const ContactPair *pair)
+{
+  Friction f = pair->friction;
+
+  f->turns_used = 0;
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
+    f->known[q] = PETSC_FALSE;
+    f->first[q] = -1;
+    f->at[q]    = pair->master && f->face[q] >= 0 ? NeighbourListsFindFace(pair->lists, f->face[q]) : -1;
+  }
+}
+
+/* Nodes of the face of slave point q with their shares, without offsets and live maps. Returns their number. */
+PetscInt FrictionOwnNodes(const ContactPair *pair, PetscInt q, const PetscInt **node, const PetscReal **S)
+{
+  const SlavePoints slaves = pair->slaves;
+
+  *node = &pair->lists->slave_node[pair->lists->slave_ptr[q]];
+  *S    = &slaves->S[slaves->ptr[q]];
+  return slaves->ptr[q + 1] - slaves->ptr[q];
+}
+
+/* The node of a point of a face, and how the point's components follow the node's. */
+void FrictionNodeSign(const ContactPair *pair, PetscInt point, PetscInt *node, PetscReal sign[3])
+{
+  const NeighbourLists lists = pair->lists;
+  const PetscInt       entry = lists->point_ptr[point];
+  const SurfaceImage *image = &pair->images[lists->point_image[point]], *side = &pair->images[lists->point_side[entry]];
+
+  *node = lists->point_node[entry];
+  for (int d = 0; d < 3; d++) sign[d] = image->sign[d] * side->sign[d];
+}
+
+/* Place of slave point q on the face itself: reference coordinates and displacement. */
+static void PlainPlace(const ContactPair *pair, PetscInt q, PetscReal X[3], PetscReal u[3])
+{
+  const NeighbourLists lists = pair->lists;
+  const PetscInt      *node;
+  const PetscReal     *S;
+  const PetscInt       n = FrictionOwnNodes(pair, q, &node, &S);
+
+  for (int d = 0; d < 3; d++) X[d] = u[d] = 0;
+  for (PetscInt a = 0; a < n; a++) {
+    for (int d = 0; d < lists->dim; d++) {
+      X[d] += S[a] * lists->X[node[a] * lists->dim + d];
+      u[d] += S[a] * lists->u[node[a] * lists->dim + d];
+    }
+  }
+}
+
+/* Point `node` of the facet on which slave point q has its foot. */
+PetscInt FrictionFootPoint(const ContactPair *pair, PetscInt q, int node)
+{
+  const NeighbourLists lists = pair->lists;
+  const Facet         *facet = &lists->facet[lists->facet_ptr[q] + pair->friction->facet[q]];
+
+  return lists->list_point[lists->list_ptr[q] + facet->nodes[node]];
+}
+
+/* Finds the foot of slave point q on a facet of its list. */
+static PetscBool FootOnFacet(const ContactPair *pair, PetscInt q, int number, const PetscReal normal[3],
+                             FrictionFoot *foot)
+{
+  const NeighbourLists lists = pair->lists;
+  const Facet         *facet = &lists->facet[lists->facet_ptr[q] + number];
+  const int            dim   = lists->dim;
+  PetscReal            X[3], u[3], x[FACE_MAX_NODES * 3];
+
+  PlainPlace(pair, q, X, u);
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
+    const PetscInt p = lists->list_point[lists->list_ptr[q] + facet->nodes[a]];
+
+    for (int d = 0; d < dim; d++)
+      x[a * dim + d] = (lists->point_X[p * dim + d] - X[d]) + (lists->point_u[p * dim + d] - u[d]);
+  }
+  return FrictionFootFind(dim, facet->type, x, normal, foot) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Finds the foot of slave point q over the facets of its list: the one that the line hits, or else comes nearest to. */
+static PetscBool FindFoot(const ContactPair *pair, PetscInt q, const PetscReal normal[3])
+{
+  const NeighbourLists lists = pair->lists;
+  Friction             f     = pair->friction;
+  const int            n     = (int)(lists->facet_ptr[q + 1] - lists->facet_ptr[q]);
+  PetscReal            least = PETSC_MAX_REAL, away = PETSC_MAX_REAL;
+
+  if (f->facet[q] >= 0 && FootOnFacet(pair, q, f->facet[q], normal, &f->foot[q]) &&
+      f->foot[q].outside <= FRICTION_ON_FACE)
+    return PETSC_TRUE;
+  f->facet[q] = -1;
+  for (int i = 0; i < n; i++) {
+    FrictionFoot foot;
+    PetscReal    outside, distance;
+
+    if (!FootOnFacet(pair, q, i, normal, &foot)) continue;
+    outside  = PetscMax(foot.outside, FRICTION_ON_FACE);
+    distance = PetscAbsReal(foot.distance);
+    if (outside > least || (outside == least && distance >= away)) continue;
+    least       = outside;
+    away        = distance;
+    f->facet[q] = i;
+    f->foot[q]  = foot;
+  }
+  return f->facet[q] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Gets the foot of slave point q at the last projection, along its own part of the first variation. */
+PetscErrorCode FrictionPointFoot(const ContactPair *pair, PetscInt q, const FrictionFoot **foot, PetscBool *found)
+{
+  const int dim       = pair->mesh->dim;
+  Friction  f         = pair->friction;
+  PetscReal normal[3] = {0, 0, 0};
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactVariationsNeed(pair, q));
+  *foot  = &f->foot[q];
+  *found = (PetscBool)(pair->master && pair->variations->first[q] < pair->variations->end[q]);
+  if (*found && !f->known[q]) {
+    for (int d = 0; d < dim; d++) normal[d] = pair->variations->own[q * dim + d];
+    *found = FindFoot(pair, q, normal);
+  } else if (*found)
+    *found = (PetscBool)(f->facet[q] >= 0);
+  f->known[q] = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The place in an analytic tool, at its first position, of what is at x now. */
+static void ToolPlace(const ContactPair *pair, PetscReal t, const PetscReal x[3], PetscReal place[3])
+{
+  const Motion *motion = &pair->scene->motion;
+  PetscReal     point[3];
+
+  MotionPlace(motion, t, motion->point, point);
+  for (int i = 0; i < 3; i++) {
+    PetscReal unit[3] = {i == 0, i == 1, i == 2}, turned[3];
+
+    MotionTurn(motion, t, unit, turned);
+    place[i] = motion->point[i];
+    for (int d = 0; d < 3; d++) place[i] += turned[d] * (x[d] - point[d]);
+  }
+}
+
+/* Anchors slave point q where it is. */
+static PetscErrorCode AnchorPoint(ContactPair *pair, PetscInt q, PetscReal t)
+{
+  Friction            f = pair->friction;
+  const FrictionFoot *foot;
+  PetscBool           found = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  f->face[q] = f->at[q] = -1;
+  if (pair->factor[q] == 0 || PetscIsNanReal(pair->point_gap[q])) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!pair->master) {
+    PetscReal X[3], u[3];
+
+    PlainPlace(pair, q, X, u);
+    for (int d = 0; d < 3; d++) X[d] += u[d] + (d < pair->mesh->dim ? pair->mesh->centre[d] : 0);
+    ToolPlace(pair, t, X, &f->place[3 * q]);
+    f->face[q] = 0;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  f->face[q] = pair->lists->facet[pair->lists->facet_ptr[q] + f->facet[q]].tag;
+  f->at[q]   = NeighbourListsFindFace(pair->lists, f->face[q]);
+  for (int a = 0; a < 2; a++) f->xi[2 * q + a] = foot->xi[a];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds scale times the distance from the anchor of slave point q to the point. */
+static void AddSlip(const ContactPair *pair, PetscInt q, PetscReal t, PetscReal scale, PetscReal slip[3])
+{
+  const NeighbourLists lists = pair->lists;
+  const Friction       f     = pair->friction;
+  const int            dim   = lists->dim;
+  PetscReal            X[3], u[3], N[FACE_MAX_NODES], x[3];
+
+  PlainPlace(pair, q, X, u);
+  if (pair->master) {
+    const Facet *face = &lists->face[f->at[q]];
+
+    ElementShape(face->type, &f->xi[2 * q], N, NULL, NULL);
+    for (int k = 0; k < ElementGet(face->type)->nodes; k++) {
+      for (int d = 0; d < dim; d++) {
+        X[d] -= N[k] * lists->point_X[face->nodes[k] * dim + d];
+        u[d] -= N[k] * lists->point_u[face->nodes[k] * dim + d];
+      }
+    }
+  } else {
+    MotionPlace(&pair->scene->motion, t, &f->place[3 * q], x);
+    for (int d = 0; d < dim; d++) X[d] -= x[d] - pair->mesh->centre[d];
+  }
+  for (int d = 0; d < dim; d++) slip[d] += scale * (X[d] + u[d]);
+}
+
+/* The direction that turns with the master at the anchor of slave point q: a tangent of the face, or an axis of the
+   tool. */
+static void Along(const ContactPair *pair, PetscInt q, int axis, PetscReal t, PetscReal along[3])
+{
+  const NeighbourLists lists   = pair->lists;
+  const Friction       f       = pair->friction;
+  const int            dim     = lists->dim;
+  PetscReal            unit[3] = {axis == 0, axis == 1, axis == 2}, N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2];
+  const Facet         *face;
+
+  for (int d = 0; d < 3; d++) along[d] = 0;
+  if (!pair->master) {
+    MotionTurn(&pair->scene->motion, t, unit, along);
+    return;
+  }
+  face = &lists->face[f->at[q]];
+  ElementShape(face->type, &f->xi[2 * q], N, dN, NULL);
+  for (int k = 0; k < ElementGet(face->type)->nodes; k++)
+    for (int d = 0; d < dim; d++)
+      along[d] +=
+        dN[k * (dim - 1)] * (lists->point_X[face->nodes[k] * dim + d] + lists->point_u[face->nodes[k] * dim + d]);
+}
+
+/* Says whether entry k of the terms' lists of slave points counts in the gap of its term. */
+PetscBool FrictionTermTakes(const ContactPair *pair, PetscInt k)
+{
+  const PetscInt q = pair->term_point[k];
+
+  return (PetscBool)(pair->term_weight[k] * pair->factor[q] != 0 && !PetscIsNanReal(pair->point_gap[q]));
+}
+
+/* Fills normal, slip and along of a term. *found: all of its slave points have anchors. */
+static PetscErrorCode TermSlip(const ContactPair *pair, PetscInt c, PetscReal t, FrictionInput *in, PetscBool *found)
+{
+  const int dim   = pair->mesh->dim;
+  PetscReal area  = 0;
+  PetscInt  first = -1;
+
+  PetscFunctionBeginUser;
+  *found = PETSC_FALSE;
+  for (int d = 0; d < 3; d++) in->normal[d] = in->slip[d] = 0;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
+    if (FrictionTermTakes(pair, k)) area += pair->term_weight[k] * pair->factor[pair->term_point[k]];
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt  q     = pair->term_point[k];
+    const PetscReal share = pair->term_weight[k] * pair->factor[q] / area;
+
+    if (!FrictionTermTakes(pair, k)) continue;
+    if (pair->friction->face[q] < 0) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCheck(!pair->master || pair->friction->at[q] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+               "the lists lack the face on which friction is anchored");
+    PetscCall(ContactVariationsNeed(pair, q));
+    for (int d = 0; d < dim; d++) in->normal[d] += share * pair->variations->own[q * dim + d];
+    AddSlip(pair, q, t, share, in->slip);
+    if (first < 0) first = q;
+  }
+  if (first < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  Along(pair, first, pair->friction->axis[c], t, in->along);
+  *found = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The axis of an analytic tool that is least along a normal. */
+static int LeastAlong(const ContactPair *pair, PetscReal t, const PetscReal normal[3])
+{
+  PetscReal least = PETSC_MAX_REAL;
+  int       best  = 0;
+
+  for (int i = 0; i < pair->mesh->dim; i++) {
+    PetscReal unit[3] = {i == 0, i == 1, i == 2}, turned[3], along = 0;
+
+    MotionTurn(&pair->scene->motion, t, unit, turned);
+    for (int d = 0; d < 3; d++) along += turned[d] * normal[d];
+    if (PetscAbsReal(along) >= least) continue;
+    least = PetscAbsReal(along);
+    best  = i;
+  }
+  return best;
+}
+
+/* Begins the step of a term: what its accepted traction says besides the slip is kept. */
+static PetscErrorCode BeginTerm(ContactPair *pair, PetscInt c, PetscReal t)
+{
+  Friction       f     = pair->friction;
+  const LawState state = ContactTermState(pair, c, t, pair->most);
+  FrictionInput  in    = {.stiffness = 0};
+  PetscReal      opening, traction[2], slip[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(TermSlip(pair, c, t, &in, &f->anchored[c]));
+  if (!f->anchored[c]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!pair->master) {
+    f->axis[c] = LeastAlong(pair, t, in.normal);
+    Along(pair, pair->term_point[pair->term_ptr[c]], f->axis[c], t, in.along);
+  }
+  opening     = ContactTermGap(pair, pair->factor, pair->point_gap, c, NULL) - LawOnsetGap(&state);
+  f->began[c] = pair->accepted.status[c] == CONTACT_OPEN && opening > 0 ? opening : 0;
+  FrictionComponents(in.normal, in.along, &pair->accepted.traction[3 * c], traction);
+  FrictionComponents(in.normal, in.along, in.slip, slip);
+  for (int k = 0; k < 2; k++) f->kept[2 * c + k] = traction[k] / f->stiffness - slip[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionBegin - begins a step: anchors all slave points where they are in the accepted state.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair, projected with its lists at the accepted displacements
+- t    - load parameter of the accepted state
+@*/
+PetscErrorCode FrictionBegin(ContactPair *pair, PetscReal t)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) PetscCall(AnchorPoint(pair, q, t));
+  for (PetscInt c = 0; c < pair->n; c++) PetscCall(BeginTerm(pair, c, t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Coefficient of friction at a term. */
+static PetscReal TermCoefficient(const ContactPair *pair, PetscInt c, PetscReal t)
+{
+  PetscReal X[3];
+
+  if (!pair->scene->mu_expression) return pair->scene->mu;
+  MeshNodePlace(pair->mesh, pair->node[c], X);
+  return PetscMax(0, ExpressionValue(pair->scene->mu_expression, X, t));
+}
+
+/* Evaluates the law of a term. In a linear step what sticks goes on sticking and what slips goes on slipping, as what
+   is in contact stays so. A term that only touches sticks, because it may be what holds a body. */
+static void TermEvaluate(const ContactPair *pair, PetscInt c, FrictionInput *in, FrictionTraction *out)
+{
+  const ContactState *now = &pair->now;
+
+  in->state = FRICTION_DECIDES;
+  if (pair->holding) in->state = now->slips[c] ? FRICTION_SLIPS : FRICTION_STICKS;
+  if (pair->holding && now->status[c] == CONTACT_OPEN) in->began = 0;
+  FrictionEvaluate(in, out);
+}
+
+/*@
+  FrictionTerm - evaluates friction at a term.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair, projected, after FrictionBegin()
+. c    - the term
+- t    - load parameter
+
+  Output Parameters:
++ in   - what the law was asked
+. out  - what it says
+- acts - PETSC_FALSE: there is no friction at the term, and the other two are not set
+@*/
+PetscErrorCode FrictionTerm(const ContactPair *pair, PetscInt c, PetscReal t, FrictionInput *in, FrictionTraction *out,
+                            PetscBool *acts)
+{
+  const Friction f     = pair->friction;
+  const LawState state = ContactTermState(pair, c, t, pair->most);
+  LawValue       value;
+  PetscReal      gap, area;
+
+  PetscFunctionBeginUser;
+  ContactTermLaw(pair, c, t, &value, &gap, &area);
+  *acts = (PetscBool)(value.stiffness > 0 && f->anchored[c]);
+  if (!*acts) PetscFunctionReturn(PETSC_SUCCESS);
+  *in = (FrictionInput){.coefficient = TermCoefficient(pair, c, t),
+                        .stiffness   = f->stiffness,
+                        .kept        = {f->kept[2 * c], f->kept[2 * c + 1]},
+                        .pressure    = value.pressure,
+                        .rate        = value.stiffness,
+                        .opening     = gap - LawOnsetGap(&state),
+                        .began       = f->began[c]};
+  PetscCall(TermSlip(pair, c, t, in, acts));
+  if (*acts) TermEvaluate(pair, c, in, out);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the forces of slave point q to the values of the contact nodes. */
+static PetscErrorCode PointForces(ContactPair *pair, PetscInt q, PetscReal *values)
+{
+  const int           dim = pair->mesh->dim;
+  const PetscReal    *F   = &pair->friction->force[3 * q], *S;
+  const PetscInt     *node;
+  const PetscInt      n = FrictionOwnNodes(pair, q, &node, &S);
+  const FrictionFoot *foot;
+  PetscBool           found;
+
+  PetscFunctionBeginUser;
+  if (F[0] == 0 && F[1] == 0 && F[2] == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt a = 0; a < n; a++)
+    for (int d = 0; d < dim; d++) values[node[a] * dim + d] += S[a] * F[d];
+  for (int d = 0; d < dim; d++) pair->total[d] -= F[d];
+  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
+  for (int k = 0; found && k < foot->nodes; k++) {
+    PetscReal force[3][3], sign[3];
+    PetscInt  at;
+
+    FrictionFootForces(foot, k, force);
+    FrictionNodeSign(pair, FrictionFootPoint(pair, q, k), &at, sign);
+    for (int d = 0; d < dim; d++)
+      values[at * dim + d] += sign[d] * (force[d][0] * F[0] + force[d][1] * F[1] + force[d][2] * F[2]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds up the forces on slave nodes. Where terms share their points, the hat functions distribute the points' forces,
+   also to terms of other ranks. */
+static PetscErrorCode NodalForces(ContactPair *pair)
+{
+  const int            dim   = pair->mesh->dim;
+  const NeighbourLists lists = pair->lists;
+  Friction             f     = pair->friction;
+  PetscReal           *values, *nodal;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &nodal));
+  for (PetscInt q = 0; q < lists->n_slaves; q++)
+    for (PetscInt k = pair->slaves->ptr[q], node = lists->slave_ptr[q]; k < pair->slaves->ptr[q + 1]; k++, node++)
+      for (int d = 0; d < dim; d++)
+        values[lists->slave_node[node] * dim + d] -= pair->slaves->hat[k] * f->force[3 * q + d];
+  PetscCall(NeighbourListsReduce(lists, values, nodal));
+  for (PetscInt c = 0; c < pair->n; c++)
+    for (int d = 0; d < dim; d++) f->nodal[3 * c + d] = nodal[pair->node[c] * dim + d];
+  PetscCall(PetscFree2(values, nodal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionResidual - computes the tractions of a pair, which become its present state, and adds their forces.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair, projected
+- t    - load parameter
+
+  Input/Output Parameter:
+. values - forces over the contact nodes, subtracted as external ones are
+@*/
+PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *values)
+{
+  ContactState *now = &pair->now, *accepted = &pair->accepted;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(pair->friction->force, 3 * pair->lists->n_slaves));
+  now->dissipated = accepted->dissipated;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    FrictionInput    in;
+    FrictionTraction out  = {.state = FRICTION_STICKS};
+    PetscReal        area = 0;
+    PetscBool        acts;
+
+    PetscCall(FrictionTerm(pair, c, t, &in, &out, &acts));
+    for (PetscInt k = pair->term_ptr[c]; acts && k < pair->term_ptr[c + 1]; k++) {
+      const PetscInt  q      = pair->term_point[k];
+      const PetscReal weight = pair->term_weight[k] * pair->factor[q];
+
+      if (!FrictionTermTakes(pair, k)) continue;
+      area += weight;
+      for (int d = 0; d < 3; d++) pair->friction->force[3 * q + d] += weight * out.traction[d];
+    }
+    for (int d = 0; d < 3; d++) now->traction[3 * c + d] = acts ? out.traction[d] : 0;
+    pair->friction->elastic[c] = acts ? out.elastic : 0;
+    now->slips[c]              = (PetscBool)(acts && out.state == FRICTION_SLIPS);
+    now->slid[c]               = accepted->slid[c] + (acts ? out.slipped : 0);
+    if (acts)
+      now->dissipated +=
+        area * out.slipped *
+        PetscSqrtReal(PetscSqr(out.traction[0]) + PetscSqr(out.traction[1]) + PetscSqr(out.traction[2]));
+  }
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) PetscCall(PointForces(pair, q, values));
+  PetscCall(NodalForces(pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mean motion of the slave points of a term against their anchors in the tangent plane, where the contact nodes move by
+   values; 0 where the term has no anchors. */
+PetscErrorCode FrictionTermMotion(const ContactPair *pair, PetscInt c, const PetscReal *values, PetscReal motion[3])
+{
+  const NeighbourLists lists = pair->lists;
+  const int            dim   = lists->dim;
+  PetscReal            area = 0, across = 0, square = 0, normal[3] = {0, 0, 0};
+
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; d++) motion[d] = 0;
+  for (PetscInt k = pair->term_ptr[c]; pair->friction->anchored[c] && k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt  q      = pair->term_point[k], *node;
+    const PetscReal weight = pair->term_weight[k] * pair->factor[q], *S;
+    const Facet    *face;
+    const PetscInt  n = FrictionOwnNodes(pair, q, &node, &S);
+    PetscReal       N[FACE_MAX_NODES];
+
+    if (!FrictionTermTakes(pair, k)) continue;
+    area += weight;
+    PetscCall(ContactVariationsNeed(pair, q));
+    for (int d = 0; d < dim; d++) normal[d] += weight * pair->variations->own[q * dim + d];
+    for (PetscInt a = 0; a < n; a++)
+      for (int d = 0; d < dim; d++) motion[d] += weight * S[a] * values[node[a] * dim + d];
+    if (!pair->master || pair->friction->at[q] < 0) continue;
+    face = &lists->face[pair->friction->at[q]];
+    ElementShape(face->type, &pair->friction->xi[2 * q], N, NULL, NULL);
+    for (int a = 0; a < ElementGet(face->type)->nodes; a++) {
+      PetscReal sign[3];
+      PetscInt  at;
+
+      FrictionNodeSign(pair, face->nodes[a], &at, sign);
+      for (int d = 0; d < dim; d++) motion[d] -= weight * N[a] * sign[d] * values[at * dim + d];
+    }
+  }
+  for (int d = 0; d < 3; d++) {
+    across += normal[d] * motion[d];
+    square += PetscSqr(normal[d]);
+  }
+  for (int d = 0; d < 3 && area > 0; d++) motion[d] = (motion[d] - across / square * normal[d]) / area;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fills what slave nodes show of friction. area: present tributary areas of the mesh's nodes. */
+PetscErrorCode FrictionShow(const ContactPair *pair, const PetscReal *area, ContactNodes *nodes)
+{
+  const Friction f = pair->friction;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    for (int d = 0; d < 3; d++) f->traction[3 * c + d] = f->nodal[3 * c + d] / area[pair->node[c]];
+    f->status[c] = pair->now.status[c] == CONTACT_OPEN ? 0 : pair->now.slips[c] ? 2 : 1;
+  }
+  nodes->traction = f->traction;
+  nodes->slid     = pair->now.slid;
+  nodes->friction = f->status;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairFriction - says what friction does in a pair in the present state.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Output Parameter:
+. friction - the same on all ranks; zeros without friction
+@*/
+PetscErrorCode ContactPairFriction(Contact contact, int p, ContactFriction *friction)
+{
+  const ContactPair *pair   = &contact->pairs[p];
+  const Friction     f      = pair->friction;
+  PetscReal          sum[7] = {0}, most[2] = {0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; f && c < pair->n; c++) {
+    for (int d = 0; d < 3; d++) sum[d] += f->nodal[3 * c + d];
+    if (pair->now.status[c] == CONTACT_OPEN) continue;
+    sum[pair->now.slips[c] ? 4 : 3]++;
+    if (pair->now.slips[c]) sum[5] += pair->area[c];
+    most[0] = PetscMax(most[0], f->elastic[c]);
+    most[1] = PetscMax(most[1], pair->now.slid[c]);
+  }
+  sum[6] = pair->now.dissipated;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 7, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
+  *friction = (ContactFriction){.force        = {sum[0], sum[1], sum[2]},
+                                .sticking     = (PetscInt)sum[3],
+                                .slipping     = (PetscInt)sum[4],
+                                .slipped_area = sum[5],
+                                .dissipated   = sum[6],
+                                .elastic      = most[0],
+                                .slid         = most[1]};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,194 @@
+/* Coulomb's law at one slave node and its derivatives. */
+#include "frictionlaw.h"
+#include <math.h>
+#include <string.h>
+
+typedef double Matrix[3][3];
+
+/* The tangents of a node, and their derivatives by the unit normal and by `along`. */
+typedef struct {
+  double n[3], t[2][3], length; /* length: of the vector along the normal */
+  Matrix by_n[2], by_along[2];
+} Tangents;
+
+static double Dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void Cross(const double a[3], const double b[3], double c[3])
+{
+  for (int d = 0; d < 3; d++) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+}
+
+/* m = scale (I - u u^T). */
+static void Projector(double scale, const double u[3], Matrix m)
+{
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) m[i][j] = scale * ((i == j) - u[i] * u[j]);
+}
+
+static void Product(Matrix a, Matrix b, Matrix c)
+{
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) c[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
+}
+
+/* Unit normal and tangents without derivatives. Returns the length of the tangent part of `along`. */
+static double MakeTangents(const double normal[3], const double along[3], Tangents *x)
+{
+  double length, across;
+
+  x->length = sqrt(Dot(normal, normal));
+  for (int d = 0; d < 3; d++) x->n[d] = normal[d] / x->length;
+  across = Dot(x->n, along);
+  for (int d = 0; d < 3; d++) x->t[0][d] = along[d] - across * x->n[d];
+  length = sqrt(Dot(x->t[0], x->t[0]));
+  for (int d = 0; d < 3; d++) x->t[0][d] /= length;
+  Cross(x->n, x->t[0], x->t[1]);
+  return length;
+}
+
+/* The derivatives of the tangents. With b = P along, Db = P Dalong - (n.along) Dn - n (along.Dn), Dt_1 = (I - t_1
+   t_1^T) Db/|b| and Dt_2 = Dn x t_1 + n x Dt_1. */
+static void VaryTangents(const double along[3], double length, Tangents *x)
+{
+  const double across = Dot(x->n, along), *n = x->n, *t = x->t[0];
+  Matrix       Q, b, P;
+
+  Projector(1 / length, t, Q);
+  Projector(1, n, P);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) b[i][j] = -across * (i == j) - n[i] * along[j];
+  Product(Q, b, x->by_n[0]);
+  Product(Q, P, x->by_along[0]);
+  for (int j = 0; j < 3; j++) {
+    double column[3], unit[3] = {j == 0, j == 1, j == 2}, turned[3], other[3];
+
+    for (int i = 0; i < 3; i++) column[i] = x->by_n[0][i][j];
+    Cross(n, column, turned);
+    Cross(unit, t, other);
+    for (int i = 0; i < 3; i++) x->by_n[1][i][j] = turned[i] + other[i];
+    for (int i = 0; i < 3; i++) column[i] = x->by_along[0][i][j];
+    Cross(n, column, turned);
+    for (int i = 0; i < 3; i++) x->by_along[1][i][j] = turned[i];
+  }
+}
+
+/*@
+  FrictionComponents - gives the components of a vector along the tangents of a node.
+
+  Not collective
+
+  Input Parameters:
++ normal - as in FrictionInput
+. along  - as in FrictionInput
+- v      - the vector
+
+  Output Parameter:
+. component - along t_1 and t_2
+
+  Note:
+  Plain C.
+@*/
+void FrictionComponents(const double normal[3], const double along[3], const double v[3], double component[2])
+{
+  Tangents x;
+
+  MakeTangents(normal, along, &x);
+  for (int k = 0; k < 2; k++) component[k] = Dot(x.t[k], v);
+}
+
+/* Share of the slip that counts, and its derivative by the opening. */
+static double CountedShare(const FrictionInput *in, double *rate)
+{
+  const double travel = in->opening - in->began;
+
+  *rate = 0;
+  if (!(in->began > 0)) return 1;
+  if (in->opening >= 0) return 0;
+  *rate = -in->began / (travel * travel);
+  return in->opening / travel;
+}
+
+/* Elastic slip e of a node that only sticks, and its derivatives. */
+static void ElasticSlip(const FrictionInput *in, double e[3], FrictionTraction *by)
+{
+  double   rate, share = CountedShare(in, &rate), across;
+  Tangents x;
+  Matrix   by_n, P, turn;
+
+  VaryTangents(in->along, MakeTangents(in->normal, in->along, &x), &x);
+  across = Dot(x.n, in->slip);
+  Projector(1, x.n, P);
+  Projector(1 / x.length, x.n, turn);
+  for (int i = 0; i < 3; i++) {
+    e[i]          = in->kept[0] * x.t[0][i] + in->kept[1] * x.t[1][i] + in->slip[i] - across * x.n[i];
+    by->by_gap[i] = rate * e[i];
+    e[i] *= share;
+    for (int j = 0; j < 3; j++) {
+      by_n[i][j]         = share * (in->kept[0] * x.by_n[0][i][j] + in->kept[1] * x.by_n[1][i][j] - across * (i == j) -
+                            x.n[i] * in->slip[j]);
+      by->by_along[i][j] = share * (in->kept[0] * x.by_along[0][i][j] + in->kept[1] * x.by_along[1][i][j]);
+      by->by_slip[i][j]  = share * P[i][j];
+    }
+  }
+  Product(by_n, turn, by->by_normal);
+}
+
+/* Takes derivatives of e to those of the traction: m e. */
+static void ApplyMatrix(Matrix m, FrictionTraction *by)
+{
+  FrictionTraction e = *by;
+
+  Product(m, e.by_normal, by->by_normal);
+  Product(m, e.by_slip, by->by_slip);
+  Product(m, e.by_along, by->by_along);
+  for (int i = 0; i < 3; i++) by->by_gap[i] = Dot(m[i], e.by_gap);
+}
+
+/*@
+  FrictionEvaluate - evaluates Coulomb's law at a node.
+
+  Not collective
+
+  Input Parameter:
+. in - the node
+
+  Output Parameter:
+. out - traction and its derivatives
+
+  Note:
+  The derivative by the gap has both parts, that of the pressure and that of beta. Plain C.
+@*/
+void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
+{
+  const double pressure = in->pressure > 0 ? in->pressure : 0, rate = in->pressure > 0 ? in->rate : 0,
+               bound = in->coefficient * pressure;
+  double e[3], length;
+  Matrix m;
+
+  ElasticSlip(in, e, out);
+  length     = sqrt(Dot(e, e));
+  out->state = in->state;
+  if (in->state == FRICTION_DECIDES) out->state = in->stiffness * length > bound ? FRICTION_SLIPS : FRICTION_STICKS;
+  if (!(length > 0)) out->state = FRICTION_STICKS;
+  if (out->state == FRICTION_STICKS) {
+    memset(m, 0, sizeof(m));
+    for (int i = 0; i < 3; i++) m[i][i] = in->stiffness;
+    ApplyMatrix(m, out);
+    for (int i = 0; i < 3; i++) out->traction[i] = in->stiffness * e[i];
+    out->elastic = length;
+    out->slipped = 0;
+    return;
+  }
+  for (int i = 0; i < 3; i++) e[i] /= length;
+  Projector(bound / length, e, m);
+  ApplyMatrix(m, out);
+  for (int i = 0; i < 3; i++) {
+    out->traction[i] = bound * e[i];
+    out->by_gap[i] -= in->coefficient * rate * e[i];
+  }
+  out->elastic = bound / in->stiffness;
+  out->slipped = length - out->elastic;
+}

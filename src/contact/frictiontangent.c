@@ -1,0 +1,366 @@
+/* The tangent of friction: rows of the nodes on which its forces act, columns of all nodes that they follow. */
+#include "contactimpl.h"
+#include "base/timing.h"
+
+/* A block of a term while it is made. */
+typedef struct {
+  const ContactPair *pair;
+  int                dim;
+  PetscInt           columns;  /* nodes of the block times dim */
+  PetscReal         *by_node;  /* dim rows: derivative of the traction */
+  PetscInt           n_rows;   /* nodes on which forces act */
+  PetscInt          *row_node; /* these nodes, contact nodes */
+  int               *row_of;   /* of each node of the block, its number among them; -1: none */
+  PetscReal         *share;    /* of each of them dim*dim: force over the traction of the term */
+  PetscReal         *value;    /* n_rows*dim rows */
+} TermBlock;
+
+/* Derivatives of the own N of slave point q over the nodes of its first variation: dim*dim for each, kept until the
+   next projection. */
+static PetscErrorCode PointTurns(const ContactPair *pair, PetscInt q, const PetscReal **turns)
+{
+  const int      dim  = pair->mesh->dim;
+  ContactWork   *work = pair->work;
+  Friction       f    = pair->friction;
+  const PetscInt n    = pair->variations->end[q] - pair->variations->first[q];
+  PetscReal     *row, *to;
+  PetscBool      found;
+
+  PetscFunctionBeginUser;
+  *turns = f->first[q] >= 0 ? &f->turns[f->first[q]] : NULL;
+  if (*turns) PetscFunctionReturn(PETSC_SUCCESS);
+  if (f->turns_used + n * dim * dim > f->turns_room) {
+    f->turns_room = 2 * (f->turns_used + n * dim * dim);
+    PetscCall(PetscRealloc(f->turns_room * sizeof(PetscReal), &f->turns));
+  }
+  if (pair->fit.fitted) TimingBegin(TIMING_FIT);
+  PetscCall(
+    ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
+  if (pair->fit.fitted) TimingEnd(TIMING_FIT);
+  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a slave point has a first variation and no second one");
+  to  = &f->turns[f->turns_used];
+  row = work->result.N;
+  for (int c = 0; c < dim; c++) {
+    if (work->result.factored)
+      FitDerivativesSlave(&work->result.factors, c, row);
+    else
+      PetscCall(PetscArraycpy(row, &work->result.M[c * (1 + work->result.n) * dim], (1 + work->result.n) * dim));
+    PetscCall(ContactPointToNodes(pair, pair->lists, q));
+    PetscCheck(work->count == n, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the variations of a slave point have other nodes");
+    for (PetscInt i = 0; i < n; i++)
+      for (int d = 0; d < dim; d++) to[(i * dim + c) * dim + d] = work->N[i * dim + d];
+  }
+  f->first[q] = f->turns_used;
+  f->turns_used += n * dim * dim;
+  *turns = to;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The face on which slave point q is anchored; NULL: the tool is analytic. */
+static const Facet *AnchorFace(const ContactPair *pair, PetscInt q)
+{
+  return pair->master ? &pair->lists->face[pair->friction->at[q]] : NULL;
+}
+
+/* Adds the nodes of the anchor's face of slave point q to the list of nodes. */
+static void AddAnchorNodes(const ContactPair *pair, PetscInt q)
+{
+  const Facet *face = AnchorFace(pair, q);
+
+  for (int k = 0; face && k < ElementGet(face->type)->nodes; k++) {
+    PetscReal sign[3];
+    PetscInt  node;
+
+    FrictionNodeSign(pair, face->nodes[k], &node, sign);
+    ContactWorkNodesAdd(pair->work, 1, &node);
+  }
+}
+
+/* Adds the nodes of the foot's face of slave point q to the list of nodes. */
+static PetscErrorCode AddFootNodes(const ContactPair *pair, PetscInt q)
+{
+  const FrictionFoot *foot;
+  PetscBool           found;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
+  for (int k = 0; found && k < foot->nodes; k++) {
+    PetscReal sign[3];
+    PetscInt  node;
+
+    FrictionNodeSign(pair, FrictionFootPoint(pair, q, k), &node, sign);
+    ContactWorkNodesAdd(pair->work, 1, &node);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds feet and variations of all slave points of a term before a list of nodes or a block is begun. *room: nodes at
+   most. */
+static PetscErrorCode PreparePoints(const ContactPair *pair, PetscInt c, PetscInt *room)
+{
+  PetscFunctionBeginUser;
+  *room = 0;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt      q = pair->term_point[k];
+    const FrictionFoot *foot;
+    const PetscReal    *turns;
+    PetscBool           found;
+
+    if (pair->factor[q] == 0) continue;
+    PetscCall(FrictionPointFoot(pair, q, &foot, &found));
+    if (pair->friction->anchored[c] && FrictionTermTakes(pair, k)) PetscCall(PointTurns(pair, q, &turns));
+    *room += pair->variations->end[q] - pair->variations->first[q] + 3 * FACE_MAX_NODES;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionTermNodes - lists the nodes of a term and of its friction, each once, into the work's number: those of its
+  first variations, of its slave points' own faces, and of the faces of feet and anchors.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair, projected
+- c    - the term
+@*/
+PetscErrorCode FrictionTermNodes(const ContactPair *pair, PetscInt c)
+{
+  const ContactVariations *v = pair->variations;
+  PetscInt                 room;
+
+  PetscFunctionBeginUser;
+  PetscCall(PreparePoints(pair, c, &room));
+  PetscCall(ContactWorkNodesBegin(pair->work, pair->lists->n_nodes, room));
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt   q = pair->term_point[k], *node;
+    const PetscReal *S;
+    PetscInt         n;
+
+    if (pair->factor[q] == 0) continue;
+    ContactWorkNodesAdd(pair->work, v->end[q] - v->first[q], &v->number[v->first[q]]);
+    if (!pair->friction->anchored[c] || !FrictionTermTakes(pair, k)) continue;
+    n = FrictionOwnNodes(pair, q, &node, &S);
+    ContactWorkNodesAdd(pair->work, n, node);
+    PetscCall(AddFootNodes(pair, q));
+    AddAnchorNodes(pair, q);
+  }
+  ContactWorkNodesEnd(pair->work);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds scale m sign to the columns of a node in dim rows. */
+static void AddColumns(const TermBlock *b, PetscReal *rows, PetscInt node, PetscReal scale, const PetscReal m[3][3],
+                       const PetscReal sign[3])
+{
+  const int place = b->pair->work->slot[node];
+
+  if (place < 0) return;
+  for (int i = 0; i < b->dim; i++)
+    for (int j = 0; j < b->dim; j++)
+      rows[i * b->columns + place * b->dim + j] += scale * m[i][j] * (sign ? sign[j] : 1);
+}
+
+/* Adds m times the derivative of the own N of slave point q, and by_gap times its first variation, both times scale. */
+static PetscErrorCode AddVariations(const TermBlock *b, PetscReal *rows, PetscInt q, PetscReal scale,
+                                    const PetscReal m[3][3], const PetscReal *by_gap)
+{
+  const ContactVariations *v   = b->pair->variations;
+  const int                dim = b->dim;
+  const PetscReal         *turns;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointTurns(b->pair, q, &turns));
+  for (PetscInt i = v->first[q]; i < v->end[q]; i++) {
+    const PetscReal *turn = &turns[(i - v->first[q]) * dim * dim], *N = &v->N[i * dim];
+    PetscReal        sum[3][3];
+
+    for (int r = 0; r < dim; r++) {
+      for (int j = 0; j < dim; j++) {
+        sum[r][j] = by_gap ? by_gap[r] * N[j] : 0;
+        for (int d = 0; d < dim; d++) sum[r][j] += m[r][d] * turn[d * dim + j];
+      }
+    }
+    AddColumns(b, rows, v->number[i], scale, sum, NULL);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the derivative of the slip of slave point q, times scale, and of the direction along. */
+static void AddSlipColumns(const TermBlock *b, PetscInt q, PetscReal scale, const FrictionTraction *by, PetscBool along)
+{
+  const ContactPair *pair = b->pair;
+  const Facet       *face = AnchorFace(pair, q);
+  const PetscInt    *node;
+  const PetscReal   *S;
+  const PetscInt     n = FrictionOwnNodes(pair, q, &node, &S);
+  PetscReal          N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2];
+
+  for (PetscInt a = 0; a < n; a++) AddColumns(b, b->by_node, node[a], scale * S[a], by->by_slip, NULL);
+  if (!face) return;
+  ElementShape(face->type, &pair->friction->xi[2 * q], N, dN, NULL);
+  for (int k = 0; k < ElementGet(face->type)->nodes; k++) {
+    PetscReal sign[3];
+    PetscInt  at;
+
+    FrictionNodeSign(pair, face->nodes[k], &at, sign);
+    AddColumns(b, b->by_node, at, -scale * N[k], by->by_slip, sign);
+    if (along) AddColumns(b, b->by_node, at, dN[k * (b->dim - 1)], by->by_along, sign);
+  }
+}
+
+/* Lists a node as one on which a force acts, and adds its share of the term's traction. */
+static void AddShare(TermBlock *b, PetscInt node, const PetscReal share[3][3], PetscReal scale, const PetscReal *sign)
+{
+  const int place = b->pair->work->slot[node], dim = b->dim;
+
+  if (place < 0) return;
+  if (b->row_of[place] < 0) {
+    b->row_of[place]         = (int)b->n_rows;
+    b->row_node[b->n_rows++] = node;
+  }
+  for (int i = 0; i < dim; i++)
+    for (int j = 0; j < dim; j++)
+      b->share[(b->row_of[place] * dim + i) * dim + j] += scale * share[i][j] * (sign ? sign[i] : 1);
+}
+
+/* The nodes on which the forces of slave point q act, and their shares. */
+static PetscErrorCode AddShares(TermBlock *b, PetscInt q, PetscReal weight)
+{
+  static const PetscReal one[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const PetscInt        *node;
+  const PetscReal       *S;
+  const PetscInt         n = FrictionOwnNodes(b->pair, q, &node, &S);
+  const FrictionFoot    *foot;
+  PetscBool              found;
+
+  PetscFunctionBeginUser;
+  for (PetscInt a = 0; a < n; a++) AddShare(b, node[a], one, weight * S[a], NULL);
+  PetscCall(FrictionPointFoot(b->pair, q, &foot, &found));
+  for (int k = 0; found && k < foot->nodes; k++) {
+    PetscReal force[3][3], sign[3];
+    PetscInt  at;
+
+    FrictionFootForces(foot, k, force);
+    FrictionNodeSign(b->pair, FrictionFootPoint(b->pair, q, k), &at, sign);
+    AddShare(b, at, force, weight, sign);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds how the force F of slave point q moves over the nodes of the foot's face, where F is held. */
+static PetscErrorCode AddFootMotion(TermBlock *b, PetscInt q, const PetscReal F[3])
+{
+  const ContactPair  *pair = b->pair;
+  const PetscInt     *node;
+  const PetscReal    *S;
+  const PetscInt      n   = FrictionOwnNodes(pair, q, &node, &S);
+  const int           dim = b->dim;
+  const FrictionFoot *foot;
+  PetscBool           found;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
+  for (int k = 0; found && k < foot->nodes; k++) {
+    FrictionFootVariation by;
+    PetscReal             sign[3], *rows;
+    PetscInt              at;
+
+    FrictionNodeSign(pair, FrictionFootPoint(pair, q, k), &at, sign);
+    if (pair->work->slot[at] < 0) continue;
+    rows = &b->value[b->row_of[pair->work->slot[at]] * dim * b->columns];
+    FrictionFootVary(foot, F, k, &by);
+    for (int i = 0; i < 3; i++) {
+      for (int j = 0; j < 3; j++) {
+        by.by_place[i][j] *= sign[i];
+        by.by_normal[i][j] *= sign[i];
+        for (int a = 0; a < 2; a++) by.by_tangent[a][i][j] *= sign[i];
+      }
+    }
+    for (PetscInt a = 0; a < n; a++) AddColumns(b, rows, node[a], S[a], by.by_place, NULL);
+    for (int l = 0; l < foot->nodes; l++) {
+      PetscReal other[3];
+      PetscInt  with;
+
+      FrictionNodeSign(pair, FrictionFootPoint(pair, q, l), &with, other);
+      AddColumns(b, rows, with, -foot->N[l], by.by_place, other);
+      for (int a = 0; a < foot->tangents; a++) AddColumns(b, rows, with, foot->dN[l][a], by.by_tangent[a], other);
+    }
+    PetscCall(AddVariations(b, rows, q, 1, by.by_normal, NULL));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fills the block: the derivative of the traction, taken to the nodes, and the motion of its forces over the master. */
+static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction *out)
+{
+  const ContactPair *pair  = b->pair;
+  const int          dim   = b->dim;
+  PetscBool          along = PETSC_TRUE;
+  PetscReal          area  = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
+    if (FrictionTermTakes(pair, k)) area += pair->term_weight[k] * pair->factor[pair->term_point[k]];
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt  q      = pair->term_point[k];
+    const PetscReal weight = pair->term_weight[k] * pair->factor[q];
+
+    if (!FrictionTermTakes(pair, k)) continue;
+    PetscCall(AddVariations(b, b->by_node, q, weight / area, out->by_normal, out->by_gap));
+    AddSlipColumns(b, q, weight / area, out, along);
+    PetscCall(AddShares(b, q, weight));
+    along = PETSC_FALSE;
+  }
+  PetscCall(PetscCalloc1(b->n_rows * dim * b->columns, &b->value));
+  for (PetscInt r = 0; r < b->n_rows * dim; r++)
+    for (int d = 0; d < dim; d++)
+      for (PetscInt j = 0; j < b->columns; j++)
+        b->value[r * b->columns + j] += b->share[r * dim + d] * b->by_node[d * b->columns + j];
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt q = pair->term_point[k];
+    PetscReal      F[3];
+
+    if (!FrictionTermTakes(pair, k)) continue;
+    for (int d = 0; d < 3; d++) F[d] = pair->term_weight[k] * pair->factor[q] * out->traction[d];
+    PetscCall(AddFootMotion(b, q, F));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionTermBlock - adds the tangent of a term's friction.
+
+  Not collective
+
+  Input Parameters:
++ pair   - the pair, projected, after ContactWorkBlockBegin() with the block's nodes
+. blocks - the matrix
+. list   - the pair's list in it
+. c      - the term
+. t      - load parameter
+. n      - nodes of the block, of FrictionTermNodes()
+- nodes  - these nodes
+@*/
+PetscErrorCode FrictionTermBlock(const ContactPair *pair, BlockMatrix blocks, int list, PetscInt c, PetscReal t,
+                                 PetscInt n, const PetscInt nodes[])
+{
+  const int        dim = pair->mesh->dim;
+  TermBlock        b   = {.pair = pair, .dim = dim, .columns = n * dim};
+  FrictionInput    in;
+  FrictionTraction out;
+  PetscBool        acts;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrictionTerm(pair, c, t, &in, &out, &acts));
+  if (!acts) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(dim * b.columns, &b.by_node, n * dim * dim, &b.share));
+  PetscCall(PetscMalloc2(n, &b.row_node, n, &b.row_of));
+  for (PetscInt i = 0; i < n; i++) b.row_of[i] = -1;
+  PetscCall(FillBlock(&b, c, &out));
+  PetscCall(BlockMatrixAddRows(blocks, list, b.n_rows, b.row_node, n, nodes, b.value));
+  PetscCall(PetscFree2(b.by_node, b.share));
+  PetscCall(PetscFree2(b.row_node, b.row_of));
+  PetscCall(PetscFree(b.value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

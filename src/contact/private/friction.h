@@ -1,0 +1,38 @@
+/* What a pair with friction holds besides its state. Nothing of it is state: FrictionBegin() makes it at the accepted
+   displacements, when a step begins.
+
+   The anchor of a slave point is where it was on the master then, a place on a face or in an analytic tool. The slip
+   of a node is the weighted sum over its points of the distances to their anchors. Anchors stay in a step, also
+   through new lists, in which their faces are found by tags. What the accepted tractions say besides is kept as
+   lengths, see FrictionInput. So the accepted state of friction is the tractions alone, and a step that is taken back,
+   or goes on after a restart on other ranks, begins with the same anchors. */
+#pragma once
+#include "base/petsccompat.h"
+#include "frictionfoot.h"
+#include "frictionlaw.h"
+
+typedef struct {
+  PetscReal stiffness; /* traction over elastic slip (force per length and area) */
+  /* Of each slave point: its anchor. */
+  long      *face;  /* tag; -1: it has none */
+  PetscReal *xi;    /* 2: on that face */
+  PetscReal *place; /* 3: in an analytic tool, at its first position (length, in the scene's coordinates) */
+  PetscInt  *at;    /* number of the face in the lists in force; -1: not in them */
+  /* Of each slave point: its foot at the last projection. */
+  FrictionFoot *foot;
+  int          *facet; /* in the point's list; -1: not known yet */
+  PetscBool    *known;
+  /* Of each slave point: derivatives of its own N over the nodes of its first variation, dim*dim for each node, at the
+     last projection. first: -1: not known yet. */
+  PetscInt  *first, turns_used, turns_room;
+  PetscReal *turns;
+  /* Of each term, since the step began. */
+  PetscBool *anchored; /* all of its points have anchors */
+  PetscReal *kept;     /* 2 lengths */
+  PetscReal *began;    /* its opening, where it was open (length) */
+  int       *axis;     /* of an analytic tool: that which gives the tangents */
+  PetscReal *force;    /* 3 for each slave point, in the last residual */
+  PetscReal *nodal;    /* 3 for each term: force on the slave node, that of its neighbours on shared faces included */
+  PetscReal *elastic;  /* of each term: elastic slip (length) */
+  PetscReal *traction, *status; /* 3 and 1 for each term: what ContactGetNodes() shows */
+} *Friction;

@@ -1,0 +1,43 @@
+/* Coulomb's law of friction at one slave node: from slip, direction of contact and pressure to the traction, with all
+   its derivatives. Plain C.
+
+   A node's slip v is the weighted sum over its slave points of their distances to where they were on the master when
+   the step began. Only its part in the tangent plane counts, with P = I - n n^T and n the unit vector along `normal`.
+   What the traction was when the step began is kept as two components of a length, along two tangents that turn with
+   the master's material: t_1 along P along, t_2 = n x t_1. So a rigid motion of both bodies together changes nothing.
+       e = beta (kept_1 t_1 + kept_2 t_2 + P v),   t = stiffness e      as long as |t| <= mu p: the node sticks
+                                                   t = mu p e/|e|       else: it slips
+   beta is 1 where the node was in contact when the step began. Else slip counts from the touch only: beta =
+   opening/(opening - began), between 0 and 1. In two dimensions all third components are 0.
+
+   Sources: Wriggers, Computational Contact Mechanics, 2006, ch. 5 and 10 (return map); Chamoret et al. (2004), eq. 17
+   (beta). */
+#pragma once
+
+/* What decides between sticking and slipping: the traction, or the caller. */
+typedef enum { FRICTION_DECIDES, FRICTION_STICKS, FRICTION_SLIPS } FrictionState;
+
+typedef struct {
+  double        coefficient; /* mu */
+  double        stiffness;   /* force per length of elastic slip and area */
+  double        normal[3];   /* of any length but 0 */
+  double        slip[3];     /* v (length) */
+  double        along[3];    /* not along the normal; of any length but 0 */
+  double        kept[2];     /* lengths */
+  double        pressure;    /* p; friction sees none below 0 */
+  double        rate;        /* -dp/dgap: force per length and area */
+  double        opening;     /* gap less the gap below which there is pressure (length) */
+  double        began;       /* the opening when the step began, where the node was open then; else 0 (length) */
+  FrictionState state;
+} FrictionInput;
+
+typedef struct {
+  double        traction[3]; /* t, along the slip; the force on the slave is its negative (force per area) */
+  FrictionState state;       /* FRICTION_STICKS or FRICTION_SLIPS */
+  double        elastic;     /* elastic slip: the length of e where the node sticks, mu p / stiffness where it slips */
+  double        slipped;     /* what is left of the length of e: slip that stays (length) */
+  double        by_normal[3][3], by_slip[3][3], by_along[3][3], by_gap[3]; /* derivatives of the traction */
+} FrictionTraction;
+
+void FrictionComponents(const double normal[3], const double along[3], const double v[3], double component[2]);
+void FrictionEvaluate(const FrictionInput *, FrictionTraction *);

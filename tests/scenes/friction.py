@@ -1,0 +1,127 @@
+"""Coulomb friction: a block slides over a flat with mu times its load, tractions that stick pass the shear patch test,
+a belt on a drum has the forces of Euler and Eytelwein, and a turned pair keeps its tractions."""
+import math
+
+import numpy
+
+from harness import Check, arguments, run, SCENES
+
+RUNS = SCENES.parent.parent / "runs"
+MU = 0.3
+
+args = arguments(("part", "what is shown", ("flat", "shear", "belt", "turn", "bar", "rings")))
+check = Check()
+
+
+def contact(finished):
+    """Contact fields of the last step of the only pair, and the pair's figures."""
+    fields = {name.split("/")[-1]: value for name, value in finished.fields().items() if name.startswith("contact/")}
+    return fields, finished.summary()["contact"][0]["friction"]
+
+
+def flat():
+    """Exact: in full slip the tangential force is mu times the load, and the tractions are mu times the pressures."""
+    for formulation in ("node_to_surface", "surface_to_surface"):
+        for smoother in ("facet", "diffuse"):
+            name = f"{formulation}, {smoother}"
+            finished = run(args, RUNS / "slide_flat.yaml", out=f"{formulation}_{smoother}",
+                           overrides=[f"contact.0.formulation={formulation}", f"contact.0.smoother={smoother}",
+                                      f"contact.0.friction.mu={MU}", "stepping.initial=0.1"])
+            fields, friction = contact(finished)
+            probes = finished.summary()["probes"]
+            check.near(f"{name}: load", probes["force_y"], 160, 1e-5)
+            check.near(f"{name}: friction", probes["force_x"], MU * 160, 1e-5)
+            closed = fields["pressure"].ravel() > 0
+            traction = numpy.linalg.norm(fields["traction"], axis=1)[closed]
+            check.near(f"{name}: traction over pressure", traction / fields["pressure"].ravel()[closed], MU, 1e-6)
+            check.holds(f"{name}: all slip", friction["sticking"] == 0 and friction["slipping"] > 0)
+            check.near(f"{name}: energy taken", friction["dissipated"], MU * 160 * 20, 0.005 * MU * 160 * 20)
+
+
+def shear():
+    """The sides are free edges, at which pressures deviate too."""
+    for jitter, allowed in ((0, 0.05), (0.25, 0.1)):
+        finished = run(args, SCENES / "shear.yaml", out=f"jitter_{jitter}",
+                       overrides=[f"mesh.parameters.jitter={jitter}"])
+        fields, friction = contact(finished)
+        probes = finished.summary()["probes"]
+        check.near(f"jitter {jitter}: force along x", probes["force_x"], 0.2, 1e-8)
+        check.near(f"jitter {jitter}: force along y", probes["force_y"], -1, 1e-8)
+        traction = numpy.linalg.norm(fields["traction"], axis=1) / 0.2 - 1
+        print(f"     largest deviation {100 * abs(traction).max():.2f} %, rms {100 * numpy.sqrt((traction**2).mean()):.2f} %")
+        check.near(f"jitter {jitter}: traction", traction, 0, allowed)
+        check.holds(f"jitter {jitter}: all stick", friction["slipping"] == 0 and friction["dissipated"] == 0)
+
+
+def belt():
+    """Source: Euler (1769), Eytelwein (1808); friction acts at R, the tension at R + thick / 2."""
+    for order, allowed in ((1, 0.006), (2, 0.002)):
+        finished = run(args, SCENES / "belt.yaml", out=f"order_{order}", overrides=[f"mesh.order={order}"])
+        probes = finished.summary()["probes"]
+        ratio = probes["high"] / probes["low"]
+        check.near(f"order {order}: ratio of the forces over the exact one",
+                   max(ratio, 1 / ratio) / math.exp(MU * math.pi * 10 / 10.05), 1, allowed)
+
+
+def turn():
+    """Two blocks that stick are turned by 90 degrees together. Facets show rounding only. Fits turn with their frames, and
+    pressures change by as much without friction."""
+    angle, part = "max(0,t-0.2)*pi/1.6", "min(1,t/0.2)"
+    loads = [
+        f"{{surface: lower_bottom, ux: 'x*(cos({angle})-1)-y*sin({angle})', uy: 'x*sin({angle})+y*(cos({angle})-1)'}}",
+        f"{{surface: upper_top, ux: '(x+0.05*{part})*cos({angle})-(y-0.08*{part})*sin({angle})-x',"
+        f" uy: '(x+0.05*{part})*sin({angle})+(y-0.08*{part})*cos({angle})-y'}}"
+    ]
+    for name, own, allowed in (("facet", ["contact.0.smoother=facet"], 1e-9), ("diffuse", ["contact.0.smoother=diffuse"],
+                                                                              5e-3)):
+        results = []
+        for end in ("0.2", "1"):
+            until = [load.replace("t-0.2", f"min(t,1)*{end}-0.2").replace("t/0.2", f"t*{end}/0.2") for load in loads]
+            finished = run(args, SCENES / "contact_patch.yaml", out=f"{name}_{end}", overrides=[
+                "mesh.parameters={solid: 0, n_lower: 4, n_upper: 6}", "geometry=plane_strain",
+                "bodies.0.material={law: neo_hookean, E: 1000, nu: 0.3}",
+                "bodies.1.material={law: neo_hookean, E: 1000, nu: 0.3}", "supports=[]", "loads=[]",
+                f"loads.0={until[0]}", f"loads.1={until[1]}", "contact.0.formulation=surface_to_surface",
+                "contact.0.friction.mu=0.5", "contact.0.symmetry=[]", f"stepping.initial={0.1 / float(end):g}", *own
+            ])
+            fields, friction = contact(finished)
+            check.holds(f"{name}, t up to {end}: all stick", friction["slipping"] == 0)
+            results.append((fields["pressure"].ravel(), numpy.linalg.norm(fields["traction"], axis=1)))
+        for k, what in enumerate(("pressure", "traction")):
+            change = abs(results[1][k] - results[0][k]).max() / results[0][k].max()
+            check.near(f"{name}: {what} after the turn", change, 0, allowed)
+
+
+def bar():
+    """Source: closed form of an elastic bar on a frictional bed. The bar is 0.1 thick, which costs half a per cent."""
+    for formulation in ("node_to_surface", "surface_to_surface"):
+        finished = run(args, SCENES / "bar.yaml", out=formulation, overrides=[f"contact.0.formulation={formulation}"])
+        pulled = next(row["end"] for row in finished.steps() if abs(row["t"] - 0.6) < 1e-9)
+        exact = 2**2 / (2 * 1000 * MU)
+        check.near(f"{formulation}: end when pulled, over the exact place", pulled / exact, 1, 0.01)
+        check.near(f"{formulation}: what stays after release", finished.summary()["probes"]["end"] / exact, 0.5, 0.005)
+
+
+def rings():
+    """Lame's pressure of rings whose bore and rim are held, and tractions that are as even as it. While the inner ring
+    slips over five faces of the outer one nothing changes."""
+    pressure = 35.8860
+    for name, angle, step, allowed in (("stick", 0.0001, 0.5, 0.015), ("slip", 0.26, 0.04, 0.001)):
+        finished = run(args, SCENES / "rings_turned.yaml", out=name, overrides=[
+            f"loads.0.ux='x*(cos({angle}*t)-1)-y*sin({angle}*t)'", f"loads.0.uy='x*sin({angle}*t)+y*(cos({angle}*t)-1)'",
+            f"stepping.initial={step}"
+        ])
+        fields, friction = contact(finished)
+        traction = numpy.linalg.norm(fields["traction"], axis=1)
+        check.near(f"{name}: pressure over Lame's", fields["pressure"] / pressure, 1, 0.003)
+        check.near(f"{name}: traction over its mean", traction / traction.mean(), 1, allowed)
+        check.holds(f"{name}: all nodes", friction["sticking" if name == "stick" else "slipping"] == 96)
+        if name == "stick":
+            continue
+        check.near(f"{name}: traction over pressure", traction.mean() / fields["pressure"].mean(), 0.2, 0.0004)
+        work = numpy.diff([row["dissipated"] for row in finished.steps()])[4:]
+        check.near(f"{name}: work of a step over the mean one", work / work.mean(), 1, 1e-4)
+
+
+globals()[args.part]()
+check.finish()
