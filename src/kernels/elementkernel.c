@@ -10,11 +10,10 @@
 static const double largest_kappa = 1e4;
 /* Part of the modulus of the volume that mixed elements with linear pressures evaluate at their points, over the shear
    modulus and over the modulus itself. Where the mean stress is a tension p, changes of the volume inside an element
-   that the projection does not see are unstable from p = mu + part on, although the solid is stable. Rubber tears at
-   tensions of 2.5 mu already (Gent and Lindley 1959). The part is that of a solid with nu = 0.43, which does not lock
-   in these elements; at the limit of fine meshes it makes no difference. A tenth keeps moderate moduli projected too.
- */
-static const double largest_local = 6, local_share = 0.1;
+   that the projection does not see are unstable from about p = mu + part on, although the solid is stable: bonded
+   bushes stop there. Up to 20 shear moduli full integration does not lock noticeably, see `auto` in scene.c; at the
+   limit of fine meshes the part makes no difference. A tenth keeps moderate moduli projected too. */
+static const double largest_local = 20, local_share = 0.1;
 
 const char *const Formulations[] = {"full", "enhanced", "fbar", "mixed", NULL};
 
