@@ -59,6 +59,16 @@ JOBS = [
         Answer("radial_force", 47.55, 0.3, "limit"),
         Answer("push", 39.62, 0.05, "limit"),
     ], steps=12, picture=["--mirror", "x"]),
+    # Rubber that keeps its volume
+    Job("bush_bonded", "bush bonded to pin and sleeve, pushed sideways", [
+        Answer("force", 310.08, 0.01, "limit"),
+    ], steps=12, pairs=0),
+    Job("tube_pinched", "rubber tube pinched to half of its height", [
+        Answer("force", 0.28832, 0.01, "limit"),
+    ], steps=12, picture=["--mirror", "x"]),
+    Job("ball_squashed", "rubber ball squashed by 30 %", [
+        Answer("force", 83.935, 0.05, "limit"),
+    ], steps=12, picture=["--mirror", "x"]),
     # Balls
     Job("ball_in_cone", "ball in a cone by force", [
         Answer("peak_pressure", 83.00, 0.1, "limit"),  # Hertz, for a ring of infinite radius: 84.42

@@ -6,7 +6,7 @@ args = arguments(("cases", "first-order quadrangles, or all elements and ratios"
 check = Check()
 RING = SCENES.parent.parent / "runs" / "o_ring.yaml"
 ELEMENTS = {
-    "quad4": ("mesh.order=1", ),
+    "quad4": ("mesh.order=1", "bodies.0.formulation=fbar"),
     "quad9": ("mesh.order=2", "bodies.0.formulation=full"),
     "tri6": ("mesh.order=2", "bodies.0.formulation=full", "mesh.parameters.triangles=1")
 }
