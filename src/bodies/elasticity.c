@@ -556,19 +556,23 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const StressR
 }
 
 /*@
-  ElasticityExtrapolates - says whether a StressReference changes the tangent of any of this rank's cells.
+  ElasticityExtrapolates - says whether a StressReference changes the tangent of any cell.
 
-  Not collective
+  Collective
 
   Input Parameter:
 . e - the elasticity
-@*/
-PetscBool ElasticityExtrapolates(Elasticity e)
-{
-  PetscBool any = PETSC_FALSE;
 
-  for (int g = 0; g < e->n_groups; g++) any = (PetscBool)(any || ElementExtrapolates(&e->groups[g].kernel));
-  return any;
+  Output Parameter:
+. any - the same on all ranks, which then take part in changing multipliers together
+@*/
+PetscErrorCode ElasticityExtrapolates(Elasticity e, PetscBool *any)
+{
+  PetscFunctionBeginUser;
+  *any = PETSC_FALSE;
+  for (int g = 0; g < e->n_groups; g++) *any = (PetscBool)(*any || ElementExtrapolates(&e->groups[g].kernel));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, any, 1, MPIU_BOOL, MPI_LOR, e->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@

@@ -25,7 +25,7 @@ PetscErrorCode ElasticityResidual(Elasticity, const PetscReal *u, PetscReal *f, 
                                   PetscBool *ok);
 PetscErrorCode ElasticityVolumeEnergy(Elasticity, const PetscReal *u, PetscReal *energy);
 PetscErrorCode ElasticityTangent(Elasticity, const PetscReal *u, const StressReference *);
-PetscBool      ElasticityExtrapolates(Elasticity);
+PetscErrorCode ElasticityExtrapolates(Elasticity, PetscBool *any);
 PetscErrorCode ElasticityAddBlock(Elasticity, PetscInt n, const PetscInt nodes[], const PetscReal k[]);
 PetscErrorCode ElasticityMultiplyLocal(Elasticity, const PetscReal *x, PetscReal *y);
 PetscErrorCode ElasticitySetSymmetric(Elasticity, PetscBool);

@@ -231,11 +231,12 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
 static PetscErrorCode ModelCreateReference(Model model)
 {
   const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
-  PetscBool      test;
+  PetscBool      test, any;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsHasName(NULL, NULL, "-snes_test_jacobian", &test));
-  if (test || !ElasticityExtrapolates(model->problem->elasticity)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ElasticityExtrapolates(model->problem->elasticity, &any));
+  if (test || !any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc2(n, &model->work->solved, n, &model->work->from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -11,7 +11,6 @@
    folder of the meshes (default: meshes); a second argument is a file for the table. Small strains. */
 #include "bodies/elasticity.h"
 #include "kernels/elementkernel.h"
-#include <petscdt.h>
 #include <petscksp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,8 +19,9 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
+#include "../rule.h"
 
-enum { LEVELS = 3, RULE_POINTS = 64, QUANTITIES = 3 };
+enum { LEVELS = 3, QUANTITIES = 3 };
 
 /* The rates over all meshes of a case must exceed those of theory minus these margins. Jittered meshes scatter, and
    constant pressures of first-order elements more so. */
@@ -243,39 +243,6 @@ static PetscErrorCode CreateMesh(const Case *test, int n, Scene *scene, Mesh *me
 }
 
 /* Integrals */
-
-/* A quadrature of order p + 2 in each direction, which is more than that of the elements */
-typedef struct {
-  int       points;
-  PetscReal weight[RULE_POINTS], N[RULE_POINTS][ELEMENT_MAX_NODES], dN[RULE_POINTS][ELEMENT_MAX_NODES * 3];
-} Rule;
-
-static PetscErrorCode RuleCreate(ElementType type, Rule *rule)
-{
-  const Element   *e       = ElementGet(type);
-  const PetscBool  simplex = e->corners == e->dim + 1 ? PETSC_TRUE : PETSC_FALSE;
-  const PetscReal *points, *weights;
-  PetscQuadrature  quadrature;
-  PetscInt         n;
-
-  PetscFunctionBeginUser;
-  if (simplex)
-    PetscCall(PetscDTStroudConicalQuadrature(e->dim, 1, e->order + 2, -1, 1, &quadrature));
-  else
-    PetscCall(PetscDTGaussTensorQuadrature(e->dim, 1, e->order + 2, -1, 1, &quadrature));
-  PetscCall(PetscQuadratureGetData(quadrature, NULL, NULL, &n, &points, &weights));
-  PetscCheck(n <= RULE_POINTS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%" PetscInt_FMT " quadrature points", n);
-  rule->points = (int)n;
-  for (int q = 0; q < rule->points; q++) { /* The sides of PETSc's simplex are 2. */
-    PetscReal xi[3];
-
-    rule->weight[q] = weights[q] / (simplex ? 1 << e->dim : 1);
-    for (int k = 0; k < e->dim; k++) xi[k] = simplex ? (points[q * e->dim + k] + 1) / 2 : points[q * e->dim + k];
-    ElementShape(type, xi, rule->N[q], rule->dN[q], NULL);
-  }
-  PetscCall(PetscQuadratureDestroy(&quadrature));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Gives the place of a point with shape functions N and dN in a cell, and the gradients g[nodes][3] of the nodes; the
    third of an axisymmetric one is N / r. Returns the volume of the point. */

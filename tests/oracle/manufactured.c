@@ -6,7 +6,6 @@
    the nodal values of the field on the boundary and the nodal forces, and it computes the displacement of the interior.
    The argument is the folder of the meshes (default: meshes). */
 #include "bodies/elasticity.h"
-#include <petscdt.h>
 #include <petscksp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,11 +14,12 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
+#include "../rule.h"
 
-/* Largest number of meshes of a case, largest number of quadrature points of a cell, half width of the difference
-   stencil in steps, and largest number of Newton steps. MAX_NEWTON is twice the number that quadratic convergence from
+/* Largest number of meshes of a case, half width of the difference stencil in steps, and largest number of Newton
+   steps. MAX_NEWTON is twice the number that quadratic convergence from
    the nodal values of the field needs. */
-enum { LEVELS = 3, RULE_POINTS = 64, STENCIL = 3, MAX_NEWTON = 6 };
+enum { LEVELS = 3, STENCIL = 3, MAX_NEWTON = 6 };
 
 /* The rate over all meshes of a case must exceed p + 1 minus this margin. The rate is a least-squares fit, because
    unstructured meshes scatter. */
@@ -291,39 +291,6 @@ static PetscErrorCode CreateMesh(MPI_Comm comm, const Case *test, int n, Scene *
 }
 
 /* Integrals */
-
-/* A quadrature of order p + 2 in each direction, which is more than that of the elements */
-typedef struct {
-  int       points;
-  PetscReal weight[RULE_POINTS], N[RULE_POINTS][ELEMENT_MAX_NODES], dN[RULE_POINTS][ELEMENT_MAX_NODES * 3];
-} Rule;
-
-static PetscErrorCode RuleCreate(ElementType type, Rule *rule)
-{
-  const Element   *e       = ElementGet(type);
-  const PetscBool  simplex = e->corners == e->dim + 1 ? PETSC_TRUE : PETSC_FALSE;
-  const PetscReal *points, *weights;
-  PetscQuadrature  quadrature;
-  PetscInt         n;
-
-  PetscFunctionBeginUser;
-  if (simplex)
-    PetscCall(PetscDTStroudConicalQuadrature(e->dim, 1, e->order + 2, -1, 1, &quadrature));
-  else
-    PetscCall(PetscDTGaussTensorQuadrature(e->dim, 1, e->order + 2, -1, 1, &quadrature));
-  PetscCall(PetscQuadratureGetData(quadrature, NULL, NULL, &n, &points, &weights));
-  PetscCheck(n <= RULE_POINTS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%" PetscInt_FMT " quadrature points", n);
-  rule->points = (int)n;
-  for (int q = 0; q < rule->points; q++) { /* The sides of PETSc's simplex are 2. */
-    PetscReal xi[3];
-
-    rule->weight[q] = weights[q] / (simplex ? 1 << e->dim : 1);
-    for (int k = 0; k < e->dim; k++) xi[k] = simplex ? (points[q * e->dim + k] + 1) / 2 : points[q * e->dim + k];
-    ElementShape(type, xi, rule->N[q], rule->dN[q], NULL);
-  }
-  PetscCall(PetscQuadratureDestroy(&quadrature));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Gives the place of point q of a cell. Returns the volume of the point, over 360 degrees if axisymmetric. */
 static PetscReal RulePoint(const Rule *rule, int q, const Case *test, Mesh mesh, PetscInt c, PetscReal x[3])
