@@ -165,21 +165,21 @@ PetscErrorCode ContactTangentRestore(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Saves or loads the accepted state of a pair by node, and the offsets of its sides by face. */
+/* Saves or loads the accepted state of a pair by term, and the offsets of its sides by face. */
 static PetscErrorCode PairArchive(ContactPair *pair, int p, Archive archive)
 {
   PetscInt *id;
   char      name[PETSC_MAX_PATH_LEN];
-  Hdf5Table nodes;
+  Hdf5Table terms;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(pair->n, &id));
-  for (PetscInt c = 0; c < pair->n; c++) id[c] = pair->mesh->node_id[pair->node[c]];
-  PetscCall(Hdf5TableCreateByKey(pair->mesh->comm, pair->n, id, &nodes));
+  for (PetscInt c = 0; c < pair->n; c++) id[c] = ContactTermId(pair, c);
+  PetscCall(Hdf5TableCreateByKey(pair->mesh->comm, pair->n, id, &terms));
   PetscCall(PetscFree(id));
   PetscCall(PetscSNPrintf(name, sizeof(name), "contact/%d/state", p));
-  PetscCall(ContactStateArchive(&pair->accepted, archive, name, &nodes));
-  PetscCall(Hdf5TableDestroy(&nodes));
+  PetscCall(ContactStateArchive(&pair->accepted, archive, name, &terms));
+  PetscCall(Hdf5TableDestroy(&terms));
   PetscCall(PetscSNPrintf(name, sizeof(name), "contact/%d/slave_offsets", p));
   if (pair->slave_offsets) PetscCall(OffsetsArchive(pair->slave_offsets, archive, name));
   PetscCall(PetscSNPrintf(name, sizeof(name), "contact/%d/master_offsets", p));

@@ -104,8 +104,7 @@ static PetscErrorCode TakeSet(ContactCycle cycle, PetscInt slot)
 
     for (PetscInt c = 0; c < pair->n; c++) {
       *closed = pair->now.status[c] == CONTACT_CLOSED;
-      if (*closed++)
-        sum += HashFinish((uint64_t)contact->mesh->node_id[pair->node[c]] * (uint64_t)contact->n_pairs + (uint64_t)p);
+      if (*closed++) sum += HashFinish((uint64_t)ContactTermId(pair, c) * (uint64_t)contact->n_pairs + (uint64_t)p);
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, contact->mesh->comm));

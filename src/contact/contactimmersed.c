@@ -119,8 +119,8 @@ static PetscErrorCode OverlapIsDeep(Contact contact, const ContactPair *pair, co
   ImmersedPoints all;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(pair->n * pair->n_images * dim, &x));
-  for (PetscInt c = 0; c < pair->n; c++) {
+  PetscCall(PetscMalloc1(pair->n_nodes * pair->n_images * dim, &x));
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
     if (!(pair->now.gap[c] < -ContactTouchTolerance(pair, c))) continue;
     for (int m = 0; m < pair->n_images; m++, n++) {
       PetscReal y[3];
@@ -174,8 +174,8 @@ PetscErrorCode ContactRefuseImmersed(Contact contact, int p)
     int any = 0;
 
     PetscCall(PetscCalloc1(mesh->n_nodes, &overlaps));
-    for (PetscInt c = 0; c < pair->n; c++) overlaps[pair->node[c]] = pair->now.gap[c] < 0;
-    for (PetscInt c = 0; c < pair->n; c++) any = any || pair->now.gap[c] < -ContactTouchTolerance(pair, c);
+    for (PetscInt c = 0; c < pair->n_nodes; c++) overlaps[pair->node[c]] = pair->now.gap[c] < 0;
+    for (PetscInt c = 0; c < pair->n_nodes; c++) any = any || pair->now.gap[c] < -ContactTouchTolerance(pair, c);
     PetscCall(MeshSumNodes(mesh, 1, overlaps));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, mesh->comm));
     PetscCall(FindImmersedCell(mesh, scene->n_bodies, master, pair->slave, overlaps, X, &found));

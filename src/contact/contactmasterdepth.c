@@ -13,7 +13,7 @@ static PetscErrorCode AllowOverlap(Contact contact, const ContactPair *pair, Pet
       pair->scene->initial_overlap != OVERLAP_ADD)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc2(mesh->n_nodes, &offset, mesh->n_nodes, &terms));
-  for (PetscInt c = 0; c < pair->n; c++) {
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
     offset[pair->node[c]] = ContactTermOffset(pair, c, t);
     terms[pair->node[c]]  = 1;
   }

@@ -24,11 +24,12 @@
    where the radius vanishes. */
 #define CONTACT_HAT_FLOOR 1e-8
 
-/* Chooses the slave nodes that carry a term: those with area that this rank owns. */
+/* Chooses the slave nodes that carry a term: those with area that this rank owns. Faces with terms follow. */
 static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
 {
   const MeshGroup *group = pair->slave->group;
   const PetscBool  hats  = pair->formulation.surface;
+  const PetscInt   room  = group->n_nodes + (pair->formulation.faces ? pair->slaves->n_faces : 0);
   PetscReal       *area, *size, *turn, *share, sum[2] = {0, 0};
   PetscMPIInt      rank;
 
@@ -40,8 +41,7 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
     PetscCall(SlavePointsHatAreas(pair->slaves, scene->geometry, NULL, area));
   else
     PetscCall(SurfaceNodeAreas(pair->slave, scene->geometry, NULL, area, NULL));
-  PetscCall(PetscMalloc4(group->n_nodes, &pair->node, group->n_nodes, &pair->area, group->n_nodes, &pair->size,
-                         group->n_nodes, &pair->turn));
+  PetscCall(PetscMalloc4(room, &pair->node, room, &pair->area, room, &pair->size, room, &pair->turn));
   for (PetscInt i = 0; i < group->n_nodes; i++) {
     if (mesh->node_owner[group->nodes[i]] != rank) continue;
     sum[0] += area[group->nodes[i]];
@@ -60,6 +60,8 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
     pair->turn[pair->n] = turn[node];
     pair->n++;
   }
+  pair->n_nodes = pair->n;
+  if (pair->formulation.faces) PetscCall(ContactFacesAdd(pair, turn));
   PetscCall(PetscFree4(area, size, turn, share));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -68,19 +70,26 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
    points hold. */
 static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
 {
-  SlavePoints slaves = pair->slaves;
-  PetscInt   *term, n = 0;
+  SlavePoints     slaves = pair->slaves;
+  const PetscReal share  = ContactFacesShare(pair);
+  PetscInt       *term, n = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(slaves->n_nodes, &term)); /* of each node that the points are made of; -1: none */
   for (PetscInt i = 0; i < slaves->n_nodes; i++) term[i] = -1;
-  for (PetscInt c = 0; c < pair->n; c++)
+  for (PetscInt c = 0; c < pair->n_nodes; c++)
     term[NodeKeysFind(slaves->n_nodes, slaves->nodes, mesh->node_id[pair->node[c]])] = c;
   PetscCall(PetscCalloc1(pair->n + 2, &pair->term_ptr));
   for (PetscInt k = 0; k < slaves->ptr[slaves->n]; k++) {
     if (term[slaves->node[k]] < 0 || slaves->hat[k] == 0) continue;
     pair->term_ptr[term[slaves->node[k]] + 2]++;
     n++;
+  }
+  for (PetscInt c = pair->n_nodes; c < pair->n; c++) {
+    const PetscInt f = pair->face[c - pair->n_nodes];
+
+    pair->term_ptr[c + 2] = slaves->first[f + 1] - slaves->first[f];
+    n += pair->term_ptr[c + 2];
   }
   PetscCall(PetscMalloc2(n, &pair->term_point, n, &pair->term_weight));
   for (PetscInt c = 0; c <= pair->n; c++) pair->term_ptr[c + 1] += pair->term_ptr[c];
@@ -92,9 +101,10 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
       if (c < 0 || slaves->hat[k] == 0) continue;
       at                    = pair->term_ptr[c + 1]++; /* after the loop it is the start of the next term */
       pair->term_point[at]  = q;
-      pair->term_weight[at] = pair->formulation.surface ? slaves->weight[q] * slaves->hat[k] : pair->area[c];
+      pair->term_weight[at] = pair->formulation.surface ? share * slaves->weight[q] * slaves->hat[k] : pair->area[c];
     }
   }
+  ContactFacesPoints(pair);
   PetscCall(PetscFree(term));
   PetscCall(PetscCalloc5(pair->n, &pair->force, 3 * pair->n, &pair->normal, pair->n, &pair->pressure, pair->n,
                          &pair->stiffness, pair->n, &pair->stiffness_before));
@@ -157,9 +167,10 @@ static FitSettings PairFitSettings(Scene scene, const ContactPair *pair, int ord
 }
 
 /* Fills what the formulation means. This is the one place that asks the scene for it. */
-static void PairSetFormulation(ContactPair *pair)
+static void PairSetFormulation(Scene scene, int order, ContactPair *pair)
 {
   pair->formulation.surface = (PetscBool)(pair->scene->formulation == CONTACT_SURFACE_TO_SURFACE);
+  pair->formulation.faces   = ContactFacesServe(pair, scene, order);
   pair->formulation.offsets = !pair->smoother->fitted    ? OFFSETS_NONE
                               : pair->scene->live_offset ? OFFSETS_LIVE
                                                          : OFFSETS_HELD;
@@ -247,7 +258,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   pair->smoother = Smoothers[contact->smoother];
   pair->law      = Laws[contact->law];
   pair->geometry = scene->geometry;
-  PairSetFormulation(pair);
+  PairSetFormulation(scene, mesh->order, pair);
   pair->fit = PairFitSettings(scene, pair, mesh->order);
   if (contact->master && !strcmp(contact->slave, contact->master))
     PetscCall(RefuseInput(mesh->comm,
@@ -309,6 +320,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(ContactStateDestroy(&pair->now));
   PetscCall(ContactStateDestroy(&pair->accepted));
   PetscCall(PetscFree4(pair->node, pair->area, pair->size, pair->turn));
+  PetscCall(PetscFree(pair->face));
   PetscCall(PetscFree(pair->term_ptr));
   PetscCall(PetscFree2(pair->term_point, pair->term_weight));
   PetscCall(PetscFree5(pair->force, pair->normal, pair->pressure, pair->stiffness, pair->stiffness_before));

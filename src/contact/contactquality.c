@@ -20,7 +20,7 @@ static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscR
   PetscInt  tag = PETSC_MAX_INT, node = -1;
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < pair->n; c++) {
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
     if (!(value[c] >= largest - QUALITY_ROUND_OFF * pair->slave->mean_size) || mesh->node_tag[pair->node[c]] >= tag)
       continue;
     node = pair->node[c];
@@ -70,12 +70,12 @@ static PetscErrorCode TermOverlapExplained(const ContactPair *pair, PetscInt c, 
 PetscErrorCode ContactPairGaps(Contact contact, int p, ContactGaps *gaps)
 {
   const ContactPair *pair     = &contact->pairs[p];
-  PetscInt           count[4] = {pair->n, 0, 0, 0};
+  PetscInt           count[4] = {pair->n_nodes, 0, 0, 0};
   PetscReal          range[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL}, area = 0, *depth; /* -least, most */
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(pair->n, &depth));
-  for (PetscInt c = 0; c < pair->n; c++) {
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
     const PetscReal gap = PetscAbsReal(pair->now.gap[c]) <= QUALITY_ROUND_OFF * pair->size[c] ? 0 : pair->now.gap[c];
 
     PetscReal explained;
@@ -151,7 +151,7 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(pair->n, &depth));
-  for (PetscInt c = 0; c < pair->n; c++) {
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
     const PetscReal penetration = ContactTermOffset(pair, c, pair->t) - pair->now.gap[c];
 
     depth[c] = pair->now.status[c] == CONTACT_CLOSED ? penetration : NAN;
@@ -245,7 +245,7 @@ PetscErrorCode ContactPairJoined(Contact contact, int p, PetscInt *nodes, Contac
     for (int i = 0; i < ElementGet(face->type)->nodes; i++) of_master[face->nodes[i]] = 1;
   }
   PetscCall(MeshSumNodes(mesh, 1, of_master));
-  for (PetscInt c = 0; c < pair->n; c++) {
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
     joined[c] = of_master[pair->node[c]] > 0 ? 1 : NAN;
     *nodes += of_master[pair->node[c]] > 0;
   }
@@ -273,7 +273,7 @@ PetscReal ContactNodeGap(Contact contact, PetscInt node)
   PetscReal gap = NAN;
 
   for (int p = 0; p < contact->n_pairs; p++)
-    for (PetscInt c = 0; c < contact->pairs[p].n; c++)
+    for (PetscInt c = 0; c < contact->pairs[p].n_nodes; c++)
       if (contact->pairs[p].node[c] == node) gap = fmin(gap, contact->pairs[p].now.gap[c]);
   return gap;
 }
@@ -289,7 +289,7 @@ static PetscErrorCode PairCheckFacing(Contact contact, const ContactPair *pair)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(mesh->n_nodes, &area, 3 * mesh->n_nodes, &normal));
   PetscCall(SurfaceNodeAreas(pair->slave, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, NULL, area, normal));
-  PetscCall(SurfaceFaces(pair->master, pair->n, pair->node, normal, &facing));
+  PetscCall(SurfaceFaces(pair->master, pair->n_nodes, pair->node, normal, &facing));
   PetscCall(PetscFree2(area, normal));
   if (!facing) {
     PetscCall(RefuseInput(mesh->comm,
@@ -309,7 +309,7 @@ static PetscErrorCode PairCheckAddedOverlap(Contact contact, const ContactPair *
 
   PetscFunctionBeginUser;
   if (!pair->scene->overlap_expression) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt c = 0; c < pair->n; c++) {
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
     for (int k = 0; k <= OVERLAP_SAMPLES; k++) {
       const PetscReal t = (PetscReal)k / OVERLAP_SAMPLES;
 

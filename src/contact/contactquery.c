@@ -26,7 +26,7 @@ static PetscErrorCode LeastPenetration(Contact contact, PetscReal largest, Petsc
   for (int p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    for (PetscInt c = 0; c < pair->n; c++)
+    for (PetscInt c = 0; c < pair->n_nodes; c++)
       if (pair->now.status[c] == CONTACT_CLOSED && ContactTermForce(pair, c) > PENALTY_LOADED * largest)
         *least = PetscMin(*least, ContactTermOffset(pair, c, pair->t) - pair->now.gap[c]);
   }
@@ -69,7 +69,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
   for (int p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    for (PetscInt c = 0; c < pair->n; c++) {
+    for (PetscInt c = 0; c < pair->n_nodes; c++) {
       const PetscReal penetration =
         pair->now.status[c] == CONTACT_CLOSED ? ContactTermOffset(pair, c, pair->t) - pair->now.gap[c] : 0;
 
@@ -154,8 +154,8 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
     PetscCall(SlavePointsHatAreas(pair->slaves, pair->geometry, u, area));
   else
     PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
-  for (PetscInt c = 0; c < pair->n; c++) pair->pressure[c] = pair->force[c] / area[pair->node[c]];
-  *nodes = (ContactNodes){.n        = pair->n,
+  for (PetscInt c = 0; c < pair->n_nodes; c++) pair->pressure[c] = pair->force[c] / area[pair->node[c]];
+  *nodes = (ContactNodes){.n        = pair->n_nodes,
                           .node     = pair->node,
                           .area     = pair->area,
                           .gap      = pair->now.gap,
@@ -220,7 +220,7 @@ PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscRea
     found[0] = 1;
     for (int d = 0; d < mesh->dim; d++) found[2 + d] = mesh->coords[node * mesh->dim + d] + u[node * mesh->dim + d];
   }
-  for (PetscInt c = 0; c < pair->n; c++) {
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
     if (mesh->node_id[pair->node[c]] != node_id || PetscIsNanReal(pair->now.gap[c])) continue;
     found[0] = 2;
     found[1] = pair->now.gap[c];
@@ -478,10 +478,10 @@ PetscErrorCode ContactPairText(Contact contact, int p, char *text, size_t size)
 PetscErrorCode ContactPairTermStiffness(Contact contact, int pair, PetscReal *stiffness)
 {
   const ContactPair *p      = &contact->pairs[pair];
-  PetscReal          sum[2] = {0, (PetscReal)p->n};
+  PetscReal          sum[2] = {0, (PetscReal)p->n_nodes};
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < p->n; c++) sum[0] += p->area[c];
+  for (PetscInt c = 0; c < p->n_nodes; c++) sum[0] += p->area[c];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, contact->mesh->comm));
   *stiffness = sum[1] > 0 ? p->automatic * sum[0] / sum[1] : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -507,7 +507,7 @@ PetscErrorCode ContactPairClosed(Contact contact, int pair, const PetscInt *labe
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(closed, n));
-  for (PetscInt c = 0; c < p->n; c++) closed[label[p->node[c]]] += p->now.status[c] == CONTACT_CLOSED;
+  for (PetscInt c = 0; c < p->n_nodes; c++) closed[label[p->node[c]]] += p->now.status[c] == CONTACT_CLOSED;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, closed, (PetscMPIInt)n, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

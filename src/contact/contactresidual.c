@@ -48,7 +48,7 @@ static PetscErrorCode PairSharedForces(ContactPair *pair)
     for (PetscInt k = pair->slaves->ptr[q], node = lists->slave_ptr[q]; k < pair->slaves->ptr[q + 1]; k++, node++)
       values[lists->slave_node[node] * dim] += pair->slaves->hat[k] * pair->point_force[q];
   PetscCall(NeighbourListsReduce(lists, values, nodal));
-  for (PetscInt c = 0; c < pair->n; c++) pair->force[c] = nodal[pair->node[c] * dim];
+  for (PetscInt c = 0; c < pair->n_nodes; c++) pair->force[c] = nodal[pair->node[c] * dim];
   PetscCall(PetscFree2(values, nodal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -83,7 +83,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   if (pair->friction) PetscCall(FrictionResidual(pair, t, values));
   PetscCall(NeighbourListsReduce(pair->lists, values, f));
   if (pair->formulation.surface) PetscCall(PairSharedForces(pair));
-  for (PetscInt c = 0; c < pair->n && !pair->formulation.surface; c++)
+  for (PetscInt c = 0; c < pair->n_nodes && !pair->formulation.surface; c++)
     pair->force[c] = pair->point_force[pair->term_point[pair->term_ptr[c]]];
   PetscCall(PetscFree(values));
   PetscFunctionReturn(PETSC_SUCCESS);

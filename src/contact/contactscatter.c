@@ -84,7 +84,7 @@ static PetscErrorCode TakeJumps(const ContactPair *pair, const PetscReal *presen
    terms. */
 static void SumScatter(const ContactPair *pair, const NodeValue *jumps, PetscReal sum[3])
 {
-  for (PetscInt c = 0; c < pair->n; c++) {
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
     const NodeValue *jump = &jumps[pair->node[c]];
 
     if (jump->valid == 0) continue;

@@ -65,7 +65,7 @@ CASES["turning rigid cylinder, surface to surface"] = (RUNS / "slide_facets.yaml
 
 LIVE = DIFFUSE + ["contact.0.offset=live"]
 CASES["rings, live offsets, order 1"] = (RUNS / "ring_in_ring.yaml",
-                                         ["mesh.parameters={n_inner: 6, n_outer: 8, jitter: 0.2}"] + LIVE)
+                                         ["mesh.parameters={n_inner: 12, n_outer: 15, jitter: 0.2}"] + LIVE)
 CASES["rings, live offsets, order 2"] = (
     RUNS / "ring_in_ring.yaml",
     ["kinematics=finite", "mesh.order=2", "mesh.parameters={n_inner: 4, n_outer: 5, jitter: 0.2}"] + LIVE)

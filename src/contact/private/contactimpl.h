@@ -2,11 +2,12 @@
 
    A term is a slave node with area. Its gap is the weighted mean over its slave points, and its pressure acts on all of
    them. Node to surface: a term has one slave point, the node itself. Surface to surface: its slave points are the
-   quadrature points of the faces around the node, which it shares with its neighbours.
+   quadrature points of the faces around the node, which it shares with its neighbours. Faces may have terms besides
+   (contactfaces.c): they press and have stiffness as others do, but what is counted and shown is that of the nodes.
 
-   The files call each other downwards in this order: contactwork (room), contactpair and contactterm (a pair, one of
-   its terms), contactpoint (one slave point), contactvariation (first variations that are kept), contactprojection
-   (gaps of all points), contactvectors (first variations over dofs), friction,
+   The files call each other downwards in this order: contactwork (room), contactpair, contactfaces and contactterm (a
+   pair, the terms of its faces, one of its terms), contactpoint (one slave point), contactvariation (first variations
+   that are kept), contactprojection (gaps of all points), contactvectors (first variations over dofs), friction,
    frictiontangent, contactresidual, contacttangent, contactlists,
    contact. */
 #pragma once
@@ -26,6 +27,7 @@
 typedef struct {
   PetscBool surface;   /* surface to surface: slave points are quadrature points of faces, and terms share them; each
                           side has offsets */
+  PetscBool   faces;   /* there are terms of faces beside those of nodes */
   OffsetsKind offsets; /* what offsets there are, where surface is PETSC_TRUE */
   PetscBool   lags;    /* offsets are held in a solve, so that a fresh search may find them old */
 } PairFormulation;
@@ -64,10 +66,11 @@ typedef struct {
   Offsets             slave_offsets, master_offsets; /* NULL: none */
   ContactSearch       search;
 
-  PetscInt   n, *node;              /* terms: local nodes */
+  PetscInt   n, n_nodes;            /* terms; the first n_nodes are those of nodes, the others those of faces */
+  PetscInt  *node, *face;           /* local node of each term, of a face its first one; face of each term of a face */
   PetscReal *area, *size, *turn;    /* reference area; size of the faces around (length); turn of their normals */
   PetscInt  *term_ptr, *term_point; /* slave points of each term */
-  PetscReal *term_weight;           /* their areas in it; the sum is the term's area */
+  PetscReal *term_weight;           /* their areas in it; where faces have terms, nodes and faces share the area */
   PetscReal  automatic;             /* penalty (force per length and area) */
   PetscReal  initial;               /* the penalty at the start of the run */
   PetscReal  most;                  /* largest penalty that counts (force per length and area), ContactSoften() */
@@ -134,6 +137,13 @@ struct _n_Contact {
 /* contactpair.c */
 PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneContact *, ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
+/* contactfaces.c */
+PetscBool      ContactFacesServe(const ContactPair *, Scene, int order);
+PetscErrorCode ContactFacesAdd(ContactPair *, const PetscReal turn[]);
+PetscReal      ContactFacesShare(const ContactPair *);
+void           ContactFacesPoints(ContactPair *);
+PetscReal      ContactTermPenalty(const ContactPair *, PetscInt term);
+PetscInt       ContactTermId(const ContactPair *, PetscInt term);
 /* contactterm.c */
 LawState  ContactTermState(const ContactPair *, PetscInt term, PetscReal t, PetscReal most);
 void      ContactTermLaw(const ContactPair *, PetscInt term, PetscReal t, LawValue *, PetscReal *gap, PetscReal *area);
