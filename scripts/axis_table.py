@@ -14,7 +14,7 @@ from launch import ROOT, environment, read_records, table_parser, write_records
 
 SCENE = ROOT / "runs/discs.yaml"
 RADII = (0, 4)
-PAIRS = ((13, 10), (10, 13), (52, 40))  # elements along the radius, master/slave
+PAIRS = ((13, 10), (52, 40), (10, 13), (40, 52))  # elements along the radius, master/slave
 SIDES = ("lower_top", "upper_bottom")
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
 COLUMNS = ("radius", "order", "master", "slave", "slave_body", "formulation", "status", "iterations", "pressure_axis",
