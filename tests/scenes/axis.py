@@ -1,6 +1,6 @@
 """Two discs about the axis under uniform pressure, with meshes that do not match: surface to surface gives the pressure
 of every slave node and the stress at the interface within 0.2 and 0.3 per cent of the load, up to the axis and the
-walls, in small and finite strain, and the pressure at the axis itself to 0.02 per cent; what is left is of the walls and
+walls, in small and finite strain, and the pressure at the axis itself to 0.02 per cent. What is left is of the walls and
 falls with the mesh. Node to surface within what point forces allow."""
 import sys
 
@@ -12,7 +12,7 @@ import axis_table  # noqa: E402
 
 # per cent: pressure, stress
 BOUNDS = {"surface_to_surface": {"1": (0.2, 0.3), "2": (0.2, 0.3)}, "node_to_surface": {"1": (5, 8), "2": (14, 20)}}
-AT_AXIS, FINE = 0.02, 0.4  # surface to surface: pressure at the axis; bounds on the fine meshes over those on coarse ones
+AT_AXIS, FINE = 0.02, 0.4  # surface to surface: pressure at the axis; bounds on fine meshes over those on coarse ones
 STRAINS = ["small", "finite"]
 
 args = arguments(("radius", "inner radius", ["0", "4"]), ("order", "of the elements", ["1", "2"]),
