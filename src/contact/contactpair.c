@@ -24,6 +24,60 @@
    where the radius vanishes. */
 #define CONTACT_HAT_FLOOR 1e-8
 
+/* Mean heights of the elements below the faces around the nodes of the slave (length), by local node. */
+static PetscErrorCode NodeHeights(Mesh mesh, ContactSurface slave, PetscReal *height)
+{
+  PetscReal *faces;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes, &faces));
+  PetscCall(PetscArrayzero(height, mesh->n_nodes));
+  for (PetscInt f = 0; f < slave->n_faces; f++) {
+    for (int a = 0; a < ElementGet(slave->faces[f].type)->nodes; a++) {
+      height[slave->faces[f].nodes[a]] += slave->face_height[f];
+      faces[slave->faces[f].nodes[a]]++;
+    }
+  }
+  PetscCall(MeshSumNodes(mesh, 1, height));
+  PetscCall(MeshSumNodes(mesh, 1, faces));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++)
+    if (faces[i] > 0) height[i] /= faces[i];
+  PetscCall(PetscFree(faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes slave points that are the nodes of the terms. */
+static PetscErrorCode PairCreateNodePoints(Mesh mesh, ContactPair *pair)
+{
+  PetscReal *of_nodes, *height;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(mesh->n_nodes, &of_nodes, pair->n, &height));
+  PetscCall(NodeHeights(mesh, pair->slave, of_nodes));
+  for (PetscInt c = 0; c < pair->n; c++) height[c] = of_nodes[pair->node[c]];
+  PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, pair->size, height, &pair->slaves));
+  PetscCall(PetscFree2(of_nodes, height));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Have slave and master faces of one body? */
+static PetscErrorCode PairIsOneBody(Mesh mesh, Scene scene, const ContactPair *pair, PetscBool *one)
+{
+  const ContactSurface side[] = {pair->slave, pair->master};
+  int                 *has, shared = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * scene->n_bodies, &has));
+  for (int i = 0; i < 2; i++)
+    for (PetscInt f = 0; side[i]->group && f < side[i]->n_faces; f++)
+      has[i * scene->n_bodies + mesh->cell_body[side[i]->group->face_cell[f]]] = 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, 2 * scene->n_bodies, MPI_INT, MPI_LOR, mesh->comm));
+  for (int b = 0; b < scene->n_bodies; b++) shared = shared || (has[b] && has[scene->n_bodies + b]);
+  *one = shared ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscFree(has));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Chooses the slave nodes that carry a term: those with area that this rank owns. */
 static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
 {
@@ -55,7 +109,7 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
         (hats ? area[node] < CONTACT_HAT_FLOOR * sum[0] / sum[1] : share[node] < CONTACT_SHARE_FLOOR))
       continue;
     pair->node[pair->n] = node;
-    pair->area[pair->n] = area[node];
+    pair->area[pair->n] = pair->scene->share * area[node];
     pair->size[pair->n] = size[node];
     pair->turn[pair->n] = turn[node];
     pair->n++;
@@ -92,7 +146,8 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
       if (c < 0 || slaves->hat[k] == 0) continue;
       at                    = pair->term_ptr[c + 1]++; /* after the loop it is the start of the next term */
       pair->term_point[at]  = q;
-      pair->term_weight[at] = pair->formulation.surface ? slaves->weight[q] * slaves->hat[k] : pair->area[c];
+      pair->term_weight[at] = pair->formulation.surface ? pair->scene->share * slaves->weight[q] * slaves->hat[k]
+                                                             : pair->area[c];
     }
   }
   PetscCall(PetscFree(term));
@@ -124,7 +179,7 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
                               0, pair->formulation.offsets, &pair->master_offsets));
   } else {
     PetscCall(PairChooseNodes(mesh, scene, pair));
-    PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, pair->size, &pair->slaves));
+    PetscCall(PairCreateNodePoints(mesh, pair));
   }
   PetscCall(PairCreateTerms(mesh, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -249,11 +304,6 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   pair->geometry = scene->geometry;
   PairSetFormulation(pair);
   pair->fit = PairFitSettings(scene, pair, mesh->order);
-  if (contact->master && !strcmp(contact->slave, contact->master))
-    PetscCall(RefuseInput(mesh->comm,
-                          "%s: slave and master are both '%s'; allowed: two different surfaces (a surface in contact "
-                          "with itself is not available yet)",
-                          SceneWhere(scene, contact->path, "master"), contact->master));
   if (MeshFindRigid(mesh, contact->slave))
     PetscCall(RefuseInput(
       mesh->comm,
@@ -279,6 +329,8 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images,
                          &pair->fit, pair->slaves, pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL,
                          pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL, &pair->search));
+  if (contact->listed) PetscCall(PairIsOneBody(mesh, scene, pair, &pair->one_body));
+  if (contact->listed) SearchAllSides(pair->search, pair->one_body);
   PetscCall(PetscCalloc2(pair->n, &pair->held, pair->n, &pair->predicted));
   if (friction) PetscCall(FrictionCreate(pair));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));

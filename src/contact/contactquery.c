@@ -154,6 +154,7 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
     PetscCall(SlavePointsHatAreas(pair->slaves, pair->geometry, u, area));
   else
     PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
+  for (PetscInt c = 0; c < pair->n; c++) area[pair->node[c]] *= pair->scene->share;
   for (PetscInt c = 0; c < pair->n; c++) pair->pressure[c] = pair->force[c] / area[pair->node[c]];
   *nodes = (ContactNodes){.n        = pair->n,
                           .node     = pair->node,

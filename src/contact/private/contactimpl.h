@@ -62,6 +62,7 @@ typedef struct {
   const Law          *law;
   SlavePoints         slaves;
   Offsets             slave_offsets, master_offsets; /* NULL: none */
+  PetscBool           one_body; /* of a list of surfaces: slave and master have faces of one body */
   ContactSearch       search;
 
   PetscInt   n, *node;              /* terms: local nodes */

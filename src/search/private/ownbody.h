@@ -1,0 +1,10 @@
+/* The slave point's own body, which separates the point from what lies behind it. Where any side of a body may meet any
+   other one, a wall's far side opposes the near side as a partner does, and the point lies behind it by the wall's
+   thickness. A facet in front of the point is never hidden. One behind it is a partner that was entered, if it is no
+   deeper than what can be told from a wall: then it lies inside the point's own material.
+
+   OwnBodyHides() tells whether a candidate is hidden behind the point's own body. */
+#pragma once
+#include "searchimpl.h"
+
+PetscBool OwnBodyHides(const Nearest *, const Candidate *, const Foot *);
