@@ -60,13 +60,20 @@ static PetscErrorCode PairCreateNodePoints(Mesh mesh, ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Have slave and master faces of one body? */
+/* Have slave and master faces of one body, or of bodies that share nodes? */
 static PetscErrorCode PairIsOneBody(Mesh mesh, Scene scene, const ContactPair *pair, PetscBool *one)
 {
   const ContactSurface side[] = {pair->slave, pair->master};
   int                 *has, shared = 0;
+  PetscReal           *sides;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * mesh->n_nodes, &sides));
+  for (int i = 0; i < 2; i++)
+    for (PetscInt k = 0; side[i]->group && k < side[i]->group->n_nodes; k++) sides[2 * side[i]->group->nodes[k] + i] = 1;
+  for (PetscInt k = 0; k < mesh->n_nodes; k++) shared = shared || (sides[2 * k] > 0 && sides[2 * k + 1] > 0);
+  PetscCall(PetscFree(sides));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &shared, 1, MPI_INT, MPI_LOR, mesh->comm));
   PetscCall(PetscCalloc1(2 * scene->n_bodies, &has));
   for (int i = 0; i < 2; i++)
     for (PetscInt f = 0; side[i]->group && f < side[i]->n_faces; f++)
@@ -314,7 +321,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
     PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
   PetscCall(PairTurnMaster(scene, loads, pair));
   PetscCall(SurfaceImages(mesh, scene, contact, pair->slave, pair->master, &pair->n_images, pair->images));
-  if (contact->find_symmetry && pair->smoother->fitted)
+  if (contact->find_symmetry && (pair->smoother->fitted || contact->listed)) /* a body may meet its own image */
     PetscCall(SurfaceImagesFromSupports(mesh, scene, pair->slave, pair->master, &pair->n_images, pair->images));
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
@@ -430,6 +437,30 @@ int ContactFindPair(Contact contact, const char *name)
 {
   for (int p = 0; p < ContactPairs(contact); p++)
     if (!strcmp(contact->pairs[p].scene->name, name)) return p;
+  return -1;
+}
+
+/*@
+  ContactPairPartner - returns the number of the pair that treats the same two surfaces from the other side; -1 if there
+  is none. A surface that meets itself is its own partner.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- pair    - number of the pair
+@*/
+int ContactPairPartner(Contact contact, int pair)
+{
+  const SceneContact *of = contact->pairs[pair].scene;
+
+  for (int p = 0; p < contact->n_pairs && of->share < 1; p++) {
+    const SceneContact *other = contact->pairs[p].scene;
+
+    if (other->share < 1 && !strcmp(other->path, of->path) && !strcmp(other->slave, of->master) &&
+        !strcmp(other->master, of->slave))
+      return p;
+  }
   return -1;
 }
 

@@ -201,6 +201,7 @@ PetscErrorCode SceneReadAgain(MPI_Comm, const char *file, const char *where, con
 PetscErrorCode SceneDestroy(Scene *);
 PetscBool      SceneSameProblem(const char *a, const char *b);
 const char    *SceneWhere(Scene, const char *path, const char *key);
+void           SceneBodySkin(const SceneBody *, char *name, size_t size);
 PetscBool      SceneIsPlastic(Scene);
 PetscBool      SceneBreaks(Scene, PetscReal t);
 PetscBool      SceneLoadVaries(const SceneLoad *, int component);
