@@ -48,3 +48,26 @@ PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot
   wall = ReferenceDepth(look, c);
   return (PetscBool)(wall > OWN_BODY_TOUCHES * look->size && depth > SEARCH_ENTERED * wall);
 }
+
+/*@
+  OwnBodyTurnsFrom - says whether a foot lies on the wrong side of the slave point's own face: behind it with a gap, or in
+  front of it with a penetration.
+
+  Not collective
+
+  Input Parameters:
++ look - the slave point
+- foot - of the point on a candidate, without free edges
+
+  Note:
+  Always PETSC_FALSE where the scene names slave and master.
+@*/
+PetscBool OwnBodyTurnsFrom(const Nearest *look, const Foot *foot)
+{
+  const PetscReal *own   = &look->lists->slave_normal[3 * look->q];
+  PetscReal        along = 0;
+
+  if (!look->listed) return PETSC_FALSE;
+  for (int d = 0; d < look->lists->dim; d++) along += own[d] * foot->normal[d];
+  return (PetscBool)(along >= 0);
+}
