@@ -316,9 +316,11 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
       mesh->comm,
       "%s: the slave '%s' is a rigid tool; allowed: a surface of a deformable body (make the tool the master)",
       SceneWhere(scene, contact->path, "slave"), contact->slave));
-  PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "slave", contact->slave, &pair->slave));
+  PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, contact->listed ? "surfaces" : "slave",
+                          contact->slave, &pair->slave));
   if (contact->master)
-    PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
+    PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, contact->listed ? "surfaces" : "master",
+                            contact->master, &pair->master));
   PetscCall(PairTurnMaster(scene, loads, pair));
   PetscCall(SurfaceImages(mesh, scene, contact, pair->slave, pair->master, &pair->n_images, pair->images));
   if (contact->find_symmetry && (pair->smoother->fitted || contact->listed)) /* a body may meet its own image */

@@ -102,6 +102,8 @@ static PetscErrorCode CheckEntry(Scene scene, const char *path, Node surfaces)
   for (int k = 0; !surfaces && k < 2; k++)
     if (!SceneHas(scene, path, Unfit[k].key))
       PetscCall(SceneRefuse(scene, path, Unfit[k].key, "is missing; allowed: slave and master, or surfaces", NULL));
+  if (surfaces && SchemaChoice(SceneDocument(scene), "%s.frame", path) != 0)
+    PetscCall(SceneRefuse(scene, path, "frame", "is global; allowed with surfaces: local", NULL));
   if (!surfaces && SceneHas(scene, path, "exclude"))
     PetscCall(SceneRefuse(scene, path, "exclude", "has no place beside slave and master; allowed: with surfaces", NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -112,7 +114,7 @@ static PetscErrorCode AddEntry(Scene scene, int entry, int *n, SurfacePair **pai
 {
   char           path[KEY_PATH_LENGTH];
   Node           surfaces, exclude;
-  int            n_list = 1, deformable = 0;
+  int            n_list = 1, deformable = 0, before = *n;
   ListedSurface *list = NULL;
 
   PetscFunctionBeginUser;
@@ -134,6 +136,8 @@ static PetscErrorCode AddEntry(Scene scene, int entry, int *n, SurfacePair **pai
   if (surfaces && !deformable)
     PetscCall(
       SceneRefuse(scene, path, "surfaces", "has no surface of a deformable body; allowed: a list with one", NULL));
+  if (*n == before)
+    PetscCall(SceneRefuse(scene, path, "exclude", "leaves no pair; allowed: exclusions that leave one", NULL));
   PetscCall(PetscFree(list));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
