@@ -340,6 +340,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
                          pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL, &pair->search));
   if (contact->listed) PetscCall(PairIsOneBody(mesh, scene, pair, &pair->one_body));
   if (contact->listed) SearchAllSides(pair->search, pair->one_body);
+  if (contact->share < 1) PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &pair->reaction));
   PetscCall(PetscCalloc2(pair->n, &pair->held, pair->n, &pair->predicted));
   if (friction) PetscCall(FrictionCreate(pair));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
@@ -382,6 +383,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree2(pair->held, pair->predicted));
   PetscCall(FrictionDestroy(&pair->friction));
   PetscCall(PetscFree(pair->carried));
+  PetscCall(PetscFree(pair->reaction));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
