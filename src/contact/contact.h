@@ -174,6 +174,7 @@ int                 ContactPairs(Contact);
 const char         *ContactPairName(Contact, int pair);
 const SceneContact *ContactPairScene(Contact, int pair);
 int                 ContactFindPair(Contact, const char *name);
+int                 ContactPairPartner(Contact, int pair);
 PetscBool           ContactPairIsSurface(Contact, int pair);
 int                 ContactPairFiner(Contact, int pair);
 PetscErrorCode      ContactPairText(Contact, int pair, char *text, size_t size);

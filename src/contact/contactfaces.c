@@ -38,8 +38,8 @@ PetscBool ContactFacesServe(const ContactPair *pair, Scene scene, int order)
 
   for (int i = 0; i < scene->n_loads; i++)
     if (scene->loads[i].open) return PETSC_FALSE;
-  return (PetscBool)(pair->formulation.surface && order == 1 && !contact->adjust && !contact->augment &&
-                     !(contact->mu > 0) && !contact->mu_expression);
+  return (PetscBool)(pair->formulation.surface && order == 1 && !contact->listed && !contact->adjust &&
+                     !contact->augment && !(contact->mu > 0) && !contact->mu_expression);
 }
 
 /* Number of the first slave node of a face, on the rank that owns it. */

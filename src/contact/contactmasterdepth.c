@@ -43,7 +43,7 @@ static PetscErrorCode AllowOverlap(Contact contact, const ContactPair *pair, Pet
 - t       - its load parameter
 
   Output Parameter:
-. depth - the same on all ranks; no nodes where the master is analytic
+. depth - the same on all ranks; no nodes where the master is analytic, or where it is a slave too
 
   Note:
   Depths do not count that first-order facets of a concave slave explain, nor overlaps that initial_overlap leaves;
@@ -56,7 +56,7 @@ PetscErrorCode ContactPairMasterDepth(Contact contact, int p, const PetscReal *u
 
   PetscFunctionBeginUser;
   *depth = (NodeDepth){.tag = -1};
-  if (!pair->master) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!pair->master || pair->scene->share < 1) PetscFunctionReturn(PETSC_SUCCESS);
   if (!pair->depths)
     PetscCall(NodeDepthsCreate(contact->mesh, contact->scene, contact->loads, pair->slave, pair->master, pair->n_images,
                                pair->images, &pair->depths));

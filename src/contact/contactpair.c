@@ -23,6 +23,68 @@
    where the radius vanishes. */
 #define CONTACT_HAT_FLOOR 1e-8
 
+/* Mean heights of the elements below the faces around the nodes of the slave (length), by local node. */
+static PetscErrorCode NodeHeights(Mesh mesh, ContactSurface slave, PetscReal *height)
+{
+  PetscReal *faces;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes, &faces));
+  PetscCall(PetscArrayzero(height, mesh->n_nodes));
+  for (PetscInt f = 0; f < slave->n_faces; f++) {
+    for (int a = 0; a < ElementGet(slave->faces[f].type)->nodes; a++) {
+      height[slave->faces[f].nodes[a]] += slave->face_height[f];
+      faces[slave->faces[f].nodes[a]]++;
+    }
+  }
+  PetscCall(MeshSumNodes(mesh, 1, height));
+  PetscCall(MeshSumNodes(mesh, 1, faces));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++)
+    if (faces[i] > 0) height[i] /= faces[i];
+  PetscCall(PetscFree(faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes slave points that are the nodes of the terms. */
+static PetscErrorCode PairCreateNodePoints(Mesh mesh, ContactPair *pair)
+{
+  PetscReal *of_nodes, *height;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(mesh->n_nodes, &of_nodes, pair->n, &height));
+  PetscCall(NodeHeights(mesh, pair->slave, of_nodes));
+  for (PetscInt c = 0; c < pair->n; c++) height[c] = of_nodes[pair->node[c]];
+  PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, pair->size, height, &pair->slaves));
+  PetscCall(PetscFree2(of_nodes, height));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Have slave and master faces of one body, or of bodies that share nodes? */
+static PetscErrorCode PairIsOneBody(Mesh mesh, Scene scene, const ContactPair *pair, PetscBool *one)
+{
+  const ContactSurface side[] = {pair->slave, pair->master};
+  int                 *has, shared = 0;
+  PetscReal           *sides;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * mesh->n_nodes, &sides));
+  for (int i = 0; i < 2; i++)
+    for (PetscInt k = 0; side[i]->group && k < side[i]->group->n_nodes; k++)
+      sides[2 * side[i]->group->nodes[k] + i] = 1;
+  for (PetscInt k = 0; k < mesh->n_nodes; k++) shared = shared || (sides[2 * k] > 0 && sides[2 * k + 1] > 0);
+  PetscCall(PetscFree(sides));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &shared, 1, MPI_INT, MPI_LOR, mesh->comm));
+  PetscCall(PetscCalloc1(2 * scene->n_bodies, &has));
+  for (int i = 0; i < 2; i++)
+    for (PetscInt f = 0; side[i]->group && f < side[i]->n_faces; f++)
+      has[i * scene->n_bodies + mesh->cell_body[side[i]->group->face_cell[f]]] = 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, 2 * scene->n_bodies, MPI_INT, MPI_LOR, mesh->comm));
+  for (int b = 0; b < scene->n_bodies; b++) shared = shared || (has[b] && has[scene->n_bodies + b]);
+  *one = shared ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscFree(has));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Chooses the slave nodes that carry a term: those with area that this rank owns. Faces with terms follow. */
 static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
 {
@@ -54,7 +116,7 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
         (hats ? area[node] < CONTACT_HAT_FLOOR * sum[0] / sum[1] : share[node] < CONTACT_SHARE_FLOOR))
       continue;
     pair->node[pair->n] = node;
-    pair->area[pair->n] = area[node];
+    pair->area[pair->n] = pair->scene->share * area[node];
     pair->size[pair->n] = size[node];
     pair->turn[pair->n] = turn[node];
     pair->n++;
@@ -98,9 +160,10 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
       PetscInt       at;
 
       if (c < 0 || slaves->hat[k] == 0) continue;
-      at                    = pair->term_ptr[c + 1]++; /* after the loop it is the start of the next term */
-      pair->term_point[at]  = q;
-      pair->term_weight[at] = pair->formulation.surface ? share * slaves->weight[q] * slaves->hat[k] : pair->area[c];
+      at                   = pair->term_ptr[c + 1]++; /* after the loop it is the start of the next term */
+      pair->term_point[at] = q;
+      pair->term_weight[at] =
+        pair->formulation.surface ? share * pair->scene->share * slaves->weight[q] * slaves->hat[k] : pair->area[c];
     }
   }
   ContactFacesPoints(pair);
@@ -147,7 +210,7 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
                               0, pair->formulation.offsets, &pair->master_offsets));
   } else {
     PetscCall(PairChooseNodes(mesh, scene, pair));
-    PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, pair->size, &pair->slaves));
+    PetscCall(PairCreateNodePoints(mesh, pair));
   }
   PetscCall(PairCreateTerms(mesh, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -273,22 +336,19 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   pair->geometry = scene->geometry;
   PairSetFormulation(scene, mesh->order, pair);
   pair->fit = PairFitSettings(scene, pair, mesh->order);
-  if (contact->master && !strcmp(contact->slave, contact->master))
-    PetscCall(RefuseInput(mesh->comm,
-                          "%s: slave and master are both '%s'; allowed: two different surfaces (a surface in contact "
-                          "with itself is not available yet)",
-                          SceneWhere(scene, contact->path, "master"), contact->master));
   if (MeshFindRigid(mesh, contact->slave))
     PetscCall(RefuseInput(
       mesh->comm,
       "%s: the slave '%s' is a rigid tool; allowed: a surface of a deformable body (make the tool the master)",
       SceneWhere(scene, contact->path, "slave"), contact->slave));
-  PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "slave", contact->slave, &pair->slave));
+  PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, contact->listed ? "surfaces" : "slave",
+                          contact->slave, &pair->slave));
   if (contact->master)
-    PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
+    PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, contact->listed ? "surfaces" : "master",
+                            contact->master, &pair->master));
   PetscCall(PairTurnMaster(scene, loads, pair));
   PetscCall(SurfaceImages(mesh, scene, contact, pair->slave, pair->master, &pair->n_images, pair->images));
-  if (contact->find_symmetry && pair->smoother->fitted)
+  if (contact->find_symmetry && (pair->smoother->fitted || contact->listed)) /* a body may meet its own image */
     PetscCall(SurfaceImagesFromSupports(mesh, scene, pair->slave, pair->master, &pair->n_images, pair->images));
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
@@ -303,6 +363,9 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images,
                          &pair->fit, pair->slaves, pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL,
                          pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL, &pair->search));
+  if (contact->listed) PetscCall(PairIsOneBody(mesh, scene, pair, &pair->one_body));
+  if (contact->listed) SearchAllSides(pair->search, pair->one_body);
+  if (contact->share < 1) PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &pair->reaction));
   PetscCall(PetscCalloc2(pair->n, &pair->held, pair->n, &pair->predicted));
   if (friction) PetscCall(FrictionCreate(pair));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
@@ -346,6 +409,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree2(pair->held, pair->predicted));
   PetscCall(FrictionDestroy(&pair->friction));
   PetscCall(PetscFree(pair->carried));
+  PetscCall(PetscFree(pair->reaction));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -403,6 +467,30 @@ int ContactFindPair(Contact contact, const char *name)
 {
   for (int p = 0; p < ContactPairs(contact); p++)
     if (!strcmp(contact->pairs[p].scene->name, name)) return p;
+  return -1;
+}
+
+/*@
+  ContactPairPartner - returns the number of the pair that treats the same two surfaces from the other side; -1 if there
+  is none. A surface that meets itself is its own partner.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- pair    - number of the pair
+@*/
+int ContactPairPartner(Contact contact, int pair)
+{
+  const SceneContact *of = contact->pairs[pair].scene;
+
+  for (int p = 0; p < contact->n_pairs && of->share < 1; p++) {
+    const SceneContact *other = contact->pairs[p].scene;
+
+    if (other->share < 1 && !strcmp(other->path, of->path) && !strcmp(other->slave, of->master) &&
+        !strcmp(other->master, of->slave))
+      return p;
+  }
   return -1;
 }
 

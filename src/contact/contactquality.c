@@ -216,7 +216,7 @@ PetscErrorCode ContactPairDistance(Contact contact, int p, const PetscReal *u, P
 
 /*@
   ContactPairJoined - counts the slave nodes of a pair that are nodes of its master as well, where the surfaces are
-  one and never part.
+  one and never part; none where a list of surfaces has a body meet itself.
 
   Collective
 
@@ -236,7 +236,7 @@ PetscErrorCode ContactPairJoined(Contact contact, int p, PetscInt *nodes, Contac
 
   PetscFunctionBeginUser;
   *nodes = 0;
-  if (!pair->master || pair->master->rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!pair->master || pair->master->rigid || pair->one_body) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(mesh->n_nodes, &of_master, pair->n, &joined));
   PetscCall(PetscArrayzero(of_master, mesh->n_nodes));
   for (PetscInt f = 0; f < pair->master->n_faces; f++) {
@@ -353,7 +353,7 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
     } mine = {0, 0}, least;
     char complaint[512];
 
-    if (pair->master) PetscCall(PairCheckFacing(contact, pair));
+    if (pair->master && !pair->one_body) PetscCall(PairCheckFacing(contact, pair));
     PetscCall(PairCheckAddedOverlap(contact, pair));
     PetscCall(ContactRefuseImmersed(contact, p));
     for (PetscInt c = 0; c < pair->n; c++) {

@@ -2,6 +2,9 @@
 #include "contactimpl.h"
 #include "penaltyrule.h"
 
+/* Areas of shape functions below this part of the area of the term are zero: corners of 6-node triangles. */
+#define CONTACT_NO_SHAPE_AREA 1e-3
+
 /* Nodes outside the window of their penalty, all pairs; -1: no pair has a window. */
 static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)
 {
@@ -128,6 +131,29 @@ PetscErrorCode ContactRoundOff(Contact contact, PetscReal *force)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds to the pressures of a pair what its partner's slave points press on the same surface from the other side, as
+   forces over the areas of the shape functions. Corners of 6-node triangles have none; there the own side stands for
+   both. Where no partner is near there is no direction, and no pressure. */
+static PetscErrorCode AddPartner(Contact contact, ContactPair *pair, const ContactPair *partner, const PetscReal *u)
+{
+  const int  dim = contact->mesh->dim;
+  PetscReal *area;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(contact->mesh->n_nodes, &area));
+  PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
+    const PetscInt  node  = pair->node[c];
+    const PetscReal own   = pair->scene->share * pair->pressure[c];
+    PetscReal       other = 0;
+
+    for (int d = 0; d < dim; d++) other += partner->reaction[node * dim + d] * pair->normal[3 * c + d];
+    pair->pressure[c] = own + (area[node] > CONTACT_NO_SHAPE_AREA * pair->area[c] ? other / area[node] : own);
+  }
+  PetscCall(PetscFree(area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactGetNodes - gets what this rank's slave nodes of a pair show: areas, gaps, forces, pressures, normals.
 
@@ -141,10 +167,14 @@ PetscErrorCode ContactRoundOff(Contact contact, PetscReal *force)
 
   Output Parameter:
 . nodes - arrays of the contact, valid until its next call
+
+  Note:
+  Where two pairs treat two surfaces from either side, pressures are those of both together; forces are the pair's own.
 @*/
 PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, ContactNodes *nodes)
 {
-  ContactPair *pair = &contact->pairs[p];
+  ContactPair *pair    = &contact->pairs[p];
+  const int    partner = ContactPairPartner(contact, p);
   PetscReal   *area;
 
   PetscFunctionBeginUser;
@@ -154,7 +184,11 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
     PetscCall(SlavePointsHatAreas(pair->slaves, pair->geometry, u, area));
   else
     PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
-  for (PetscInt c = 0; c < pair->n_nodes; c++) pair->pressure[c] = pair->force[c] / area[pair->node[c]];
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
+    area[pair->node[c]] *= pair->scene->share;
+    pair->pressure[c] = pair->force[c] / area[pair->node[c]];
+  }
+  if (partner >= 0) PetscCall(AddPartner(contact, pair, &contact->pairs[partner], u));
   *nodes = (ContactNodes){.n        = pair->n_nodes,
                           .node     = pair->node,
                           .area     = pair->area,

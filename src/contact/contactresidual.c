@@ -34,6 +34,31 @@ static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Forces of the pair on the nodes of its master, by node of the mesh: those on all contact nodes without those on the
+   slave points themselves. */
+static PetscErrorCode PairReaction(ContactPair *pair, const PetscReal *values)
+{
+  const int            dim   = pair->mesh->dim;
+  const NeighbourLists lists = pair->lists;
+  PetscReal           *on_master;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(lists->n_nodes * dim, &on_master));
+  for (PetscInt i = 0; i < lists->n_nodes * dim; i++) on_master[i] = -values[i];
+  for (PetscInt q = 0; q < lists->n_slaves; q++) {
+    if (pair->point_force[q] == 0 || pair->variations->first[q] == pair->variations->end[q]) continue;
+    for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++)
+      for (int d = 0; d < dim; d++)
+        on_master[lists->slave_node[k] * dim + d] -= pair->point_force[q] * lists->slave_S[k] *
+                                                     pair->images[lists->slave_side[k]].sign[d] *
+                                                     pair->variations->own[q * dim + d];
+  }
+  PetscCall(PetscArrayzero(pair->reaction, pair->mesh->n_nodes * dim));
+  PetscCall(NeighbourListsReduce(lists, on_master, pair->reaction));
+  PetscCall(PetscFree(on_master));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Normal nodal forces of terms that share their points. The hat functions distribute the points' forces, also to
    terms of other ranks. */
 static PetscErrorCode PairSharedForces(ContactPair *pair)
@@ -80,6 +105,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscCall(PetscArrayzero(pair->total, 3));
   PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
   PetscCall(PairForces(pair, values));
+  if (pair->reaction) PetscCall(PairReaction(pair, values));
   if (pair->friction) PetscCall(FrictionResidual(pair, t, values));
   PetscCall(NeighbourListsReduce(pair->lists, values, f));
   if (pair->formulation.surface) PetscCall(PairSharedForces(pair));

@@ -4,8 +4,18 @@
 /* A foot that is this little past the edge of a facet is on it, in face sizes. Nodes often lie exactly over nodes. */
 #define LOST_ON_FACET 1e-6
 
+/* Half of what a search of all sides takes for entered, so that a point is noticed before the search leaves it out. */
+#define LOST_OF_ENTERED 0.5
+
+/* Depth behind the master from which a slave point without contact is lost (length): a face; where the search tells
+   partners from the point's own walls, what it does so by. */
+static PetscReal DepthThatCounts(const ContactPair *pair, PetscInt c, PetscInt q)
+{
+  return pair->scene->listed ? LOST_OF_ENTERED * SEARCH_ENTERED * pair->slaves->height[q] : pair->size[c];
+}
+
 /* Says whether the search has lost slave point q of a term. That is so where the present lists find it behind the
-   master by more than the term's face size, the next lists find it away from the master or in front of it, and it has
+   master by more than counts, the next lists find it away from the master or in front of it, and it has
    not left past a free edge. Its term would vanish, and nothing would hold the bodies apart. */
 static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, ContactLost *lost)
 {
@@ -14,7 +24,7 @@ static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, Pets
   PetscBool            found  = PETSC_FALSE;
 
   *lost = (ContactLost){offset - pair->point_gap[q], NAN, pair->size[c], pair->node[c]};
-  if (!(lost->depth > lost->size)) return PETSC_FALSE;
+  if (!(lost->depth > DepthThatCounts(pair, c, q))) return PETSC_FALSE;
   if (pair->master && next->facet_ptr[q] == next->facet_ptr[q + 1]) return PETSC_TRUE;
   if (pair->next_factor[q] == 0) return PETSC_FALSE;
   if (!ContactPointEvaluate(pair, pair->facets, next, q, -1, SMOOTHER_GAP, &found) && found)
@@ -71,7 +81,7 @@ static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q,
     (1 << ElementGet(facet.type)->corners) - 1; /* only a free edge tells a foot past it from one on it */
   FacetProject(dim, &facet, x, &foot);
   *lost = (ContactLost){offset - foot.gap, pair->point_gap[q] - offset, pair->size[c], pair->node[c]};
-  return (PetscBool)(foot.beyond <= LOST_ON_FACET * lost->size && lost->depth > lost->size);
+  return (PetscBool)(foot.beyond <= LOST_ON_FACET * lost->size && lost->depth > DepthThatCounts(pair, c, q));
 }
 
 /*@

@@ -91,7 +91,7 @@ static PetscErrorCode CreateTopology(Scene scene, const char *file, RootMesh *ro
   PetscFunctionBeginUser;
   PetscCall(RootTopologyCreate(mesh->comm, mesh->dim, mesh->order, root, &mesh->dm));
   PetscCall(RootTopologySetCoordinates(mesh->dm, mesh->dim, root));
-  PetscCall(RootGroupsShare(mesh->dm, mesh, root));
+  PetscCall(RootGroupsShare(mesh->dm, scene, mesh, root));
   if (root) {
     PetscCall(CellFacesCreate(root));
     PetscCall(RootTopologyPlaceNodes(mesh->dm, file, root, &complaint));

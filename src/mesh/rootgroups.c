@@ -1,6 +1,7 @@
 /* Physical groups before distribution: faces, labels and the checks of how the scene uses groups. */
 #include "rootgroups.h"
 #include "cellfaces.h"
+#include "rootskins.h"
 #include "mesh/meshgroup.h"
 #include <string.h>
 
@@ -37,20 +38,25 @@ static PetscErrorCode ShareGroup(Mesh mesh, const GmshPhysical *physical, MeshGr
   Collective
 
   Input Parameters:
-+ dm   - from RootTopologyCreate()
-. mesh - its groups are set
-- root - on rank 0; NULL on other ranks
++ dm    - from RootTopologyCreate()
+. scene - its contact pairs may ask for the skins of bodies, which are the last groups
+. mesh  - its groups are set
+- root  - on rank 0; NULL on other ranks
 @*/
-PetscErrorCode RootGroupsShare(DM dm, Mesh mesh, const RootMesh *root)
+PetscErrorCode RootGroupsShare(DM dm, Scene scene, Mesh mesh, const RootMesh *root)
 {
-  char label[MESH_TEXT];
+  const int skins = RootSkinsCount(scene);
+  char      label[MESH_TEXT];
 
   PetscFunctionBeginUser;
   if (root) mesh->n_groups = root->gmsh.n_physicals;
   PetscCallMPI(MPI_Bcast(&mesh->n_groups, 1, MPI_INT, 0, mesh->comm));
+  mesh->n_groups += skins;
   PetscCall(PetscCalloc1(mesh->n_groups, &mesh->groups));
+  PetscCall(RootSkinsShare(scene, mesh, mesh->n_groups - skins));
   for (int g = 0; g < mesh->n_groups; g++) {
-    PetscCall(ShareGroup(mesh, root ? &root->gmsh.physicals[g] : NULL, &mesh->groups[g]));
+    if (g < mesh->n_groups - skins)
+      PetscCall(ShareGroup(mesh, root ? &root->gmsh.physicals[g] : NULL, &mesh->groups[g]));
     MeshGroupLabel(mesh, &mesh->groups[g], label);
     PetscCall(DMCreateLabel(dm, label));
   }
@@ -205,6 +211,7 @@ PetscErrorCode RootGroupsFind(DM dm, Scene scene, const char *file, RootMesh *ro
         PetscCall(AddCellBlock(dm, scene, root, block, block->physical[i], mesh));
     }
   }
+  PetscCall(RootSkinsAdd(dm, scene, root, mesh, gmsh->n_physicals));
   PetscCall(SortGroupFaces(root));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

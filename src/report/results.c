@@ -357,7 +357,7 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   last.apart = apart;
   for (int p = 0; p < results->scene->n_contacts; p++) {
     apart[p] = -1;
-    if (results->stepped && !results->met[p])
+    if (results->stepped && !results->met[p] && !results->scene->contacts[p].listed) /* most of a list never meet */
       PetscCall(ContactPairDistance(results->model->contact, p, results->model->u, results->model->t, &apart[p]));
   }
   TimingBegin(TIMING_OUTPUT);

@@ -4,6 +4,7 @@
 #include "scenematerial.h"
 #include "sceneplasticity.h"
 #include "sceneread.h"
+#include "scenesurfaces.h"
 #include "base/refusal.h"
 #include <string.h>
 
@@ -558,11 +559,19 @@ static PetscErrorCode SceneReadFriction(Scene scene, SceneContact *contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
+/* Reads name, slave and master of a pair. alone: it is the only one of its entry. */
+static PetscErrorCode SceneReadSides(Scene scene, const SurfacePair *pair, int alone, SceneContact *contact)
 {
-  Node symmetry = SceneNode(scene, contact->path, "symmetry");
-
   PetscFunctionBeginUser;
+  contact->listed = pair->listed;
+  contact->share  = pair->share;
+  if (contact->listed) {
+    PetscCall(SceneNameSurfacePair(pair, alone, SchemaText(SceneDocument(scene), "%s.name", contact->path),
+                                   &contact->name));
+    PetscCall(PetscStrallocpy(pair->slave.group, &contact->slave));
+    PetscCall(PetscStrallocpy(pair->master.group, &contact->master));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(SceneReadText(scene, contact->path, "name", &contact->name));
   PetscCall(SceneReadText(scene, contact->path, "slave", &contact->slave));
   PetscCall(SceneReadText(scene, contact->path, "master", &contact->master));
@@ -570,8 +579,16 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   PetscCall(SceneRefuseRigid(scene, contact->path, "slave", contact->slave));
   if (contact->master && !strcmp(contact->slave, contact->master))
     PetscCall(SceneRefuse(scene, contact->path, "master",
-                          "is the slave too; allowed: another surface (self contact is not available yet)",
+                          "is the slave too; allowed: another surface (surfaces: [...] has a surface meet itself)",
                           contact->master));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
+{
+  Node symmetry = SceneNode(scene, contact->path, "symmetry");
+
+  PetscFunctionBeginUser;
   contact->master_normal = (MasterNormal)SchemaChoice(SceneDocument(scene), "%s.master_normal", contact->path);
   contact->law           = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
   contact->smoother      = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
@@ -601,11 +618,17 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
 
 static PetscErrorCode SceneReadContacts(Scene scene)
 {
+  SurfacePair *pairs;
+
   PetscFunctionBeginUser;
-  scene->n_contacts = SchemaCount(SceneDocument(scene), "contact");
+  PetscCall(SceneListSurfacePairs(scene, &scene->n_contacts, &pairs));
   PetscCall(PetscCalloc1(scene->n_contacts, &scene->contacts));
   for (int i = 0; i < scene->n_contacts; i++) {
-    PetscCall(ScenePath(&scene->contacts[i].path, "contact", i));
+    const int alone = (i == 0 || pairs[i - 1].entry != pairs[i].entry) &&
+                      (i == scene->n_contacts - 1 || pairs[i + 1].entry != pairs[i].entry);
+
+    PetscCall(ScenePath(&scene->contacts[i].path, "contact", pairs[i].entry));
+    PetscCall(SceneReadSides(scene, &pairs[i], alone, &scene->contacts[i]));
     PetscCall(SceneReadContact(scene, &scene->contacts[i]));
     for (int j = 0; j < i; j++) {
       if (!strcmp(scene->contacts[i].name, scene->contacts[j].name))
@@ -613,6 +636,7 @@ static PetscErrorCode SceneReadContacts(Scene scene)
                               "names another pair already; allowed: names used once", scene->contacts[i].name));
     }
   }
+  PetscCall(PetscFree(pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -1003,6 +1027,24 @@ static PetscBool MotionBreaks(const Motion *motion, PetscReal t)
   for (int m = 0; m < motion->n; m++)
     if (HistoryBreaks(&motion->components[m].history, t)) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+/*@
+  SceneBodySkin - writes the name of the group of all outer faces of a deformable body, which the mesh makes where a
+  contact pair asks for it.
+
+  Not collective
+
+  Input Parameters:
++ body - the body
+- size - characters that name holds
+
+  Output Parameter:
+. name - the name
+@*/
+void SceneBodySkin(const SceneBody *body, char *name, size_t size)
+{
+  snprintf(name, size, "skin of %s", body->name);
 }
 
 /*@

@@ -69,6 +69,10 @@ typedef struct {
   AnalyticSurface    analytic; /* motion.point is a point of the plane or of the axis, or the centre */
   Motion             motion;   /* of an analytic master */
   MasterNormal       master_normal;
+  /* 1 if the scene lists surfaces and names no slave: any side of the bodies may meet any other. Each entry of such a
+     list becomes pairs with names of their own. */
+  int                listed;
+  double             share;    /* part of the slave's area that counts: 1/2 if its master is a slave of it too, else 1 */
   int                smoother; /* index in Smoothers[] */
   ContactFormulation formulation;
   int                live_offset;   /* of surface_to_surface: 1 if the offsets follow the nodes within a solve */
@@ -197,6 +201,7 @@ PetscErrorCode SceneReadAgain(MPI_Comm, const char *file, const char *where, con
 PetscErrorCode SceneDestroy(Scene *);
 PetscBool      SceneSameProblem(const char *a, const char *b);
 const char    *SceneWhere(Scene, const char *path, const char *key);
+void           SceneBodySkin(const SceneBody *, char *name, size_t size);
 PetscBool      SceneIsPlastic(Scene);
 PetscBool      SceneBreaks(Scene, PetscReal t);
 PetscBool      SceneLoadVaries(const SceneLoad *, int component);

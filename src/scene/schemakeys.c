@@ -122,11 +122,18 @@ const SchemaKey SchemaKeys[] = {
    .help = "body force, such as the weight"},
   {"loads.*.history", HISTORY, .preset = "[[0, 0], [1, 1]]",
    .help = "factor on the value over the load parameter t; not allowed beside an expression with t"},
-  {"contact", LIST, .help = "contact pairs of a slave and a master surface"},
-  {"contact.*", MAP, .help = "one contact pair"},
+  {"contact", LIST, .help = "contact pairs of a slave and a master surface, and lists of surfaces that meet each other"},
+  {"contact.*", MAP, .help = "one contact pair, with slave and master, or a list of surfaces"},
   {"contact.*.name", NAME, REQUIRED, .help = "name of the pair in probes and results"},
-  {"contact.*.slave", TEXT, REQUIRED, .help = "physical surface of a deformable body"},
-  {"contact.*.master", TEXT | MAP, REQUIRED, .help = "a physical surface or an analytic surface"},
+  {"contact.*.surfaces", TEXTS | CHOICE, .values = "all",
+   .help = "surfaces of deformable bodies, each in contact with itself and with all others, both sides treated alike; "
+           "rigid tools among them are masters. all: the outer faces of every body, and every tool. It takes the place "
+           "of slave and master. With one surface the pair has the entry's name, else the names are NAME.SLAVE.MASTER, "
+           "with bodies' names for all; entries that name two of these surfaces as slave and master replace their pair"},
+  {"contact.*.exclude", LIST, .help = "pairs of surfaces, or of bodies where surfaces is all, that do not meet"},
+  {"contact.*.exclude.*", TEXTS, .help = "two names, or one: it does not meet itself"},
+  {"contact.*.slave", TEXT, .help = "physical surface of a deformable body; needed without surfaces"},
+  {"contact.*.master", TEXT | MAP, .help = "a physical surface or an analytic surface; needed without surfaces"},
   {"contact.*.master.plane|cylinder|sphere", MAP, .help = "an analytic rigid master"},
   {"contact.*.master.plane.point", POINT, REQUIRED, .unit = "length", .help = "a point of the plane"},
   {"contact.*.master.plane.normal", POINT, REQUIRED, .help = "normal that points out of the obstacle, of any length"},

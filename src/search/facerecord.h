@@ -12,7 +12,7 @@
 typedef struct {
   /* Nodes: numbers in the order of id[] on arrival, then the receiver's own numbers. */
   Facet        facet;
-  PetscReal    size;
+  PetscReal    size, height;
   PetscInt     id[FACE_MAX_NODES], owner[FACE_MAX_NODES], local[FACE_MAX_NODES];
   PetscReal    X[FACE_MAX_NODES * 3];
   NodeGeometry geometry[FACE_MAX_NODES];     /* where fits need it */

@@ -10,6 +10,11 @@
    still count as inside, so that round-off decides nothing. */
 #define SEARCH_FIT_TIE 1e-6
 
+/* Where any side of the bodies may meet any other one, a fit that closes what the facets leave open, or opens what they
+   close, by more than this part of a face of the slave is not taken: it is extrapolated past an edge. Sagittas are much
+   smaller. */
+#define FIT_STRAYS 0.25
+
 /* The ladder of fall-backs: wider supports, then lower degrees, until every guard holds. Degree 0 means the degree
    of the scene. */
 static const struct {
@@ -345,6 +350,13 @@ static inline PetscReal FitResidual(const int dim, const FitProblem *problem, co
   return most;
 }
 
+/* Does a fit say of contact what the facets deny by far? */
+static PetscBool FitStrays(const Nearest *look, const FitResult *result)
+{
+  return (PetscBool)((result->gap < 0) != (look->foot.gap < 0) &&
+                     PetscAbsReal(result->gap - look->foot.gap) > FIT_STRAYS * look->size);
+}
+
 /*@
   FitSupportSlave - fits the surface for one slave point and writes a fit that holds into its list.
 
@@ -381,6 +393,7 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   TimingBegin(TIMING_FIT); /* these two readings of the clock cost 0.1 % of a ladder */
   PetscCall(FitSupportClimb(fit, &at, &problem, &result, &lists->rung[q]));
   TimingEnd(TIMING_FIT);
+  if (look->listed && lists->rung[q] != RUNG_FACET && FitStrays(look, &result)) lists->rung[q] = RUNG_FACET;
   if (lists->rung[q] == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
   lists->fit_n[q]     = problem.n;
   lists->degree[q]    = problem.degree;

@@ -1,5 +1,6 @@
 /* Facets that face a slave point, where they end, and how far the point takes part, see flank.h. */
 #include "flank.h"
+#include "ownbody.h"
 #include "base/smoothstep.h"
 
 /* A facet is below the plane of its neighbour if its centre is, by this part of the slave's face size. */
@@ -122,16 +123,29 @@ PetscBool FlankIsOwn(const Nearest *look, const Candidate *c)
 {
   const NeighbourLists lists = look->lists;
 
-  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
+  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++) {
+    const PetscInt p = c->facet.nodes[a];
+
+    if (look->one_body && lists->point_image[p]) continue; /* the mirror image of a body is another body */
     for (PetscInt k = 0; k < look->own; k++)
-      if (lists->point_node[lists->point_ptr[c->facet.nodes[a]]] == lists->slave_node[lists->slave_ptr[look->q] + k])
-        return PETSC_TRUE;
+      if (lists->point_node[lists->point_ptr[p]] == lists->slave_node[lists->slave_ptr[look->q] + k]) return PETSC_TRUE;
+  }
   return PETSC_FALSE;
 }
 
+/* Is a facet behind the slave point, beyond its own body? Only facets that face the point can be taken for partners. */
+static PetscBool IsHidden(const Nearest *look, const Candidate *c)
+{
+  Foot foot;
+
+  if (!look->listed || !FlankFaces(look, c)) return PETSC_FALSE;
+  CandidateFoot(look, c, &foot);
+  return OwnBodyHides(look, c, &foot);
+}
+
 /*@
-  FlankSort - drops the facets that share a node with the slave point's own face, and puts those that face the point
-  before the others.
+  FlankSort - drops the facets that share a node with the slave point's own face or that its own body hides, and puts
+  those that face the point before the others.
 
   Not collective
 
@@ -150,7 +164,8 @@ int FlankSort(const Nearest *look, int *n, int *found)
   int facing = 0, kept = 0;
 
   for (int i = 0; i < *n; i++)
-    if (!FlankIsOwn(look, &look->candidates[found[i]])) found[kept++] = found[i];
+    if (!FlankIsOwn(look, &look->candidates[found[i]]) && !IsHidden(look, &look->candidates[found[i]]))
+      found[kept++] = found[i];
   *n = kept;
   for (int i = 0; i < kept; i++) {
     const int c = found[i];

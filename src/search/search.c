@@ -1,6 +1,7 @@
 /* Search for contact partners: candidates around the slave points, the nearest facet of each, and the lists. */
 #include "searchimpl.h"
 #include "flank.h"
+#include "ownbody.h"
 
 /* Reach of the search beyond the requested motion, in face sizes. The nearest facet of a slave point is listed if it
    is not farther away than this. */
@@ -243,7 +244,7 @@ static void NearestVisit(void *context, int index, double *bound)
   PetscReal        x[FACE_MAX_NODES * 3], distance;
   Foot             foot;
 
-  if ((!faces && (look->averse || look->best >= 0)) || FlankIsOwn(look, c)) return;
+  if ((!faces && (look->averse || look->best >= 0 || look->one_body)) || FlankIsOwn(look, c)) return;
   CandidatePositions(look->lists, c, x);
   own.free_edges = 0;
   for (int a = 0; a < ElementGet(own.type)->nodes; a++) {
@@ -251,6 +252,7 @@ static void NearestVisit(void *context, int index, double *bound)
     for (int d = 0; d < dim; d++) x[a * dim + d] -= look->x[d];
   }
   FacetProject(dim, &own, x, &foot);
+  if (OwnBodyHides(look, c, &foot) || OwnBodyTurnsFrom(look, &foot)) return;
   distance = PetscAbsReal(foot.gap);
   if (!faces) look->averse = (PetscBool)(distance <= look->size);
   if (!faces || distance > *bound) return;
@@ -337,7 +339,7 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   facing = FlankSort(look, &count, found);
   FlankLeaveCorner(look, facing, found);
   lists->share[q] = FlankShare(look, facing, count, found, ends);
-  if (lists->share[q] == 0) lists->averse[q] = FlankIsBeside(look, facing, count, found);
+  if (lists->share[q] == 0 && !look->one_body) lists->averse[q] = FlankIsBeside(look, facing, count, found);
   lists->kappa[q] = ListCurvature(look, facing, found);
   for (int i = 0; i < facing; i++)
     if (found[i] == look->best) lists->nearest[q] = i;
@@ -367,6 +369,9 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                     .q          = q,
                     .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
                     .size       = s->slaves->size[q],
+                    .height     = s->slaves->height[q],
+                    .listed     = s->listed,
+                    .one_body   = s->one_body,
                     .best       = -1,
                     .least      = s->reach + motion,
                     .tie        = FACET_TIE * (s->reach + motion)};
@@ -413,6 +418,22 @@ static PetscErrorCode NeighbourListsTakeFaces(NeighbourLists lists, const Search
 void SearchKeepFaces(ContactSearch s)
 {
   s->keeps_faces = PETSC_TRUE;
+}
+
+/*@
+  SearchAllSides - has lists leave out what lies behind a slave point beyond its own body, because any side of the bodies
+  may meet any other one.
+
+  Not collective
+
+  Input Parameters:
++ s        - the search
+- one_body - slave and master have faces of one body
+@*/
+void SearchAllSides(ContactSearch s, PetscBool one_body)
+{
+  s->listed   = PETSC_TRUE;
+  s->one_body = one_body;
 }
 
 /*@

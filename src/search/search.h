@@ -14,6 +14,11 @@
 #include "bodies/loads.h"
 #include "search/slavepoints.h"
 
+/* Where any side of the bodies may meet any other one: part of the element's height below a slave point, and of the
+   reference distance to a facet behind it, up to which the point has entered what faces it. A wall has at least one
+   element, so its own far side is nearer than that only where it is compressed to a quarter. */
+#define SEARCH_ENTERED 0.25
+
 /* How a master surface is fitted. */
 typedef struct {
   PetscBool fitted; /* lists come with fits; PETSC_FALSE: the facets are used, and nothing below is read */
@@ -35,6 +40,7 @@ PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface master, PetscReal
                             const FaceMaps *maps, ContactSearch *);
 PetscErrorCode SearchDestroy(ContactSearch *);
 void           SearchKeepFaces(ContactSearch);
+void           SearchAllSides(ContactSearch, PetscBool one_body);
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
 PetscErrorCode SearchLeastDistance(ContactSearch, const PetscReal *u, PetscReal t, PetscReal *distance);
 PetscErrorCode SearchDistance(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap);

@@ -30,13 +30,14 @@ static PetscErrorCode CreateForest(SlavePoints points)
 + surface - the slave surface
 . n       - number of nodes
 . nodes   - local nodes, nodes[n]
-- size    - size of the faces around each of them (length)
+. size    - size of the faces around each of them (length)
+- height  - height of the elements below these faces (length)
 
   Output Parameter:
 . out - the slave points
 @*/
 PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const PetscInt nodes[],
-                                      const PetscReal size[], SlavePoints *out)
+                                      const PetscReal size[], const PetscReal height[], SlavePoints *out)
 {
   Mesh        mesh = surface->mesh;
   SlavePoints points;
@@ -50,8 +51,9 @@ PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const 
   PetscCall(PetscMalloc6(n + 1, &points->ptr, n, &points->node, n, &points->S, n, &points->hat, n, &points->weight,
                          n * mesh->dim, &points->offset));
   PetscCall(PetscArrayzero(points->offset, n * mesh->dim));
-  PetscCall(PetscMalloc1(n, &points->size));
+  PetscCall(PetscMalloc2(n, &points->size, n, &points->height));
   PetscCall(PetscArraycpy(points->size, size, n));
+  PetscCall(PetscArraycpy(points->height, height, n));
   for (PetscInt i = 0; i < n; i++) {
     points->nodes[i] = (NodeKey){.id    = mesh->node_id[nodes[i]],
                                  .owner = mesh->node_owner[nodes[i]],
@@ -149,7 +151,7 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
   PetscCall(PetscMalloc6(n + 1, &points->ptr, entries, &points->node, entries, &points->S, entries, &points->hat, n,
                          &points->weight, n * dim, &points->offset));
   PetscCall(PetscArrayzero(points->offset, n * dim));
-  PetscCall(PetscMalloc1(n, &points->size));
+  PetscCall(PetscMalloc2(n, &points->size, n, &points->height));
   entries = 0;
   for (PetscInt f = 0; f < n_records; f++) {
     const Facet    *facet = &points->faces[f];
@@ -161,8 +163,9 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
       for (int d = 0; d < dim; d++) X[a * dim + d] = points->nodes[facet->nodes[a]].X[d];
     FaceRuleAreas(rule, facet->type, dim, geometry, X, &points->weight[points->first[f]], NULL);
     for (int q = 0; q < rule->n; q++) {
-      points->ptr[points->first[f] + q]  = entries;
-      points->size[points->first[f] + q] = records[f].size;
+      points->ptr[points->first[f] + q]    = entries;
+      points->size[points->first[f] + q]   = records[f].size;
+      points->height[points->first[f] + q] = records[f].height;
       for (int a = 0; a < nodes; a++, entries++) {
         points->node[entries] = facet->nodes[a];
         points->S[entries]    = rule->N[q][a];
@@ -220,7 +223,7 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *points)
     PetscCall(PetscFree(p->normal));
   }
   PetscCall(PetscFree6(p->ptr, p->node, p->S, p->hat, p->weight, p->offset));
-  PetscCall(PetscFree(p->size));
+  PetscCall(PetscFree2(p->size, p->height));
   PetscCall(PetscFree(p->nodes));
   PetscCall(PetscFree(p->u));
   PetscCall(PetscFree(*points));

@@ -20,7 +20,7 @@ typedef struct {
   PetscReal     *u;                /* n_nodes*dim: displacements at the last SlavePointsMove() (length) */
   PetscInt       n, *ptr, *node;   /* points, and the nodes of which each is made */
   PetscReal     *S, *hat, *weight; /* shape and hat functions at these nodes; area weight of each point */
-  PetscReal     *size;             /* of the slave's faces at each point (length) */
+  PetscReal     *size, *height;    /* of the slave's faces at each point, and of the elements below them (length) */
   PetscReal     *offset;           /* n*dim, along the normal at the time when it was taken (length) */
   /* The following members are for surface-to-surface contact only. */
   PetscReal   *normal; /* n_nodes*3: mean normal around each node after SlavePointsNormals(), of any length */
@@ -35,7 +35,7 @@ typedef struct {
 } *SlavePoints;
 
 PetscErrorCode SlavePointsCreateNodes(ContactSurface, PetscInt n, const PetscInt nodes[], const PetscReal size[],
-                                      SlavePoints *);
+                                      const PetscReal height[], SlavePoints *);
 PetscErrorCode SlavePointsCreateQuadrature(ContactSurface, Geometry, int finer, SlavePoints *);
 PetscErrorCode SlavePointsDestroy(SlavePoints *);
 PetscErrorCode SlavePointsMove(SlavePoints, const PetscReal *u);

@@ -38,7 +38,8 @@ static PetscErrorCode SurfaceFacesFromGroup(ContactSurface surface)
 
   PetscFunctionBeginUser;
   surface->n_faces = group->n_faces;
-  PetscCall(PetscCalloc2(surface->n_faces, &surface->faces, surface->n_faces, &surface->face_size));
+  PetscCall(PetscCalloc3(surface->n_faces, &surface->faces, surface->n_faces, &surface->face_size, surface->n_faces,
+                         &surface->face_height));
   for (PetscInt f = 0; f < surface->n_faces; f++) {
     Facet   *face = &surface->faces[f];
     PetscInt nodes[FACE_MAX_NODES];
@@ -56,7 +57,8 @@ static PetscErrorCode SurfaceFacesFromRigid(ContactSurface surface)
 
   PetscFunctionBeginUser;
   surface->n_faces = rigid->n_faces;
-  PetscCall(PetscCalloc2(surface->n_faces, &surface->faces, surface->n_faces, &surface->face_size));
+  PetscCall(PetscCalloc3(surface->n_faces, &surface->faces, surface->n_faces, &surface->face_size, surface->n_faces,
+                         &surface->face_height));
   for (PetscInt f = 0; f < surface->n_faces; f++) {
     Facet *face = &surface->faces[f];
 
@@ -68,9 +70,8 @@ static PetscErrorCode SurfaceFacesFromRigid(ContactSurface surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Stiffness of the layer of elements below a face: E over element height, with height = volume over area (simplices:
-   dim times that). */
-static PetscReal FaceStiffness(ContactSurface surface, Elasticity elasticity, PetscInt f, PetscReal area)
+/* Height of the element below a face: volume over area (simplices: dim times that). */
+static PetscReal FaceHeight(ContactSurface surface, PetscInt f, PetscReal area)
 {
   Mesh           mesh = surface->mesh;
   const PetscInt c    = surface->group->face_cell[f];
@@ -79,7 +80,7 @@ static PetscReal FaceStiffness(ContactSurface surface, Elasticity elasticity, Pe
 
   MeshCellCoordinates(mesh, c, X);
   volume = CellVolume(mesh->cell_type[c], mesh->dim, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X);
-  return ElasticityCellModulus(elasticity, c) * area / (volume * (e->corners == e->dim + 1 ? e->dim : 1));
+  return volume * (e->corners == e->dim + 1 ? e->dim : 1) / area;
 }
 
 /* Longest distance between two corners of a face. */
@@ -117,7 +118,9 @@ static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elastici
     sum[0] += area;
     sum[1] += 1;
     sum[2] += surface->face_size[f];
-    if (surface->group) sum[3] += area * FaceStiffness(surface, elasticity, f, area);
+    if (!surface->group) continue;
+    surface->face_height[f] = FaceHeight(surface, f, area);
+    sum[3] += area * ElasticityCellModulus(elasticity, surface->group->face_cell[f]) / surface->face_height[f];
   }
   if (surface->group) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, mesh->comm));
@@ -194,7 +197,7 @@ PetscErrorCode SurfaceDestroy(ContactSurface *surface)
 {
   PetscFunctionBeginUser;
   if (!*surface) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree2((*surface)->faces, (*surface)->face_size));
+  PetscCall(PetscFree3((*surface)->faces, (*surface)->face_size, (*surface)->face_height));
   PetscCall(PetscFree(*surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

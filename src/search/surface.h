@@ -33,6 +33,7 @@ typedef struct {
   PetscInt         n_faces;             /* on this rank */
   Facet           *faces;               /* nodes: local nodes of the mesh, or of the rigid tool */
   PetscReal       *face_size;           /* sqrt(area), a length in 2D */
+  PetscReal       *face_height;         /* of the element below each face (length); 0 for a rigid tool */
   PetscReal        mean_size, max_size; /* mean and largest face size, over all ranks */
   PetscReal        max_extent;          /* longest distance between two corners of a face */
   /* Area-weighted mean of E over element height, over all ranks; 0 for a rigid tool. */

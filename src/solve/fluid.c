@@ -371,6 +371,11 @@ static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
     if (!n) continue;
     fluid->form[PairForm(fluids, p)] = PETSC_TRUE;
     fluid->finer                     = PetscMax(fluid->finer, ContactPairFiner(contact, p));
+    if (scene->listed)
+      PetscCall(RefuseInput(fluids->mesh->comm,
+                            "%s: '%s' is in contact '%s', which lists surfaces; allowed with where: open: contact by "
+                            "slave and master",
+                            SceneWhere(fluids->scene, fluid->load->path, "where"), fluid->load->region, scene->name));
     if (scene->adjust || scene->augment)
       PetscCall(
         RefuseInput(fluids->mesh->comm,

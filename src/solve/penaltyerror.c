@@ -106,14 +106,35 @@ static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How each pair presses at displacements u. */
+/* How each pair presses in the present state, at displacements u. Two pairs that treat two surfaces from either side
+   share the load between them, and stiffer penalties shift it. Both get what they press together. */
+static PetscErrorCode ModelPresentLoads(Model model, const PetscReal *u, ContactLoad load[])
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < ContactPairs(model->contact); p++) PetscCall(ContactPairLoad(model->contact, p, u, &load[p]));
+  for (int p = 0; p < ContactPairs(model->contact); p++) {
+    const int         q   = ContactPairPartner(model->contact, p);
+    const ContactLoad own = load[p];
+
+    if (q <= p) continue;
+    load[p].force    = own.force + load[q].force;
+    load[p].pressure = load[p].force > 0
+                         ? (own.force * own.pressure + load[q].force * load[q].pressure) / load[p].force
+                         : 0;
+    load[p].peak     = PetscMax(own.peak, load[q].peak);
+    load[q]          = load[p];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same at other displacements than those of the present state. */
 static PetscErrorCode ModelPairLoads(Model model, const PetscReal *u, ContactLoad load[])
 {
   PetscBool ok;
 
   PetscFunctionBeginUser;
   PetscCall(ProblemResidual(model->problem, u, model->t, model->t, &ok));
-  for (int p = 0; p < ContactPairs(model->contact); p++) PetscCall(ContactPairLoad(model->contact, p, u, &load[p]));
+  PetscCall(ModelPresentLoads(model, u, load));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,7 +220,7 @@ PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
   PetscFunctionBeginUser;
   *stiffened = PETSC_FALSE;
   PetscCall(PetscMalloc1(pairs, &load));
-  for (int p = 0; p < pairs; p++) PetscCall(ContactPairLoad(model->contact, p, model->problem->trial, &load[p]));
+  PetscCall(ModelPresentLoads(model, model->problem->trial, load));
   for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
   for (int p = 0; p < pairs; p++) {
     const PenaltyError *error = &model->work->penalty_error[p];

@@ -64,6 +64,7 @@ typedef struct {
   const Law          *law;
   SlavePoints         slaves;
   Offsets             slave_offsets, master_offsets; /* NULL: none */
+  PetscBool           one_body; /* of a list of surfaces: slave and master have faces of one body */
   ContactSearch       search;
 
   PetscInt   n, n_nodes;            /* terms; the first n_nodes are those of nodes, the others those of faces */
@@ -103,6 +104,8 @@ typedef struct {
   PetscReal    total[3];                     /* force on this rank's terms in the last residual */
   PetscReal    t;                            /* load parameter of the last residual */
   PetscReal   *pressure;                     /* what ContactGetNodes() shows: force over area */
+  /* Of the last residual, where the master is a slave as well, else NULL: force on the master by node of the mesh. */
+  PetscReal   *reaction;
   NodeDepths   depths;                       /* NULL before the first report of depths in the slave */
   ContactWork *work;                         /* shared by all pairs */
 } ContactPair;

@@ -5,7 +5,7 @@
 #pragma once
 #include "rootmesh.h"
 
-PetscErrorCode RootGroupsShare(DM, Mesh, const RootMesh *);
+PetscErrorCode RootGroupsShare(DM, Scene, Mesh, const RootMesh *);
 PetscErrorCode RootGroupsFind(DM, Scene, const char *file, RootMesh *, Mesh, Complaint *);
 void           RootGroupsCheckUses(Scene, const RootMesh *, Mesh, Complaint *);
 PetscErrorCode RootGroupsContactCells(Scene, const RootMesh *, Mesh, PetscBool **contact);

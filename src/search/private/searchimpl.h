@@ -26,6 +26,8 @@ struct _n_ContactSearch {
   const PetscReal    *offset; /* of the quadrature points of this rank's master faces, where fits use these points */
   const FaceMaps     *maps;   /* or these points as combinations of nodes */
   PetscBool           keeps_faces;   /* lists keep all faces, not only those of each slave point */
+  PetscBool           listed;        /* any side of the bodies may meet any other one */
+  PetscBool           one_body;      /* slave and master have faces of one body */
   PetscReal           reach, margin; /* lengths, without the motion */
   PetscReal           fit_reach;     /* SearchFitReach() */
 };
@@ -52,7 +54,8 @@ typedef struct {
   NeighbourLists   lists;
   SlavePoints      slaves;
   const Candidate *candidates;
-  PetscReal        x[3], size; /* size: of the slave's face (length) */
+  PetscReal        x[3], size, height; /* of the slave's face, and of the element below it (length) */
+  PetscBool        listed, one_body;   /* as in the search */
   /* The slave point, and the number of nodes of its own face: a face with one of these nodes is not its master. */
   PetscInt  q, own;
   PetscInt  best;

@@ -1,0 +1,73 @@
+/* Facets that a slave point's own body hides, see ownbody.h. */
+#include "ownbody.h"
+
+/* The slave point touches a facet of its own body if it is behind that in the reference configuration by no more than
+   this part of a face: round-off of the mesh's coordinates. */
+#define OWN_BODY_TOUCHES 1e-6
+
+/* How far the slave point is behind a facet in the reference configuration (length); negative in front of it. */
+static PetscReal ReferenceDepth(const Nearest *look, const Candidate *c)
+{
+  const NeighbourLists lists = look->lists;
+  const int            dim   = lists->dim;
+  PetscReal            x[FACE_MAX_NODES * 3];
+  Facet                facet = c->facet;
+  Foot                 foot;
+
+  facet.free_edges = 0;
+  for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
+    for (int d = 0; d < dim; d++)
+      x[a * dim + d] = lists->point_X[facet.nodes[a] * dim + d] - lists->slave_X[look->q * dim + d];
+    facet.nodes[a] = a;
+  }
+  FacetProject(dim, &facet, x, &foot);
+  return -foot.gap;
+}
+
+/*@
+  OwnBodyHides - says whether a candidate lies behind the slave point, beyond its own body.
+
+  Not collective
+
+  Input Parameters:
++ look - the slave point
+. c    - the candidate, whose normal opposes that of the point
+- foot - of the point on the candidate, without free edges
+
+  Note:
+  Always PETSC_FALSE where the scene names slave and master.
+@*/
+PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot)
+{
+  const PetscReal depth = -foot->gap;
+  PetscReal       wall;
+
+  if (!look->listed || depth <= 0) return PETSC_FALSE;
+  if (depth > SEARCH_ENTERED * look->height) return PETSC_TRUE;
+  if (!look->one_body) return PETSC_FALSE;
+  wall = ReferenceDepth(look, c);
+  return (PetscBool)(wall > OWN_BODY_TOUCHES * look->size && depth > SEARCH_ENTERED * wall);
+}
+
+/*@
+  OwnBodyTurnsFrom - says whether a foot lies on the wrong side of the slave point's own face: behind it with a gap, or in
+  front of it with a penetration.
+
+  Not collective
+
+  Input Parameters:
++ look - the slave point
+- foot - of the point on a candidate, without free edges
+
+  Note:
+  Always PETSC_FALSE where the scene names slave and master.
+@*/
+PetscBool OwnBodyTurnsFrom(const Nearest *look, const Foot *foot)
+{
+  const PetscReal *own   = &look->lists->slave_normal[3 * look->q];
+  PetscReal        along = 0;
+
+  if (!look->listed) return PETSC_FALSE;
+  for (int d = 0; d < look->lists->dim; d++) along += own[d] * foot->normal[d];
+  return (PetscBool)(along >= 0);
+}

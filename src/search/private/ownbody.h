@@ -1,0 +1,12 @@
+/* The slave point's own body, which separates the point from what lies behind it. Where any side of a body may meet any
+   other one, a wall's far side opposes the near side as a partner does, and the point lies behind it by the wall's
+   thickness. A facet in front of the point is never hidden. One behind it is a partner that was entered, if it is no
+   deeper than what can be told from a wall: then it lies inside the point's own material.
+
+   OwnBodyHides() tells whether a candidate is hidden behind the point's own body. OwnBodyTurnsFrom() tells whether the
+   point's face looks away from its foot on a candidate, as the outside of a pipe does from its bore on the other side. */
+#pragma once
+#include "searchimpl.h"
+
+PetscBool OwnBodyHides(const Nearest *, const Candidate *, const Foot *);
+PetscBool OwnBodyTurnsFrom(const Nearest *, const Foot *);

@@ -1,0 +1,131 @@
+"""Contact of listed surfaces: a frame that closes on itself against its half on a plane and against two bodies, walls that
+are no partners, one's own mirror image, lists of all bodies against named pairs, refusals."""
+from harness import Check, arguments, run, SCENES
+
+FRAME, TUBE = SCENES / "c_strip.yaml", SCENES / "mirrored_tube.yaml"
+RINGS, PIPE = SCENES.parent.parent / "runs/ring_in_ring.yaml", SCENES.parent.parent / "runs/pipe_pinch.yaml"
+EXACT = 1e-6  # forces and pressures of the same problem written in another way
+SMOOTHED = 1e-3  # the smooth surface of a bent tip of four faces is not its faces: forces, and the largest pressure
+SMOOTHED_PRESSURE = {"node_to_surface": 0.1, "surface_to_surface": 1e-2}
+PLANE = 1e-3  # of the force that flattens a tube: its wall on its own image or on a plane
+ROLES = 2e-4  # of a force: between roles of slave and master
+ITERATIONS = 1.1  # of the named pair's
+
+
+def frame(name, contact, form, loads=(), bodies=()):
+    """Force at the top and largest pressure of the frame's tips."""
+    overrides = [f"mesh.parameters.form={form}", f"contact=[{contact}]", *loads, *bodies]
+    if "surfaces: [tip, lower_tip]" in contact:
+        overrides.append("probes.1.pressure_max=tips.tip.lower_tip")
+    probes = run(args, FRAME, out=name, overrides=overrides).summary()["probes"]
+    return probes["force"], probes["peak"]
+
+
+def frames(smoother, formulation):
+    """The whole frame, its half on a plane with twice the penalty, and two bodies."""
+    how = f"smoother: {smoother}, formulation: {formulation}, penalty: {{initial: 10000, scale: 1}}"
+    plane = f"formulation: {formulation}, penalty: {{initial: 20000, scale: 1}}"
+    two = ["bodies.1={volume: lower, material: {law: svk, E: 1000, nu: 0.3}}"]
+    held = ["loads.3={surface: lower_back, ux: 0, uy: 0}"]
+    name = f"{smoother}, {formulation}"
+    whole = frame("whole", f"{{name: tips, surfaces: [tips], {how}}}", 0)
+    half = frame("half", f"{{name: tips, slave: tip, master: {{plane: {{point: [0, 0], normal: [0, 1]}}}}, {plane}}}", 1,
+                 ["loads=[{surface: back, ux: 0, uy: 0}, {surface: top, uy: -0.002}]"])
+    listed = frame("listed", f"{{name: tips, surfaces: [tip, lower_tip], {how}}}", 2, held, two)
+    named = frame("named", f"{{name: tips, slave: tip, master: lower_tip, {how}}}", 2, held, two)
+    bounds = {"facet": (EXACT, EXACT), "diffuse": (SMOOTHED, SMOOTHED_PRESSURE[formulation])}[smoother]
+    check.near(f"{name}: force of half a frame on a plane", whole[0] / half[0], 1, bounds[0])
+    check.near(f"{name}: pressure of half a frame on a plane", whole[1] / half[1], 1, bounds[1])
+    check.near(f"{name}: force of two bodies", listed[0] / whole[0], 1, EXACT)
+    check.near(f"{name}: pressure of two bodies", listed[1] / whole[1], 1, EXACT)
+    check.near(f"{name}: force of two bodies by slave and master", named[0] / whole[0], 1, SMOOTHED)
+
+
+def mirror(formulation):
+    """A tube's inner wall on its own image, and on the plane between them."""
+    own = run(args, TUBE, out=f"mirror_{formulation}", overrides=[f"contact.1.formulation={formulation}"])
+    plane = run(args, TUBE, out=f"plane_{formulation}", overrides=[
+        "contact.1={name: fold, slave: inner, master: {plane: {point: [0, 0], normal: [0, 1]}}, formulation: "
+        f"{formulation}}}"])
+    a, b = (r.summary()["probes"]["force"] for r in (own, plane))
+    check.near(f"{formulation}: force of a tube on its own image", a / b, 1, PLANE)
+
+
+def walls():
+    """No wall is taken for a partner before surfaces meet: two thick rings and a thin pipe list all bodies."""
+    gaps = run(args, PIPE, "-check", overrides=["contact=[{name: any, surfaces: all}]", "probes=[]",
+                                                "mesh.parameters={n_arc: 12, n_wall: 1, n_len: 5}"]).text
+    for body in ("pipe", "plate"):
+        text = gaps.split(f"contact  any.{body}.{body}")[1].split("contact  ")[0]
+        check.holds(f"{body} does not meet itself at the start", "0 of " in text.split("before any load: ")[1][:5])
+    probes = "probes=[{name: pressure, pressure_max: fit.outer.inner}]"
+    rings = run(args, RINGS, out="rings", overrides=["contact=[{name: fit, surfaces: all}]", probes]).summary()
+    named = run(args, RINGS, out="rings_named", overrides=["contact=[{name: fit, slave: outer_contact, master: "
+                                                           "inner_contact}]", probes.replace(".outer.inner", "")]).summary()
+    check.holds("rings: iterations", rings["newton_iterations"] <= ITERATIONS * named["newton_iterations"])
+    check.holds("rings: only the two fitted surfaces are in contact",
+                [pair["nodes"] for pair in rings["contact"]] == [0, 33, 41, 0])
+    pressures = [run(args, RINGS, out=f"rings_{side}", overrides=[
+        "contact=[{name: fit, surfaces: [inner_contact, outer_contact]}]",
+        f"probes=[{{name: pressure, pressure_mean: fit.{side}}}]"]).summary()["probes"]["pressure"]
+        for side in ("inner_contact.outer_contact", "outer_contact.inner_contact")]
+    for pressure in pressures:
+        check.near("rings: mean pressure of a side", pressure / 6.43951, 1, 5 * ROLES)  # 6.43951: by slave and master
+    patch()
+
+
+def patch():
+    """Flat blocks that do not match, from both sides: no worse than the better role, where gaps are those of facets."""
+    how = "formulation: surface_to_surface, penalty: {initial: auto, scale: 100}"
+    for smoother, bound in (("facet", 0.012), ("diffuse", 0.04)):
+        fields = run(args, SCENES / "contact_patch.yaml", out=f"patch_{smoother}", overrides=[
+            f"contact=[{{name: joint, surfaces: [upper_bottom, lower_top], smoother: {smoother}, {how}}}]", "probes=[]"
+        ]).fields()
+        for pair in ("joint.upper_bottom.lower_top", "joint.lower_top.upper_bottom"):
+            check.near(f"patch, {smoother}: pressure of {pair}", fields[f"contact/{pair}/pressure"] / 10, 1, bound)
+        check.near(f"patch, {smoother}: stress", fields["stress"][:, 1] / -10, 1, bound)
+
+
+def ranks():
+    """The same steps and answers on 1, 2 and 3 ranks, and after a restart on another number of them."""
+    one, *others = (run(args, TUBE, out=f"tube_{n}", ranks=n).summary() for n in (1, 2, 3))
+    for n, other in enumerate(others, 2):
+        check.near(f"force on {n} ranks", other["probes"]["force"] / one["probes"]["force"], 1, 1e-9)
+        check.holds(f"iterations on {n} ranks", other["newton_iterations"] == one["newton_iterations"])
+
+
+def refused(what, text, contact):
+    finished = run(args, RINGS, "-check", out="refused", ranks=1, must=1, overrides=[f"contact=[{contact}]", "probes=[]"])
+    check.holds(f"refused: {what}", text in finished.text, finished.text.strip().splitlines()[0])
+
+
+def refusals():
+    both = "{name: b, slave: inner_contact, master: outer_contact}"
+    refused("pair that a list of bodies has too", "allowed: exclude: [[inner, outer]] there", f"{{name: a, surfaces: all}}, {both}")
+    refused("exclusion of what is not listed", "outr is not among the surfaces",
+            "{name: a, surfaces: all, exclude: [[inner, outr]]}")
+    refused("exclusion of everything", "leaves no pair", "{name: a, surfaces: [inner_contact], exclude: [[inner_contact]]}")
+    refused("friction", "friction: is not available with surfaces yet",
+            "{name: a, surfaces: [inner_contact], friction: {mu: 0.1}}")
+    refused("overlap", "initial_overlap: is not available", "{name: a, surfaces: all, initial_overlap: resolve}")
+    refused("slave beside surfaces", "has no place beside surfaces", "{name: a, surfaces: all, slave: inner_contact}")
+    refused("surface that is not there", "contact.0.surfaces: the mesh has no surface 'nowhere'",
+            "{name: a, surfaces: [nowhere]}")
+    refused("two lists of one surface", "their forces would add up",
+            "{name: a, surfaces: [inner_contact]}, {name: b, surfaces: [inner_contact]}")
+    run(args, RINGS, "-check", out="named", overrides=[
+        f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
+
+
+args = arguments(("case", "frame, mirror, walls, ranks or refusals"))
+check = Check()
+if args.case == "frame":
+    for smoother in ("facet", "diffuse"):
+        for formulation in ("node_to_surface", "surface_to_surface"):
+            frames(smoother, formulation)
+elif args.case == "mirror":
+    mirror("node_to_surface")
+    mirror("surface_to_surface")
+else:
+    {"walls": walls, "ranks": ranks, "refusals": refusals}[args.case]()
+check.finish()
