@@ -89,7 +89,7 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
 @*/
 size_t ElasticityCellStates(const CellGroup *g)
 {
-  return g->kernel.plastic ? (size_t)ElementGet(g->kernel.type)->points * PLASTIC_STATE : 0;
+  return g->kernel.plastic ? (size_t)(ElementStatePoints(&g->kernel) * PlasticStates(g->plastic.hardening)) : 0;
 }
 
 static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
@@ -352,6 +352,20 @@ static void SelectState(CellGroup *g, PetscInt batch, int lane)
   if (!g->state) return;
   g->plastic.state = g->state + (size_t)batch * KERNEL_LANES * ElasticityCellStates(g);
   g->plastic.lane  = lane;
+}
+
+/*@
+  ElasticitySetTime - tells the time of the displacements that are evaluated next.
+
+  Not collective
+
+  Input Parameters:
++ e - the elasticity
+- t - the time, that is the load parameter; only laws with an overstress need it
+@*/
+void ElasticitySetTime(Elasticity e, PetscReal t)
+{
+  for (int k = 0; k < e->n_groups; k++) e->groups[k].plastic.dt = t - e->accepted_t;
 }
 
 /*@

@@ -9,14 +9,16 @@ start.
 
   Input Parameters:
 + e - the elasticity
-- u - local displacements (length) [n_nodes*dim] of a state that is accepted
+. u - local displacements (length) [n_nodes*dim] of a state that is accepted
+- t - its time
 
   Note:
-  Residual, tangent and energy at u stay the same, up to round-off. Nothing happens where no body is plastic.
+  Residual, tangent and energy at u and t stay the same, up to round-off. Nothing happens where no body is plastic.
 @*/
-PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u)
+PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u, PetscReal t)
 {
   PetscFunctionBeginUser;
+  ElasticitySetTime(e, t);
   for (int k = 0; k < e->n_groups; k++) {
     CellGroup   *g    = &e->groups[k];
     const size_t dofs = (size_t)g->nodes * e->dim;
@@ -25,9 +27,12 @@ PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u)
       const size_t first = (size_t)batch * KERNEL_LANES;
 
       ElasticityGather(e, g, batch, u, e->u);
-      ElementAcceptState(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants]);
+      ElementAcceptState(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants],
+                         ElasticityMultipliers(e, g, batch));
     }
   }
+  e->accepted_t = t;
+  ElasticitySetTime(e, t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -81,24 +86,26 @@ PetscErrorCode ElasticityArchivePlastic(Elasticity e, Archive archive)
     CopyState(&e->groups[e->cell_group[c]], e->cell_slot[c], PETSC_FALSE, &values[c * width]);
   PetscCall(Hdf5TableDestroy(&cells));
   PetscCall(PetscFree(values));
+  PetscCall(ArchiveReals(archive, "model/plastic_time", 1, &e->accepted_t));
+  ElasticitySetTime(e, e->accepted_t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives volumes and equivalent plastic strains of the points of a cell; strains of elastic cells are 0. */
-static void CellPlasticStrain(Elasticity e, const CellGroup *g, PetscInt slot, PetscReal *volume, PetscReal *strain)
+/* Gives the coordinates of the nodes of a cell. */
+static void CellCoordinates(Elasticity e, const CellGroup *g, PetscInt slot, PetscReal X[MAX_DOFS])
 {
-  const Element  *element = ElementGet(g->kernel.type);
-  const PetscInt *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
-  PetscReal       X[MAX_DOFS];
+  const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
 
   for (int a = 0; a < g->nodes; a++)
     for (int i = 0; i < e->dim; i++) X[a * e->dim + i] = e->mesh->coords[nodes[a] * e->dim + i];
-  ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, X, volume);
-  for (int p = 0; p < element->points; p++) {
-    const size_t first = (size_t)(slot / KERNEL_LANES) * KERNEL_LANES * ElasticityCellStates(g) + slot % KERNEL_LANES;
+}
 
-    strain[p] = g->state ? g->state[first + (size_t)(p * PLASTIC_STATE + PLASTIC_STRAIN) * KERNEL_LANES] : 0;
-  }
+/* Gives number k of the state of point p of a cell, 0 in elastic cells. */
+static PetscReal CellState(const CellGroup *g, PetscInt slot, int p, int k)
+{
+  const size_t first = (size_t)(slot / KERNEL_LANES) * KERNEL_LANES * ElasticityCellStates(g) + slot % KERNEL_LANES;
+
+  return g->state ? g->state[first + ((size_t)p * PlasticStates(g->plastic.hardening) + k) * KERNEL_LANES] : 0;
 }
 
 /*@
@@ -125,14 +132,17 @@ PetscErrorCode ElasticityNodalPlasticStrain(Elasticity e, PetscReal *strain, Pet
     const CellGroup *g       = &e->groups[e->cell_group[c]];
     const Element   *element = ElementGet(g->kernel.type);
     const PetscInt  *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[c]];
-    PetscReal        point_volume[ELEMENT_MAX_POINTS], point_strain[ELEMENT_MAX_POINTS], volume = 0;
+    const int        first   = ElementStatePoints(&g->kernel) - element->points;
+    PetscReal        X[MAX_DOFS], point_volume[ELEMENT_MAX_POINTS], volume = 0;
 
-    CellPlasticStrain(e, g, e->cell_slot[c], point_volume, point_strain);
+    CellCoordinates(e, g, e->cell_slot[c], X);
+    ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, X, point_volume);
     for (int p = 0; p < element->points; p++) volume += point_volume[p];
     for (int a = 0; a < g->nodes; a++) {
       PetscReal fit = 0;
 
-      for (int p = 0; p < element->points; p++) fit += element->fit[a][p] * point_strain[p];
+      for (int p = 0; p < element->points; p++) 
+        fit += element->fit[a][p] * CellState(g, e->cell_slot[c], first + p, PLASTIC_STRAIN);
       strain[nodes[a]] += volume * PetscMax(fit, 0);
       weight[nodes[a]] += volume;
     }
@@ -147,13 +157,22 @@ PetscErrorCode ElasticityNodalPlasticStrain(Elasticity e, PetscReal *strain, Pet
 
   Input Parameter:
 . e - the elasticity
+
+  Output Parameter:
+. bytes - memory of their states
 @*/
-PetscInt64 ElasticityPlasticPoints(Elasticity e)
+PetscInt64 ElasticityPlasticPoints(Elasticity e, PetscInt64 *bytes)
 {
   PetscInt64 points = 0;
 
-  for (int k = 0; k < e->n_groups; k++)
-    points += (PetscInt64)e->groups[k].n_cells * (PetscInt64)ElasticityCellStates(&e->groups[k]) / PLASTIC_STATE;
+  *bytes = 0;
+  for (int k = 0; k < e->n_groups; k++) {
+    const CellGroup *g = &e->groups[k];
+
+    if (!g->kernel.plastic) continue;
+    points += (PetscInt64)g->n_cells * ElementStatePoints(&g->kernel);
+    *bytes += (PetscInt64)(g->n_cells * ElasticityCellStates(g) * sizeof(PetscReal));
+  }
   return points;
 }
 
@@ -175,16 +194,20 @@ PetscErrorCode ElasticityPlasticWork(Elasticity e, PetscReal *work, PetscReal *s
   *work = *strain = 0;
   for (PetscInt c = 0; c < e->mesh->n_cells; c++) {
     const CellGroup *g = &e->groups[e->cell_group[c]];
-    PetscReal        volume[ELEMENT_MAX_POINTS], point_strain[ELEMENT_MAX_POINTS];
+    const PetscInt   slot = e->cell_slot[c];
+    PetscReal        X[MAX_DOFS], volume[ELEMENT_MAX_POINTS];
 
     if (!g->state) continue;
-    CellPlasticStrain(e, g, e->cell_slot[c], volume, point_strain);
-    for (int p = 0; p < ElementGet(g->kernel.type)->points; p++) {
-      PetscReal slope, density;
+    CellCoordinates(e, g, slot, X);
+    ElementStateVolumes(&g->kernel, X, volume);
+    for (int p = 0; p < ElementStatePoints(&g->kernel); p++) {
+      const PetscReal point_strain = CellState(g, slot, p, PLASTIC_STRAIN);
+      PetscReal       slope, density;
 
-      (void)HardeningStress(g->plastic.hardening, point_strain[p], &slope, &density);
+      (void)HardeningStress(g->plastic.hardening, point_strain, &slope, &density);
+      if (PlasticStates(g->plastic.hardening) > PLASTIC_WORK) density += CellState(g, slot, p, PLASTIC_WORK);
       *work += volume[p] * density;
-      *strain = PetscMax(*strain, point_strain[p]);
+      *strain = PetscMax(*strain, point_strain);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -90,8 +90,7 @@ static BatchFn *GetBatch(const KernelCase *kernel)
 {
   const int         axisymmetric = kernel->geometry == GEOMETRY_AXISYMMETRIC;
   const ElasticLaw *law          = MaterialGetLaw(kernel->law);
-  /* Mixed elements have points of their own, for which there are no plastic states. */
-  const int splits = !law->plastic && (kernel->kinematics == KINEMATICS_SMALL || law->separable);
+  const int         splits       = kernel->kinematics == KINEMATICS_SMALL || law->separable;
 
   switch (kernel->formulation) {
   case FORMULATION_ENHANCED: return enhanced_batches[kernel->type][axisymmetric];
@@ -112,6 +111,47 @@ static BatchFn *GetBatch(const KernelCase *kernel)
 int ElementKernelExists(const KernelCase *kernel)
 {
   return GetBatch(kernel) != NULL;
+}
+
+/*@
+  ElementStatePoints - counts the points of an element that have a plastic state.
+
+  Not collective
+
+  Note:
+  Mixed triangles and tetrahedra integrate with more points than the element has in its table. The points of the table
+  follow theirs in the state, and give the results.
+@*/
+int ElementStatePoints(const KernelCase *kernel)
+{
+  const Element *e      = ElementGet(kernel->type);
+  const int      points = kernel->formulation == FORMULATION_MIXED ? MixedPoints(e) : e->points;
+
+  return points > e->points ? points + e->points : e->points;
+}
+
+/*@
+  ElementStateVolumes - computes the reference volumes of the points of an element that have a plastic state.
+
+  Not collective
+
+  Input Parameters:
++ kernel - element type, geometry and formulation
+- X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+
+  Output Parameter:
+. volume - [ElementStatePoints()]; 0 of points that give results alone
+@*/
+void ElementStateVolumes(const KernelCase *kernel, const double *X, double *volume)
+{
+  const Element *e = ElementGet(kernel->type);
+
+  if (ElementStatePoints(kernel) == e->points) {
+    ElementPointVolumes(kernel->type, e->dim, kernel->geometry, X, volume);
+    return;
+  }
+  MixedPointVolumes(e, kernel->geometry, X, volume);
+  for (int p = MixedPoints(e); p < ElementStatePoints(kernel); p++) volume[p] = 0;
 }
 
 /*@
@@ -140,7 +180,8 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
                      .law         = law,
                      .finite      = kernel->kinematics == KINEMATICS_FINITE,
                      .n_constants = kernel->n_constants ? kernel->n_constants : law->constants,
-                     .hardening   = kernel->plastic ? kernel->plastic->hardening : NULL,
+                     .plastic     = kernel->plastic,
+                     .states      = kernel->plastic ? PlasticStates(kernel->plastic->hardening) : 0,
                      .constants   = constants};
 }
 
@@ -254,17 +295,17 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
 }
 
 /* Takes the state of all points of a part of a batch on to the displacement gradients H. */
-static void AcceptPoints(const BatchCall *call, const double *H, double *state)
+static void AcceptPoints(const BatchCall *call, int points, const double *H, double *state)
 {
-  for (int p = 0; p < call->e->points; p++) {
-    Lanes lanes_H[9], lanes_state[PLASTIC_STATE], dilatation;
+  for (int p = 0; p < points; p++) {
+    Lanes lanes_H[9], lanes_state[PLASTIC_MAX_STATE], dilatation;
 
     for (int r = 0; r < 9; r++) lanes_H[r] = CONST_LANE(H, p * 9 + r);
-    for (int k = 0; k < PLASTIC_STATE; k++) lanes_state[k] = CONST_LANE(state, p * PLASTIC_STATE + k);
+    for (int k = 0; k < call->states; k++) lanes_state[k] = CONST_LANE(state, p * call->states + k);
     MaterialDilatation(lanes_H, &dilatation);
-    VonMisesLaw(call->finite, lanes_H, &dilatation, &call->constants[0], &call->constants[1], call->hardening,
-                lanes_state, NULL, NULL, NULL, lanes_state);
-    for (int k = 0; k < PLASTIC_STATE; k++) LANE(state, p * PLASTIC_STATE + k) = lanes_state[k];
+    VonMisesLaw(call->finite, lanes_H, &dilatation, &call->constants[0], &call->constants[1], call->plastic->hardening,
+                call->plastic->dt, lanes_state, NULL, NULL, NULL, lanes_state);
+    for (int k = 0; k < call->states; k++) LANE(state, p * call->states + k) = lanes_state[k];
   }
 }
 
@@ -278,26 +319,30 @@ accepted.
 + kernel    - with plastic, whose state is changed
 . X         - reference coordinates (length) [nodes][dim][lanes]
 . u         - displacements (length) [nodes][dim][lanes]
-- constants - of the law [n_constants][lanes]
+. constants - of the law [n_constants][lanes]
+- multiplier - of mixed elements (stress times root of volume) [pressures][lanes]; NULL: they are 0
 
   Note:
-  At the same u, ElementKernel() gives the same values before and after, up to round-off.
+  At the same u, ElementKernel() gives the same values before and after, up to round-off, and without time passing.
 @*/
-void ElementAcceptState(const KernelCase *kernel, const double *X, const double *u, const double *constants)
+void ElementAcceptState(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+                        const double *multiplier)
 {
   Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
   BatchCall call = StartCall(kernel, lanes_constants);
   double    H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], J[LANES];
 
-  call.J = J;
-  call.H = H;
+  call.J   = J;
+  call.H   = H;
+  call.all = 1;
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
     SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
-    call.X     = X + part;
-    call.u     = u + part;
-    call.state = kernel->plastic->state + part;
+    call.X          = X + part;
+    call.u          = u + part;
+    call.multiplier = multiplier ? multiplier + part : NULL;
+    call.state      = kernel->plastic->state + part;
     GetBatch(kernel)(&call);
-    AcceptPoints(&call, H, kernel->plastic->state + part);
+    AcceptPoints(&call, ElementStatePoints(kernel), H, kernel->plastic->state + part);
   }
 }
 
@@ -419,7 +464,7 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
   BatchCall call = StartCall(kernel, lanes_constants);
   const int dofs = call.e->nodes * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
-    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], lanes_state[ELEMENT_MAX_POINTS * PLASTIC_STATE * KERNEL_LANES],
+    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], lanes_state[ELEMENT_MAX_POINTS * PLASTIC_MAX_STATE * KERNEL_LANES],
     lanes_pressure[ELEMENT_MAX_POINTS * KERNEL_LANES] = {0}, lanes_multiplier[MIXED_PRESSURES * KERNEL_LANES];
   double J[LANES];
 
@@ -439,7 +484,7 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
   call.multiplier = lanes_multiplier;
   call.pressure   = lanes_pressure;
   if (kernel->plastic) {
-    for (int k = 0; k < call.e->points * PLASTIC_STATE; k++)
+    for (int k = 0; k < ElementStatePoints(kernel) * call.states; k++)
       LANE(lanes_state, k) = (Lanes){0} + kernel->plastic->state[k * KERNEL_LANES + kernel->plastic->lane];
     call.state = lanes_state;
   }

@@ -141,10 +141,6 @@ static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
     PetscCall(SceneRefuse(scene, body->path, "formulation",
                           "is for first-order elements; allowed with mesh.order: 2: full | mixed",
                           Formulations[body->formulation]));
-  if (body->formulation == FORMULATION_MIXED && plastic)
-    PetscCall(SceneRefuse(scene, body->path, "formulation",
-                          "is not for plastic bodies; allowed with von_mises: full | enhanced | fbar | auto",
-                          Formulations[body->formulation]));
   if (body->formulation == FORMULATION_MIXED && !SceneLawSplits(scene, body))
     PetscCall(SceneRefuse(scene, body->path, "formulation",
                           "needs a law whose volume part is separate; allowed with svk: full | enhanced | fbar",
