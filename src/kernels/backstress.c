@@ -59,14 +59,15 @@ typedef struct {
   const Hardening *hardening;
   const Lanes     *state; /* accepted */
   const Lanes     *shear;
-  Lanes            G[6]; /* G - 1, tensor components */
+  Lanes            G[6], change[6]; /* G - 1, and G - G_0, whose digits a small flow needs; tensor components */
   Trial            x;
   Lanes            B[3][3], inverse[3][3]; /* frame, columns of B and rows of its inverse */
   Lanes            elastic[6];             /* deviator of the elastic strain in the frame */
   Distance         flow, term[HARDENING_MAX_TERMS];
   Lanes            before[HARDENING_MAX_TERMS]; /* squared distances at G_0 */
   Lanes            p, drag;                     /* drag: derivative of the potential by p alone */
-  Lanes            potential, stored;           /* stored: of the terms and of the overstress, in this increment */
+  Lanes            potential, stored;           /* stored: work against the backstresses in this increment */
+  Lanes            viscous;                     /* work against the overstress */
   Lanes            gradient[6], hessian[6][6], scale;
 } Plastic;
 
@@ -110,7 +111,7 @@ LANES_INLINE void AxisDyad(const Lanes a[3], const Lanes b[3], const Lanes *valu
     tensor[3 + k] += *value * (a[pair_of[k][0]] * b[pair_of[k][1]] + a[pair_of[k][1]] * b[pair_of[k][0]]) / root_2;
 }
 
-/* Computes the strain between G and another state, whose difference is given in tensor components. */
+/* Computes the strain between G and another state: `other` is that state minus G, in tensor components. */
 static void SetDistance(const Plastic *s, const Lanes other[6], Distance *d)
 {
   Lanes E[6], mean;
@@ -122,7 +123,7 @@ static void SetDistance(const Plastic *s, const Lanes other[6], Distance *d)
 
       for (int I = 0; I < 3; I++) {
         for (int J = 0; J < 3; J++)
-          sum += s->inverse[a][I] * s->inverse[b][J] * (other[component[I][J]] - s->G[component[I][J]]);
+          sum += s->inverse[a][I] * s->inverse[b][J] * other[component[I][J]];
       }
       E[component[a][b]] = sum;
     }
@@ -266,9 +267,10 @@ static void AddFlow(Plastic *s, const Lanes N[6], Lanes *curve)
 
     HardeningStress(s->hardening, before, &slope, &work_0);
     s->drag[lane] += HardeningStress(s->hardening, before + p, &slope, &work);
-    s->drag[lane] += HardeningOverstress(s->hardening, p, s->dt, &more, &viscous);
-    s->stored[lane] += viscous;
-    s->potential[lane] += work - work_0;
+    s->viscous[lane] = HardeningOverstress(s->hardening, p, s->dt, &more, &viscous);
+    s->drag[lane] += s->viscous[lane];
+    s->viscous[lane] *= p;
+    s->potential[lane] += work - work_0 + viscous;
     bend[lane] = p > 0 ? s->drag[lane] / p : 0;
     (*curve)[lane] += slope + more - bend[lane];
   }
@@ -287,10 +289,14 @@ static void AddFlow(Plastic *s, const Lanes N[6], Lanes *curve)
 /* Evaluates the potential and its derivatives at the present G. */
 static void Evaluate(const Lanes H[9], const Lanes *dilatation, Plastic *s)
 {
-  Lanes N[6], curve = {0};
+  Lanes N[6], other[6], curve = {0};
 
+  for (int k = 0; k < 6; k++) {
+    s->G[k]  = s->state[k] + s->change[k];
+    other[k] = -s->change[k];
+  }
   SetFrame(H, dilatation, s);
-  SetDistance(s, s->state, &s->flow);
+  SetDistance(s, other, &s->flow);
   for (int lane = 0; lane < LANES; lane++) s->p[lane] = sqrt(2 * s->flow.square[lane] / 3);
   for (int k = 0; k < 6; k++) {
     for (int lane = 0; lane < LANES; lane++)
@@ -301,7 +307,8 @@ static void Evaluate(const Lanes H[9], const Lanes *dilatation, Plastic *s)
   AddElastic(s);
   s->scale = 2 * *s->shear * (double)DBL_EPSILON; /* so that it is not 0 */
   for (int k = 0; k < s->hardening->terms; k++) {
-    SetDistance(s, &s->state[PLASTIC_BACKSTRESS + 6 * k], &s->term[k]);
+    for (int i = 0; i < 6; i++) other[i] = s->state[PLASTIC_BACKSTRESS + 6 * k + i] - s->state[i] - s->change[i];
+    SetDistance(s, other, &s->term[k]);
     AddTerm(k, s, N, &curve);
   }
   AddFlow(s, N, &curve);
@@ -363,7 +370,7 @@ static void Exponential(const Plastic *s, const Lanes B[3][3], const Lanes strai
 /* State of Newton's method: the last point that was better than the one before, and the step from there */
 typedef struct {
   Lanes potential, residual;
-  Lanes G[6], B[3][3], step[6];
+  Lanes change[6], B[3][3], step[6];
   int   active[LANES], left;
 } Search;
 
@@ -373,7 +380,6 @@ static void Begin(Plastic *s, Search *x)
   Lanes square = Dot(s->gradient, s->gradient);
 
   memset(x, 0, sizeof *x);
-  memcpy(x->G, s->G, sizeof x->G);
   memcpy(x->B, s->B, sizeof x->B);
   for (int lane = 0; lane < LANES; lane++) {
     const double before = s->state[PLASTIC_STRAIN][lane], trial = sqrt(1.5 * square[lane]);
@@ -410,8 +416,8 @@ static void Judge(const Plastic *s, const Lanes newton[6], const Lanes *residual
   x->potential[lane] = s->potential[lane];
   x->residual[lane]  = (*residual)[lane];
   for (int k = 0; k < 6; k++) {
-    x->G[k][lane]    = s->G[k][lane];
-    x->step[k][lane] = -newton[k][lane];
+    x->change[k][lane] = s->change[k][lane];
+    x->step[k][lane]   = -newton[k][lane];
   }
   for (int k = 0; k < 9; k++) x->B[k / 3][k % 3][lane] = s->B[k / 3][k % 3][lane];
 }
@@ -425,7 +431,7 @@ static void Move(Plastic *s, const Search *x)
   Exponential(s, x->B, minus, change);
   for (int k = 0; k < 6; k++) {
     for (int lane = 0; lane < LANES; lane++)
-      if (x->active[lane]) s->G[k][lane] = x->G[k][lane] + change[k][lane];
+      if (x->active[lane]) s->change[k][lane] = x->change[k][lane] + change[k][lane];
   }
 }
 
@@ -435,7 +441,7 @@ static void Minimise(const Lanes H[9], const Lanes *dilatation, Plastic *s)
 {
   Search x;
 
-  memcpy(s->G, s->state, sizeof s->G);
+  memset(s->change, 0, sizeof s->change);
   Evaluate(H, dilatation, s);
   for (int k = 0; k < s->hardening->terms; k++) {
     s->before[k] = s->term[k].square;
@@ -597,5 +603,5 @@ void BackstressLaw(int finite, const Lanes H[9], const Lanes *dilatation, const 
   NextTerms(&s, next);
   for (int k = 0; k < 6; k++) next[k] = s.G[k];
   next[PLASTIC_STRAIN] = state[PLASTIC_STRAIN] + s.p;
-  next[PLASTIC_WORK]   = state[PLASTIC_WORK] + s.stored;
+  next[PLASTIC_WORK]   = state[PLASTIC_WORK] + s.stored + s.viscous;
 }

@@ -17,7 +17,7 @@ LANES_INLINE void ReturnMap(const Hardening *hardening, double dt, const Lanes *
   for (int lane = 0; lane < LANES; lane++) {
     const double mu = (*shear)[lane], old = state[PLASTIC_STRAIN][lane];
     const double trial = mu * sqrt(6 * (*square)[lane]); /* equivalent stress */
-    double       slope, work, more = 0, viscous = 0, x = 0;
+    double       slope, work, more = 0, viscous = 0, over = 0, x = 0;
     const double yield = HardeningStress(hardening, old, &slope, &work);
 
     r->theta[lane] = 1;
@@ -25,14 +25,14 @@ LANES_INLINE void ReturnMap(const Hardening *hardening, double dt, const Lanes *
     if (trial > yield * (1 + yield_round_off) && PlasticFlows(hardening, dt)) {
       x = HardeningReturn(hardening, old, dt, trial, 3 * mu);
       HardeningStress(hardening, old + x, &slope, &work);
-      HardeningOverstress(hardening, x, dt, &more, &viscous);
+      over = HardeningOverstress(hardening, x, dt, &more, &viscous);
       slope += more;
       r->theta[lane] = 1 - 3 * mu * x / trial;
       r->fall[lane]  = r->theta[lane] - slope / (3 * mu + slope);
     }
     r->increment[lane] = x;
-    r->work[lane]      = history ? state[PLASTIC_WORK][lane] + viscous : 0;
-    r->W[lane]         = mu * r->theta[lane] * r->theta[lane] * (*square)[lane] + work + r->work[lane];
+    r->work[lane]      = history ? state[PLASTIC_WORK][lane] + over * x : 0;
+    r->W[lane]         = mu * r->theta[lane] * r->theta[lane] * (*square)[lane] + work + r->work[lane] + viscous - over * x;
   }
 }
 
@@ -141,7 +141,8 @@ int PlasticStates(const Hardening *hardening)
 - next - the state at H, or NULL; it may be the same array as state
 
   Note:
-  W is continuous where a state is accepted. The output is finite for every finite H, but it is NaN where the equations
+  W is continuous where a state is accepted, but with an overstress: the potential of the overstress is its work from no
+  rate to the present one, and the work that the state counts is that at the present rate. The output is finite for every finite H, but it is NaN where the equations
   of a backstress are not solved.
 @*/
 void VonMisesLaw(int finite, const Lanes H[9], const Lanes *dilatation, const Lanes *bulk, const Lanes *shear,

@@ -52,6 +52,26 @@ static PetscErrorCode SceneReadTerms(Scene scene, const SceneBody *body, Hardeni
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads backstresses and overstress. */
+static PetscErrorCode SceneReadRates(Scene scene, const SceneBody *body, Hardening *h)
+{
+  Document *const document = SceneDocument(scene);
+
+  PetscFunctionBeginUser;
+  if (SceneHas(scene, body->path, "material.kinematic"))
+    h->terms = SchemaCount(document, "%s.material.kinematic", body->path);
+  for (int k = 0; k < h->terms; k++) {
+    h->backstress[k][0] = SchemaReal(document, "%s.material.kinematic.%d.C", body->path, k);
+    h->backstress[k][1] = SchemaReal(document, "%s.material.kinematic.%d.gamma", body->path, k);
+  }
+  if (SceneHas(scene, body->path, "material.perzyna")) {
+    h->overstress = MaterialReal(scene, body, "perzyna.overstress");
+    h->speed      = MaterialReal(scene, body, "perzyna.speed");
+    h->power      = MaterialReal(scene, body, "perzyna.power");
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SceneReadPlasticity - reads yield stress and hardening of a body, or refuses them where the law has none.
 
@@ -65,15 +85,16 @@ PetscErrorCode SceneReadPlasticity(Scene scene, SceneBody *body)
 {
   static const char *const Terms[] = {"material.hardening.linear", "material.hardening.voce",
                                       "material.hardening.swift"};
+  static const char *const Own[]   = {"material.yield", "material.hardening", "material.kinematic", "material.perzyna"};
   const int                plastic = MaterialGetLaw(body->material.law)->plastic;
   const int                table   = SceneHas(scene, body->path, "material.hardening.table");
   const int                yield   = SceneHas(scene, body->path, "material.yield");
 
   PetscFunctionBeginUser;
   if (!plastic) {
-    if (yield) PetscCall(SceneRefuse(scene, body->path, "material.yield", "is for law: von_mises", NULL));
-    if (SceneHas(scene, body->path, "material.hardening"))
-      PetscCall(SceneRefuse(scene, body->path, "material.hardening", "is for law: von_mises", NULL));
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(Own); k++)
+      if (SceneHas(scene, body->path, Own[k]))
+        PetscCall(SceneRefuse(scene, body->path, Own[k], "is for law: von_mises", NULL));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (yield && table)
@@ -93,5 +114,6 @@ PetscErrorCode SceneReadPlasticity(Scene scene, SceneBody *body)
     body->material.hardening.yield = MaterialReal(scene, body, "yield");
     PetscCall(SceneReadTerms(scene, body, &body->material.hardening));
   }
+  PetscCall(SceneReadRates(scene, body, &body->material.hardening));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

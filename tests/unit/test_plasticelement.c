@@ -23,6 +23,7 @@ static const Hardening hardenings[] = {
    .overstress = 0.2,
    .speed      = 0.7,
    .power      = 3},
+  {.yield = 0.5, .linear = 3, .terms = 1, .backstress = {{5, 30}}},
 };
 enum { HARDENINGS = sizeof hardenings / sizeof *hardenings };
 
@@ -174,7 +175,8 @@ static void AcceptedStateStays(void **unused)
     Evaluate(&b, W, f, NULL);
     for (int k = 0; k < b.dofs * KERNEL_LANES; k++) largest = fmax(largest, fabs(f[k]));
     for (int k = 0; k < b.dofs * KERNEL_LANES; k++) assert_near(f[k], b.f[k], 1e-7 * largest);
-    for (int lane = 0; lane < KERNEL_LANES; lane++) assert_near(W[lane], b.W[lane], 1e-9 * W[lane]);
+    for (int lane = 0; lane < KERNEL_LANES && hardening->overstress <= 0; lane++)
+      assert_near(W[lane], b.W[lane], 1e-9 * W[lane]);
     again                = b;
     again.plastic.state  = again.state;
     again.kernel.plastic = &again.plastic;

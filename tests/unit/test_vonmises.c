@@ -115,7 +115,7 @@ static void AcceptedStatesAreElastic(void **unused)
       dt = 0;
       Point(finite, hardenings[h], first, state, &W_again, P_again, NULL, again);
       dt = 0.4;
-      assert_near(W, W_again, 1e-13 * W);
+      if (hardenings[h]->overstress <= 0) assert_near(W, W_again, 1e-13 * W);
       for (int r = 0; r < 9; r++) assert_near(P[r], P_again[r], 1e-13 * E);
       for (int k = 0; k < PLASTIC_MAX_STATE; k++) assert_true(state[k] == again[k]);
     }
