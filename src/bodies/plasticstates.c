@@ -105,7 +105,24 @@ static PetscReal CellState(const CellGroup *g, PetscInt slot, int p, int k)
 {
   const size_t first = (size_t)(slot / KERNEL_LANES) * KERNEL_LANES * ElasticityCellStates(g) + slot % KERNEL_LANES;
 
-  return g->state ? g->state[first + ((size_t)p * PlasticStates(g->plastic.hardening) + k) * KERNEL_LANES] : 0;
+  return g->state ? g->state[first + ((size_t)p * ElementStates(&g->plastic) + k) * KERNEL_LANES] : 0;
+}
+
+/* Gives the equivalent plastic strain of a point; of a user's routine none is known. */
+static PetscReal CellPlasticStrain(const CellGroup *g, PetscInt slot, int p)
+{
+  return g->plastic.umat ? 0 : CellState(g, slot, p, PLASTIC_STRAIN);
+}
+
+/* Gives the plastic work of a point per volume, of a user's routine SPD + SCD. */
+static PetscReal CellPlasticWork(const CellGroup *g, PetscInt slot, int p)
+{
+  PetscReal slope, density;
+
+  if (g->plastic.umat) return CellState(g, slot, p, UMAT_ENERGY + 1) + CellState(g, slot, p, UMAT_ENERGY + 2);
+  (void)HardeningStress(g->plastic.hardening, CellState(g, slot, p, PLASTIC_STRAIN), &slope, &density);
+  if (ElementStates(&g->plastic) > PLASTIC_WORK) density += CellState(g, slot, p, PLASTIC_WORK);
+  return density;
 }
 
 /*@
@@ -142,7 +159,7 @@ PetscErrorCode ElasticityNodalPlasticStrain(Elasticity e, PetscReal *strain, Pet
       PetscReal fit = 0;
 
       for (int p = 0; p < element->points; p++) 
-        fit += element->fit[a][p] * CellState(g, e->cell_slot[c], first + p, PLASTIC_STRAIN);
+        fit += element->fit[a][p] * CellPlasticStrain(g, e->cell_slot[c], first + p);
       strain[nodes[a]] += volume * PetscMax(fit, 0);
       weight[nodes[a]] += volume;
     }
@@ -201,13 +218,8 @@ PetscErrorCode ElasticityPlasticWork(Elasticity e, PetscReal *work, PetscReal *s
     CellCoordinates(e, g, slot, X);
     ElementStateVolumes(&g->kernel, X, volume);
     for (int p = 0; p < ElementStatePoints(&g->kernel); p++) {
-      const PetscReal point_strain = CellState(g, slot, p, PLASTIC_STRAIN);
-      PetscReal       slope, density;
-
-      (void)HardeningStress(g->plastic.hardening, point_strain, &slope, &density);
-      if (PlasticStates(g->plastic.hardening) > PLASTIC_WORK) density += CellState(g, slot, p, PLASTIC_WORK);
-      *work += volume[p] * density;
-      *strain = PetscMax(*strain, point_strain);
+      *work += volume[p] * CellPlasticWork(g, slot, p);
+      *strain = PetscMax(*strain, CellPlasticStrain(g, slot, p));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

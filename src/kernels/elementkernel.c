@@ -15,6 +15,10 @@ static const double largest_kappa = 1e4;
    limit of fine meshes the part makes no difference. A tenth keeps moderate moduli projected too. */
 static const double largest_local = 20, local_share = 0.1;
 
+/* Numbers of the state of a point, of any law */
+enum { MAX_STATE = UMAT_STATES + UMAT_MAX_STATES };
+_Static_assert((int)MAX_STATE >= (int)PLASTIC_MAX_STATE, "room for the states of all laws");
+
 const char *const Formulations[] = {"full", "enhanced", "fbar", "mixed", NULL};
 
 /* Computes energy, force and tangent of the first LANES elements of the arrays. n, points, dim and hoop are constants
@@ -90,10 +94,11 @@ static BatchFn *GetBatch(const KernelCase *kernel)
 {
   const int         axisymmetric = kernel->geometry == GEOMETRY_AXISYMMETRIC;
   const ElasticLaw *law          = MaterialGetLaw(kernel->law);
-  const int         splits       = kernel->kinematics == KINEMATICS_SMALL || law->separable;
+  const int         splits =
+    law->separable || (kernel->kinematics == KINEMATICS_SMALL && kernel->law != MATERIAL_UMAT);
 
-  switch (kernel->formulation) {
-  case FORMULATION_ENHANCED: return enhanced_batches[kernel->type][axisymmetric];
+  switch (kernel->formulation) { /* the modes of enhanced elements are found by an energy, which a routine has not */
+  case FORMULATION_ENHANCED: return kernel->law == MATERIAL_UMAT ? NULL : enhanced_batches[kernel->type][axisymmetric];
   case FORMULATION_FBAR: return mean_dilatation_batches[kernel->type][axisymmetric];
   case FORMULATION_MIXED: return splits ? mixed_batches[kernel->type][axisymmetric] : NULL;
   default: return full_batches[kernel->type][axisymmetric];
@@ -111,6 +116,16 @@ static BatchFn *GetBatch(const KernelCase *kernel)
 int ElementKernelExists(const KernelCase *kernel)
 {
   return GetBatch(kernel) != NULL;
+}
+
+/*@
+  ElementStates - counts the numbers of the state of a point.
+
+  Not collective
+@*/
+int ElementStates(const PlasticBatch *plastic)
+{
+  return plastic->umat ? UmatStates(plastic->umat) : PlasticStates(plastic->hardening);
 }
 
 /*@
@@ -181,7 +196,7 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
                      .finite      = kernel->kinematics == KINEMATICS_FINITE,
                      .n_constants = kernel->n_constants ? kernel->n_constants : law->constants,
                      .plastic     = kernel->plastic,
-                     .states      = kernel->plastic ? PlasticStates(kernel->plastic->hardening) : 0,
+                     .states      = kernel->plastic ? ElementStates(kernel->plastic) : 0,
                      .constants   = constants};
 }
 
@@ -282,6 +297,7 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
     SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
     call.multiplier = multiplier ? multiplier + part : NULL;
+    call.part       = part;
     call.X          = X + part;
     call.u          = u + part;
     call.u_0        = extrapolates ? reference->u + part : NULL;
@@ -294,6 +310,33 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
   }
 }
 
+/* Evaluates a routine of the user at point p, one lane after the other. An element whose routine fails counts as one
+   that is turned inside out, so that the step is taken back. */
+void PointUmat(const BatchCall *call, int p, const Lanes H[9], double *next, Lanes *W, Lanes P[9],
+               Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  const PlasticBatch *plastic = call->plastic;
+
+  for (int lane = 0; lane < LANES; lane++) {
+    const UmatPlace place = {.finite  = call->finite,
+                             .tensor  = call->e->dim == 3 ? 6 : 4,
+                             .element = plastic->number[call->part + lane],
+                             .point   = p + 1,
+                             .t       = plastic->t,
+                             .dt      = plastic->dt};
+    const size_t    at    = (size_t)p * call->states * KERNEL_LANES + lane;
+    double          h[9], energy, stress[9], tangent[MATERIAL_TANGENT_SIZE];
+
+    for (int r = 0; r < 9; r++) h[r] = H[r][lane];
+    if (UmatPoint(plastic->umat, &place, h, &call->state[at], KERNEL_LANES, &energy, stress, A ? tangent : NULL,
+                  next ? &next[at] : NULL))
+      call->J[lane] = NAN;
+    if (W) (*W)[lane] = energy;
+    for (int r = 0; r < 9 && P; r++) P[r][lane] = stress[r];
+    for (int k = 0; k < MATERIAL_TANGENT_SIZE && A; k++) A[k][lane] = tangent[k];
+  }
+}
+
 /* Takes the state of all points of a part of a batch on to the displacement gradients H. */
 static void AcceptPoints(const BatchCall *call, int points, const double *H, double *state)
 {
@@ -301,6 +344,10 @@ static void AcceptPoints(const BatchCall *call, int points, const double *H, dou
     Lanes lanes_H[9], lanes_state[PLASTIC_MAX_STATE], dilatation;
 
     for (int r = 0; r < 9; r++) lanes_H[r] = CONST_LANE(H, p * 9 + r);
+    if (call->plastic->umat) {
+      PointUmat(call, p, lanes_H, state, NULL, NULL, NULL);
+      continue;
+    }
     for (int k = 0; k < call->states; k++) lanes_state[k] = CONST_LANE(state, p * call->states + k);
     MaterialDilatation(lanes_H, &dilatation);
     VonMisesLaw(call->finite, lanes_H, &dilatation, &call->constants[0], &call->constants[1], call->plastic->hardening,
@@ -337,6 +384,7 @@ void ElementAcceptState(const KernelCase *kernel, const double *X, const double 
   call.all = 1;
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
     SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
+    call.part       = part;
     call.X          = X + part;
     call.u          = u + part;
     call.multiplier = multiplier ? multiplier + part : NULL;
@@ -464,9 +512,10 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
   BatchCall call = StartCall(kernel, lanes_constants);
   const int dofs = call.e->nodes * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
-    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], lanes_state[ELEMENT_MAX_POINTS * PLASTIC_MAX_STATE * KERNEL_LANES],
+    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], lanes_state[ELEMENT_MAX_POINTS * MAX_STATE * KERNEL_LANES],
     lanes_pressure[ELEMENT_MAX_POINTS * KERNEL_LANES] = {0}, lanes_multiplier[MIXED_PRESSURES * KERNEL_LANES];
-  double J[LANES];
+  double       J[LANES];
+  PlasticBatch one;
 
   for (int lane = 0; lane < LANES; lane++) {
     for (int k = 0; k < dofs; k++) {
@@ -487,6 +536,9 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
     for (int k = 0; k < ElementStatePoints(kernel) * call.states; k++)
       LANE(lanes_state, k) = (Lanes){0} + kernel->plastic->state[k * KERNEL_LANES + kernel->plastic->lane];
     call.state = lanes_state;
+    one        = *kernel->plastic;
+    for (int lane = 0; lane < LANES; lane++) one.number[lane] = kernel->plastic->number[kernel->plastic->lane];
+    call.plastic = &one;
   }
   GetBatch(kernel)(&call);
   for (int k = 0; k < call.e->points * 9; k++) H[k] = lanes_H[k * KERNEL_LANES];

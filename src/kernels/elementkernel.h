@@ -3,8 +3,8 @@
 
    ElementKernel() treats a batch of KERNEL_LANES elements of one type, law, geometry, kinematics and formulation. Its
    arrays are [node][dim][lane], so that the inner loops vectorise. A short batch repeats its last element.
-   ElementAcceptState() takes the plastic state on to given displacements; ElementStatePoints() counts its points, and
-   ElementStateVolumes() gives their volumes. ElementKernelExists() tells whether there is
+   ElementAcceptState() takes the plastic state on to given displacements; ElementStatePoints() counts its points,
+   ElementStates() the numbers of each, and ElementStateVolumes() gives their volumes. ElementKernelExists() tells whether there is
    a kernel for a case. The other functions treat one cell or one face: ElementPointState(), ElementPointStress(),
    ElementStress() and ElementVolumeEnergy() evaluate a state, ElementQuality() and CellVolume() a shape,
    FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes.
@@ -32,9 +32,11 @@ enum { MIXED_PRESSURES = 4 };
    ElementAcceptState() take all lanes, the functions that treat one cell take `lane` alone. */
 typedef struct {
   const Hardening *hardening;
-  double           dt;
-  double          *state; /* [ElementStatePoints()][PlasticStates()][lanes] */
+  Umat            *umat; /* in the place of hardening, or NULL */
+  double           t, dt;
+  double          *state; /* [ElementStatePoints()][ElementStates()][lanes] */
   int              lane;
+  int              number[KERNEL_LANES]; /* of the elements, for umat */
 } PlasticBatch;
 
 typedef struct {
@@ -60,6 +62,7 @@ void   ElementKernel(const KernelCase *, const double *X, const double *u, const
 void   ElementAcceptState(const KernelCase *, const double *X, const double *u, const double *constants,
                           const double *multiplier);
 int    ElementKernelExists(const KernelCase *);
+int    ElementStates(const PlasticBatch *);
 int    ElementStatePoints(const KernelCase *);
 void   ElementStateVolumes(const KernelCase *, const double *X, double *volume);
 int    ElementExtrapolates(const KernelCase *);

@@ -37,9 +37,9 @@ const SchemaKey SchemaKeys[] = {
   {"bodies.*.material", MAP, .help = "material of a deformable body"},
   {"bodies.*.material.law", CHOICE, REQUIRED, .values = CHOICE_WORDS(ELASTIC_LAWS),
    .help = "law of the material; linear is allowed only with kinematics: small; von_mises yields and needs yield or "
-           "hardening.table"},
+           "hardening.table; umat is a routine of the user's"},
   {"bodies.*.material.E", REAL, .range = "(0, inf)", .unit = "stress",
-   .help = "Young's modulus of linear, svk, neo_hookean, isochoric_neo_hookean and von_mises; needed there, or mu"},
+   .help = "Young's modulus of linear, svk, neo_hookean, isochoric_neo_hookean, von_mises and umat; needed there, or mu"},
   {"bodies.*.material.nu", REAL, .range = "(-1, 0.5]",
    .help = "Poisson's ratio of the undeformed state; 0.5 is incompressible. Every material has one of nu, K and "
            "incompressible"},
@@ -89,6 +89,11 @@ const SchemaKey SchemaKeys[] = {
   {"bodies.*.material.perzyna.speed", REAL, REQUIRED, .range = "(0, inf)",
    .help = "plastic strain in a unit of the load parameter t, which is the time"},
   {"bodies.*.material.perzyna.power", REAL, .range = "[1, inf)", .preset = "1", .help = "power of the excess"},
+  {"bodies.*.material.library", FILENAME,
+   .help = "of umat, needed there: a shared library with Abaqus's UMAT interface; the path counts from the folder of "
+           "the scene. E and nu are the moduli of the undeformed state there, for penalties"},
+  {"bodies.*.material.constants", NUMBERS, .help = "of umat: PROPS"},
+  {"bodies.*.material.states", INTEGER, .range = "[0, 100]", .preset = "0", .help = "of umat: NSTATV"},
   {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar | mixed | auto", .preset = "auto",
    .help = "formulation of the elements; enhanced and fbar are for first-order quadrilaterals and bricks, of which "
            "enhanced bends without locking and fbar keeps its volume without locking. mixed has pressures of its own, "

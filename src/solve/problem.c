@@ -588,7 +588,8 @@ PetscBool ProblemIsPlastic(Problem problem)
 @*/
 PetscBool ProblemConservative(Problem problem)
 {
-  return (PetscBool)(LoadsConservative(problem->loads) && !ContactHasFriction(problem->contact));
+  return (PetscBool)(LoadsConservative(problem->loads) && !ContactHasFriction(problem->contact) &&
+                     !SceneHasRoutine(problem->scene));
 }
 
 /*@

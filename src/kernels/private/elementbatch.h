@@ -42,7 +42,7 @@ typedef struct {
   const Lanes      *constants;
   const PlasticBatch *plastic;
   const double       *state; /* of a plastic law [points][states], or NULL; its first lane */
-  int                 states;
+  int                 states, part; /* part: of the batch, its first lane */
   int                 all; /* H takes all points of the state */
   const double     *X, *u;
   const double     *u_0;  /* displacements from which K extrapolates the stress, or NULL */
@@ -253,16 +253,21 @@ LANES_INLINE void StartLeastJ(const BatchCall *call)
 LANES_INLINE void KeepLeastJ(const BatchCall *call, const Lanes *dilatation)
 {
   for (int lane = 0; lane < LANES && call->finite; lane++) {
-    if (!(1 + (*dilatation)[lane] >= call->J[lane]))
+    if (!(1 + (*dilatation)[lane] >= call->J[lane]) && !isnan(call->J[lane]))
       call->J[lane] = 1 + (*dilatation)[lane]; /* the negated comparison lets NaN through */
   }
 }
+
+void PointUmat(const BatchCall *, int p, const Lanes H[9], double *next, Lanes *W, Lanes P[9],
+               Lanes A[MATERIAL_TANGENT_SIZE]);
 
 /* Evaluates the law at quadrature point p of the element. */
 LANES_INLINE void PointLaw(const BatchCall *call, int p, const Lanes H[9], const Lanes *dilatation, Lanes *W,
                            Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
-  if (call->state) {
+  if (call->state && call->plastic->umat)
+    PointUmat(call, p, H, NULL, W, P, A);
+  else if (call->state) {
     Lanes state[PLASTIC_MAX_STATE];
 
     for (int k = 0; k < call->states; k++) state[k] = CONST_LANE(call->state, p * call->states + k);
