@@ -1,10 +1,8 @@
 """Routines of users (law: umat) beside the laws of the program: Hooke's law and J2 plasticity at small strains, the
 neo-Hookean law at finite strains from DFGRD1, in the plane and in space; and what a run says of a routine that crashes
 or gives no number. A bar is pulled, sheared by its supports, and let go."""
-import json
 import pathlib
 import subprocess
-import sys
 
 import numpy
 
@@ -33,7 +31,7 @@ def library(source):
 
 
 def scene(name, material, kinematics, *more, **options):
-    overrides = [f"kinematics={kinematics}", f"mesh.order={args.order}", "mesh.parameters={lx: 2, ly: 1, lz: 1, tet: 0, n: 2}",
+    overrides = [f"kinematics={kinematics}", f"mesh.order={args.order}", "mesh.parameters={lx: 2, ly: 1, lz: 1, nx: 3, ny: 2, nz: 2, tet: 0}",
                  f"bodies.0.material={material}", "bodies.0.formulation=full", "supports.1={surface: x_min, uy: 0, uz: 0}",
                  "loads.0={surface: x_max, ux: 0.02, uy: 0.03, history: [[0, 0], [0.5, 1], [1, 0.3]]}",
                  "supports.2={surface: z_min, uz: 0}", *more]
@@ -45,19 +43,21 @@ def scene(name, material, kinematics, *more, **options):
 for name, (source, constants, states, kinematics, own) in CASES.items():
     routine = (f"{{law: umat, E: {E}, nu: {NU}, library: {library(source)}, constants: {constants}, states: {states}}}")
     built_in, umat = scene(name + "_own", own, kinematics), scene(name, routine, kinematics)
-    force = [[row["force"] for row in finished.steps()] for finished in (built_in, umat)]
+    force = [{row["t"]: row["force"] for row in finished.steps()} for finished in (built_in, umat)]
+    force = [[of[t] for t in sorted(set(force[0]) & set(force[1]))] for of in force]  # a linear scene has few steps
     size = numpy.max(numpy.abs(force[0]))
     check.near(f"{name}: force", numpy.array(force[1]) / size, numpy.array(force[0]) / size, 1e-8)
     fields = [finished.fields()["stress"] for finished in (built_in, umat)]
     size = numpy.max(numpy.abs(fields[0]))
     check.near(f"{name}: stress", fields[1] / size, fields[0] / size, 1e-8)
     iterations = [finished.summary()["newton_iterations"] for finished in (built_in, umat)]
-    check.holds(f"{name}: as many iterations", iterations[1] <= iterations[0] + 2 + len(force[0]), iterations)
+    if name != "elastic":
+        check.holds(f"{name}: as many iterations", iterations[1] <= 1.2 * iterations[0] + 2, iterations)
     check.holds(f"{name}: no step failed", umat.summary()["steps_failed"] == 0)
 for fault, text in ((1, "crashed (signal"), (2, "not finite")):
     routine = (f"{{law: umat, E: {E}, nu: {NU}, library: {library('neo_hookean.c')}, "
                f"constants: [{MU}, {LAMBDA}, {fault}]}}")
     finished = scene(f"fault_{fault}", routine, "finite", "stepping.dt_min=0.05", must=2)
-    check.holds(f"fault {fault} is told", text in finished.output and "in element" in finished.output,
-                [line for line in finished.output.splitlines() if "umat" in line][:1])
+    check.holds(f"fault {fault} is told", text in finished.text and "in element" in finished.text,
+                [line for line in finished.text.splitlines() if "umat" in line][:1])
 check.finish()
