@@ -32,6 +32,9 @@ PetscErrorCode ElasticitySetSymmetric(Elasticity, PetscBool);
 PetscErrorCode ElasticityMatrix(Elasticity, Mat C, Vec diagonal, Mat *);
 PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat C);
 PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *stress, PetscReal *weight);
+/* Columns of the plastic strain at the nodes: equivalent, tensor */
+enum { PLASTIC_FIELDS = 7 };
+
 void           ElasticitySetTime(Elasticity, PetscReal t);
 PetscErrorCode ElasticityAcceptPlastic(Elasticity, const PetscReal *u, PetscReal t);
 PetscErrorCode ElasticityArchivePlastic(Elasticity, Archive);

@@ -125,8 +125,46 @@ static PetscReal CellPlasticWork(const CellGroup *g, PetscInt slot, int p)
   return density;
 }
 
+/* Gives the plastic strain of a point: the equivalent one, then the tensor. */
+static void CellPlasticStrains(const CellGroup *g, PetscInt slot, int p, PetscReal strain[PLASTIC_FIELDS])
+{
+  PetscReal state[6];
+
+  for (int k = 0; k < PLASTIC_FIELDS; k++) strain[k] = 0;
+  if (!g->state || g->plastic.umat) return;
+  for (int k = 0; k < 6; k++) state[k] = CellState(g, slot, p, k);
+  strain[0] = CellPlasticStrain(g, slot, p);
+  PlasticStrainTensor(g->kernel.kinematics == KINEMATICS_FINITE, state, &strain[1]);
+}
+
+/* Adds the share of one cell to its nodes. */
+static void AddCellStrain(Elasticity e, PetscInt c, PetscReal *strain, PetscReal *weight)
+{
+  const CellGroup *g       = &e->groups[e->cell_group[c]];
+  const Element   *element = ElementGet(g->kernel.type);
+  const PetscInt  *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[c]];
+  const int        first   = ElementStatePoints(&g->kernel) - element->points;
+  PetscReal        X[MAX_DOFS], volumes[ELEMENT_MAX_POINTS], points[ELEMENT_MAX_POINTS][PLASTIC_FIELDS], volume = 0;
+
+  CellCoordinates(e, g, e->cell_slot[c], X);
+  ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, X, volumes);
+  for (int p = 0; p < element->points; p++) {
+    volume += volumes[p];
+    CellPlasticStrains(g, e->cell_slot[c], first + p, points[p]);
+  }
+  for (int a = 0; a < g->nodes; a++) {
+    for (int k = 0; k < PLASTIC_FIELDS; k++) {
+      PetscReal fit = 0;
+
+      for (int p = 0; p < element->points; p++) fit += element->fit[a][p] * points[p][k];
+      strain[nodes[a] * PLASTIC_FIELDS + k] += volume * (k ? fit : PetscMax(fit, 0));
+    }
+    weight[nodes[a]] += volume;
+  }
+}
+
 /*@
-  ElasticityNodalPlasticStrain - computes this rank's share of the equivalent plastic strain at the nodes.
+  ElasticityNodalPlasticStrain - computes this rank's share of the plastic strain at the nodes.
 
   Not collective
 
@@ -134,36 +172,20 @@ static PetscReal CellPlasticWork(const CellGroup *g, PetscInt slot, int p)
 . e - the elasticity
 
   Output Parameters:
-+ strain - volume of the cells around a node times the strain there [n_nodes]
++ strain - volume of the cells around a node times the strain there [n_nodes*PLASTIC_FIELDS]: the equivalent strain,
+           then the tensor xx yy zz xy yz xz; axisymmetric: rr zz hoop rz 0 0
 - weight - volume of the cells around a node [n_nodes]
 
   Note:
-  As in ElasticityNodalStress(). A fit that is negative counts as 0.
+  As in ElasticityNodalStress(). A fit of the equivalent strain that is negative counts as 0. The tensor is that of
+  PlasticStrainTensor().
 @*/
 PetscErrorCode ElasticityNodalPlasticStrain(Elasticity e, PetscReal *strain, PetscReal *weight)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(strain, e->mesh->n_nodes));
+  PetscCall(PetscArrayzero(strain, e->mesh->n_nodes * PLASTIC_FIELDS));
   PetscCall(PetscArrayzero(weight, e->mesh->n_nodes));
-  for (PetscInt c = 0; c < e->mesh->n_cells; c++) {
-    const CellGroup *g       = &e->groups[e->cell_group[c]];
-    const Element   *element = ElementGet(g->kernel.type);
-    const PetscInt  *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[c]];
-    const int        first   = ElementStatePoints(&g->kernel) - element->points;
-    PetscReal        X[MAX_DOFS], point_volume[ELEMENT_MAX_POINTS], volume = 0;
-
-    CellCoordinates(e, g, e->cell_slot[c], X);
-    ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, X, point_volume);
-    for (int p = 0; p < element->points; p++) volume += point_volume[p];
-    for (int a = 0; a < g->nodes; a++) {
-      PetscReal fit = 0;
-
-      for (int p = 0; p < element->points; p++) 
-        fit += element->fit[a][p] * CellPlasticStrain(g, e->cell_slot[c], first + p);
-      strain[nodes[a]] += volume * PetscMax(fit, 0);
-      weight[nodes[a]] += volume;
-    }
-  }
+  for (PetscInt c = 0; c < e->mesh->n_cells; c++) AddCellStrain(e, c, strain, weight);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -12,7 +12,8 @@ static const double largest_kappa = 1e4;
    modulus and over the modulus itself. Where the mean stress is a tension p, changes of the volume inside an element
    that the projection does not see are unstable from about p = mu + part on, although the solid is stable: bonded
    bushes stop there. Up to 20 shear moduli full integration does not lock noticeably, see `auto` in scene.c; at the
-   limit of fine meshes the part makes no difference. A tenth keeps moderate moduli projected too. */
+   limit of fine meshes the part makes no difference. A tenth keeps moderate moduli projected too. Plastic laws have no
+   such part: their mean stress is far below the shear modulus, and where they flow, 20 shear moduli lock. */
 static const double largest_local = 20, local_share = 0.1;
 
 /* Numbers of the state of a point, of any law */
@@ -205,7 +206,8 @@ static VolumeModuli SplitVolume(const KernelCase *kernel, double modulus, double
 {
   VolumeModuli split = {.mu = mu};
 
-  if (ElementPressures(kernel) > 1) split.local = fmax(0, fmin(largest_local * mu, local_share * modulus));
+  if (ElementPressures(kernel) > 1 && !MaterialGetLaw(kernel->law)->plastic)
+    split.local = fmax(0, fmin(largest_local * mu, local_share * modulus));
   split.projected = modulus - split.local;
   split.kappa     = fmin(split.projected, largest_kappa * mu);
   return split;

@@ -120,6 +120,37 @@ int PlasticStates(const Hardening *hardening)
 }
 
 /*@
+  PlasticStrainTensor - computes the plastic strain of a point.
+
+  Not collective
+
+  Input Parameters:
++ finite - 0 for small strains
+- state  - the first six numbers of its state
+
+  Output Parameter:
+. strain - xx yy zz xy yz xz; in finite strains 1/2 ln Cp, which is along the axes of the reference configuration
+@*/
+void PlasticStrainTensor(int finite, const double state[6], double strain[6])
+{
+  Lanes tensor[6], value[3], axis[3][3];
+
+  for (int k = 0; k < 6; k++) {
+    tensor[k] = (Lanes){0} + state[k];
+    strain[k] = finite ? 0 : -state[k] / 2;
+  }
+  if (!finite) return;
+  PrincipalAxes(tensor, value, axis);
+  for (int a = 0; a < 3; a++) {
+    const double log = -log1p(fmax(value[a][0], least_square - 1)) / 2;
+
+    for (int I = 0; I < 3; I++) {
+      for (int J = I; J < 3; J++) strain[component[I][J]] += log * axis[a][I][0] * axis[a][J][0];
+    }
+  }
+}
+
+/*@
   VonMisesLaw - computes incremental potential, stress and tangent of LANES points, and the state after the increment.
 
   Not collective

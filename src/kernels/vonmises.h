@@ -33,6 +33,7 @@ enum {
 };
 
 int  PlasticStates(const Hardening *);
+void PlasticStrainTensor(int finite, const double state[6], double strain[6]);
 void VonMisesLaw(int finite, const Lanes H[9], const Lanes *dilatation, const Lanes *bulk, const Lanes *shear,
                  const Hardening *, double dt, const Lanes state[], Lanes *W, Lanes P[9],
                  Lanes A[MATERIAL_TANGENT_SIZE], Lanes next[]);

@@ -134,7 +134,9 @@ static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
   PetscFunctionBeginUser;
   body->chosen = choice == FORMULATIONS;
   if (body->chosen && plastic)
-    body->formulation = scene->order == 2 ? FORMULATION_FULL : FORMULATION_FBAR;
+    body->formulation = scene->order == 1                        ? FORMULATION_FBAR
+                        : body->material.law == MATERIAL_VON_MISES ? FORMULATION_MIXED
+                                                                   : FORMULATION_FULL;
   else if (body->chosen)
     body->formulation = SceneStiffVolume(body) && SceneLawSplits(scene, body) ? FORMULATION_MIXED : FORMULATION_FULL;
   else

@@ -99,7 +99,7 @@ const SchemaKey SchemaKeys[] = {
            "enhanced bends without locking and fbar keeps its volume without locking. mixed has pressures of its own, "
            "for materials that keep their volume nearly or exactly: all elements but first-order triangles and "
            "tetrahedra. auto: mixed where the bulk modulus is above 20 times the shear modulus (nu above 0.475), "
-           "otherwise full; von_mises takes fbar at order 1 and full at order 2"},
+           "otherwise full; von_mises takes fbar at order 1 and mixed at order 2, umat fbar and full"},
   {"bodies.*.surface", TEXT, .help = "physical surface of a rigid tool; needs rigid"},
   {"bodies.*.rigid", MAP, .help = "makes the surface a meshed rigid tool"},
   {"bodies.*.rigid.point", POINT, .unit = "length",
