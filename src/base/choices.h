@@ -17,7 +17,8 @@
   LINE(MATERIAL_YEOH, "yeoh", MaterialLaw_Yeoh)                                                  \
   LINE(MATERIAL_OGDEN, "ogden", MaterialLaw_Ogden)                                               \
   LINE(MATERIAL_ARRUDA_BOYCE, "arruda_boyce", MaterialLaw_ArrudaBoyce)                           \
-  LINE(MATERIAL_VON_MISES, "von_mises", MaterialLaw_VonMises)
+  LINE(MATERIAL_VON_MISES, "von_mises", MaterialLaw_VonMises)                                    \
+  LINE(MATERIAL_UMAT, "umat", MaterialLaw_Umat)
 
 #define SMOOTHERS(LINE)                         \
   LINE(SMOOTHER_FACET, "facet", Smoother_Facet) \

@@ -60,7 +60,7 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
   PetscCall(PetscMalloc3(mesh->n_cells, &e->cell_group, mesh->n_cells, &e->cell_slot, mesh->n_cells, &e->cell_modulus));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const Material    *material = &scene->bodies[mesh->cell_body[c]].material;
-    const PlasticBatch plastic  = {.hardening = &material->hardening};
+    const PlasticBatch plastic  = {.hardening = &material->hardening, .umat = material->umat};
     KernelCase         kernel   = BodyKernel(scene, mesh->cell_body[c], mesh->cell_type[c]);
     int                g        = 0;
 
@@ -89,7 +89,7 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
 @*/
 size_t ElasticityCellStates(const CellGroup *g)
 {
-  return g->kernel.plastic ? (size_t)ElementGet(g->kernel.type)->points * PLASTIC_STATE : 0;
+  return g->kernel.plastic ? (size_t)(ElementStatePoints(&g->kernel) * ElementStates(&g->plastic)) : 0;
 }
 
 static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
@@ -347,11 +347,30 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
 }
 
 /* Makes the plastic state of a batch, or of one of its cells, the one that the kernel sees. */
-static void SelectState(CellGroup *g, PetscInt batch, int lane)
+static void SelectState(Elasticity e, CellGroup *g, PetscInt batch, int lane)
 {
   if (!g->state) return;
+  for (int k = 0; k < KERNEL_LANES && g->plastic.umat; k++)
+    g->plastic.number[k] = (int)e->mesh->cell_tag[g->cell[(size_t)batch * KERNEL_LANES + k]];
   g->plastic.state = g->state + (size_t)batch * KERNEL_LANES * ElasticityCellStates(g);
   g->plastic.lane  = lane;
+}
+
+/*@
+  ElasticitySetTime - tells the time of the displacements that are evaluated next.
+
+  Not collective
+
+  Input Parameters:
++ e - the elasticity
+- t - the time, that is the load parameter; laws with an overstress and routines of users need it
+@*/
+void ElasticitySetTime(Elasticity e, PetscReal t)
+{
+  for (int k = 0; k < e->n_groups; k++) {
+    e->groups[k].plastic.t  = t;
+    e->groups[k].plastic.dt = t - e->accepted_t;
+  }
 }
 
 /*@
@@ -379,7 +398,7 @@ void ElasticityGather(Elasticity e, CellGroup *g, PetscInt batch, const PetscRea
         gathered[(a * e->dim + i) * KERNEL_LANES + lane] = u[node[a * KERNEL_LANES + lane] * e->dim + i];
     }
   }
-  SelectState(g, batch, 0);
+  SelectState(e, g, batch, 0);
 }
 
 /*@
@@ -767,7 +786,7 @@ static void GatherCell(Elasticity e, CellGroup *g, PetscInt slot, const PetscRea
   }
   for (int k = 0; k < g->kernel.n_constants; k++)
     constants[k] = g->constants[(batch * g->kernel.n_constants + k) * KERNEL_LANES + lane];
-  SelectState(g, (PetscInt)batch, (int)lane);
+  SelectState(e, g, (PetscInt)batch, (int)lane);
 }
 
 /*@

@@ -32,10 +32,14 @@ PetscErrorCode ElasticitySetSymmetric(Elasticity, PetscBool);
 PetscErrorCode ElasticityMatrix(Elasticity, Mat C, Vec diagonal, Mat *);
 PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat C);
 PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *stress, PetscReal *weight);
-PetscErrorCode ElasticityAcceptPlastic(Elasticity, const PetscReal *u);
+/* Columns of the plastic strain at the nodes: equivalent, tensor */
+enum { PLASTIC_FIELDS = 7 };
+
+void           ElasticitySetTime(Elasticity, PetscReal t);
+PetscErrorCode ElasticityAcceptPlastic(Elasticity, const PetscReal *u, PetscReal t);
 PetscErrorCode ElasticityArchivePlastic(Elasticity, Archive);
 PetscErrorCode ElasticityNodalPlasticStrain(Elasticity, PetscReal *strain, PetscReal *weight);
-PetscInt64     ElasticityPlasticPoints(Elasticity);
+PetscInt64     ElasticityPlasticPoints(Elasticity, PetscInt64 *bytes);
 PetscErrorCode ElasticityPlasticWork(Elasticity, PetscReal *work, PetscReal *strain);
 PetscErrorCode ElasticityAugment(Elasticity, const PetscReal *u, PetscBool *holds);
 PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const StressReference *);

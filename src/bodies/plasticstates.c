@@ -9,14 +9,16 @@ start.
 
   Input Parameters:
 + e - the elasticity
-- u - local displacements (length) [n_nodes*dim] of a state that is accepted
+. u - local displacements (length) [n_nodes*dim] of a state that is accepted
+- t - its time
 
   Note:
-  Residual, tangent and energy at u stay the same, up to round-off. Nothing happens where no body is plastic.
+  Residual, tangent and energy at u and t stay the same, up to round-off. Nothing happens where no body is plastic.
 @*/
-PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u)
+PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u, PetscReal t)
 {
   PetscFunctionBeginUser;
+  ElasticitySetTime(e, t);
   for (int k = 0; k < e->n_groups; k++) {
     CellGroup   *g    = &e->groups[k];
     const size_t dofs = (size_t)g->nodes * e->dim;
@@ -25,9 +27,12 @@ PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u)
       const size_t first = (size_t)batch * KERNEL_LANES;
 
       ElasticityGather(e, g, batch, u, e->u);
-      ElementAcceptState(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants]);
+      ElementAcceptState(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants],
+                         ElasticityMultipliers(e, g, batch));
     }
   }
+  e->accepted_t = t;
+  ElasticitySetTime(e, t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -81,28 +86,85 @@ PetscErrorCode ElasticityArchivePlastic(Elasticity e, Archive archive)
     CopyState(&e->groups[e->cell_group[c]], e->cell_slot[c], PETSC_FALSE, &values[c * width]);
   PetscCall(Hdf5TableDestroy(&cells));
   PetscCall(PetscFree(values));
+  PetscCall(ArchiveReals(archive, "model/plastic_time", 1, &e->accepted_t));
+  ElasticitySetTime(e, e->accepted_t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives volumes and equivalent plastic strains of the points of a cell; strains of elastic cells are 0. */
-static void CellPlasticStrain(Elasticity e, const CellGroup *g, PetscInt slot, PetscReal *volume, PetscReal *strain)
+/* Gives the coordinates of the nodes of a cell. */
+static void CellCoordinates(Elasticity e, const CellGroup *g, PetscInt slot, PetscReal X[MAX_DOFS])
 {
-  const Element  *element = ElementGet(g->kernel.type);
-  const PetscInt *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
-  PetscReal       X[MAX_DOFS];
+  const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
 
   for (int a = 0; a < g->nodes; a++)
     for (int i = 0; i < e->dim; i++) X[a * e->dim + i] = e->mesh->coords[nodes[a] * e->dim + i];
-  ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, X, volume);
-  for (int p = 0; p < element->points; p++) {
-    const size_t first = (size_t)(slot / KERNEL_LANES) * KERNEL_LANES * ElasticityCellStates(g) + slot % KERNEL_LANES;
+}
 
-    strain[p] = g->state ? g->state[first + (size_t)(p * PLASTIC_STATE + PLASTIC_STRAIN) * KERNEL_LANES] : 0;
+/* Gives number k of the state of point p of a cell, 0 in elastic cells. */
+static PetscReal CellState(const CellGroup *g, PetscInt slot, int p, int k)
+{
+  const size_t first = (size_t)(slot / KERNEL_LANES) * KERNEL_LANES * ElasticityCellStates(g) + slot % KERNEL_LANES;
+
+  return g->state ? g->state[first + ((size_t)p * ElementStates(&g->plastic) + k) * KERNEL_LANES] : 0;
+}
+
+/* Gives the equivalent plastic strain of a point; of a user's routine none is known. */
+static PetscReal CellPlasticStrain(const CellGroup *g, PetscInt slot, int p)
+{
+  return g->plastic.umat ? 0 : CellState(g, slot, p, PLASTIC_STRAIN);
+}
+
+/* Gives the plastic work of a point per volume, of a user's routine SPD + SCD. */
+static PetscReal CellPlasticWork(const CellGroup *g, PetscInt slot, int p)
+{
+  PetscReal slope, density;
+
+  if (g->plastic.umat) return CellState(g, slot, p, UMAT_ENERGY + 1) + CellState(g, slot, p, UMAT_ENERGY + 2);
+  (void)HardeningStress(g->plastic.hardening, CellState(g, slot, p, PLASTIC_STRAIN), &slope, &density);
+  if (ElementStates(&g->plastic) > PLASTIC_WORK) density += CellState(g, slot, p, PLASTIC_WORK);
+  return density;
+}
+
+/* Gives the plastic strain of a point: the equivalent one, then the tensor. */
+static void CellPlasticStrains(const CellGroup *g, PetscInt slot, int p, PetscReal strain[PLASTIC_FIELDS])
+{
+  PetscReal state[6];
+
+  for (int k = 0; k < PLASTIC_FIELDS; k++) strain[k] = 0;
+  if (!g->state || g->plastic.umat) return;
+  for (int k = 0; k < 6; k++) state[k] = CellState(g, slot, p, k);
+  strain[0] = CellPlasticStrain(g, slot, p);
+  PlasticStrainTensor(g->kernel.kinematics == KINEMATICS_FINITE, state, &strain[1]);
+}
+
+/* Adds the share of one cell to its nodes. */
+static void AddCellStrain(Elasticity e, PetscInt c, PetscReal *strain, PetscReal *weight)
+{
+  const CellGroup *g       = &e->groups[e->cell_group[c]];
+  const Element   *element = ElementGet(g->kernel.type);
+  const PetscInt  *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[c]];
+  const int        first   = ElementStatePoints(&g->kernel) - element->points;
+  PetscReal        X[MAX_DOFS], volumes[ELEMENT_MAX_POINTS], points[ELEMENT_MAX_POINTS][PLASTIC_FIELDS], volume = 0;
+
+  CellCoordinates(e, g, e->cell_slot[c], X);
+  ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, X, volumes);
+  for (int p = 0; p < element->points; p++) {
+    volume += volumes[p];
+    CellPlasticStrains(g, e->cell_slot[c], first + p, points[p]);
+  }
+  for (int a = 0; a < g->nodes; a++) {
+    for (int k = 0; k < PLASTIC_FIELDS; k++) {
+      PetscReal fit = 0;
+
+      for (int p = 0; p < element->points; p++) fit += element->fit[a][p] * points[p][k];
+      strain[nodes[a] * PLASTIC_FIELDS + k] += volume * (k ? fit : PetscMax(fit, 0));
+    }
+    weight[nodes[a]] += volume;
   }
 }
 
 /*@
-  ElasticityNodalPlasticStrain - computes this rank's share of the equivalent plastic strain at the nodes.
+  ElasticityNodalPlasticStrain - computes this rank's share of the plastic strain at the nodes.
 
   Not collective
 
@@ -110,33 +172,20 @@ static void CellPlasticStrain(Elasticity e, const CellGroup *g, PetscInt slot, P
 . e - the elasticity
 
   Output Parameters:
-+ strain - volume of the cells around a node times the strain there [n_nodes]
++ strain - volume of the cells around a node times the strain there [n_nodes*PLASTIC_FIELDS]: the equivalent strain,
+           then the tensor xx yy zz xy yz xz; axisymmetric: rr zz hoop rz 0 0
 - weight - volume of the cells around a node [n_nodes]
 
   Note:
-  As in ElasticityNodalStress(). A fit that is negative counts as 0.
+  As in ElasticityNodalStress(). A fit of the equivalent strain that is negative counts as 0. The tensor is that of
+  PlasticStrainTensor().
 @*/
 PetscErrorCode ElasticityNodalPlasticStrain(Elasticity e, PetscReal *strain, PetscReal *weight)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(strain, e->mesh->n_nodes));
+  PetscCall(PetscArrayzero(strain, e->mesh->n_nodes * PLASTIC_FIELDS));
   PetscCall(PetscArrayzero(weight, e->mesh->n_nodes));
-  for (PetscInt c = 0; c < e->mesh->n_cells; c++) {
-    const CellGroup *g       = &e->groups[e->cell_group[c]];
-    const Element   *element = ElementGet(g->kernel.type);
-    const PetscInt  *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[c]];
-    PetscReal        point_volume[ELEMENT_MAX_POINTS], point_strain[ELEMENT_MAX_POINTS], volume = 0;
-
-    CellPlasticStrain(e, g, e->cell_slot[c], point_volume, point_strain);
-    for (int p = 0; p < element->points; p++) volume += point_volume[p];
-    for (int a = 0; a < g->nodes; a++) {
-      PetscReal fit = 0;
-
-      for (int p = 0; p < element->points; p++) fit += element->fit[a][p] * point_strain[p];
-      strain[nodes[a]] += volume * PetscMax(fit, 0);
-      weight[nodes[a]] += volume;
-    }
-  }
+  for (PetscInt c = 0; c < e->mesh->n_cells; c++) AddCellStrain(e, c, strain, weight);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,13 +196,22 @@ PetscErrorCode ElasticityNodalPlasticStrain(Elasticity e, PetscReal *strain, Pet
 
   Input Parameter:
 . e - the elasticity
+
+  Output Parameter:
+. bytes - memory of their states
 @*/
-PetscInt64 ElasticityPlasticPoints(Elasticity e)
+PetscInt64 ElasticityPlasticPoints(Elasticity e, PetscInt64 *bytes)
 {
   PetscInt64 points = 0;
 
-  for (int k = 0; k < e->n_groups; k++)
-    points += (PetscInt64)e->groups[k].n_cells * (PetscInt64)ElasticityCellStates(&e->groups[k]) / PLASTIC_STATE;
+  *bytes = 0;
+  for (int k = 0; k < e->n_groups; k++) {
+    const CellGroup *g = &e->groups[k];
+
+    if (!g->kernel.plastic) continue;
+    points += (PetscInt64)g->n_cells * ElementStatePoints(&g->kernel);
+    *bytes += (PetscInt64)(g->n_cells * ElasticityCellStates(g) * sizeof(PetscReal));
+  }
   return points;
 }
 
@@ -175,16 +233,15 @@ PetscErrorCode ElasticityPlasticWork(Elasticity e, PetscReal *work, PetscReal *s
   *work = *strain = 0;
   for (PetscInt c = 0; c < e->mesh->n_cells; c++) {
     const CellGroup *g = &e->groups[e->cell_group[c]];
-    PetscReal        volume[ELEMENT_MAX_POINTS], point_strain[ELEMENT_MAX_POINTS];
+    const PetscInt   slot = e->cell_slot[c];
+    PetscReal        X[MAX_DOFS], volume[ELEMENT_MAX_POINTS];
 
     if (!g->state) continue;
-    CellPlasticStrain(e, g, e->cell_slot[c], volume, point_strain);
-    for (int p = 0; p < ElementGet(g->kernel.type)->points; p++) {
-      PetscReal slope, density;
-
-      (void)HardeningStress(g->plastic.hardening, point_strain[p], &slope, &density);
-      *work += volume[p] * density;
-      *strain = PetscMax(*strain, point_strain[p]);
+    CellCoordinates(e, g, slot, X);
+    ElementStateVolumes(&g->kernel, X, volume);
+    for (int p = 0; p < ElementStatePoints(&g->kernel); p++) {
+      *work += volume[p] * CellPlasticWork(g, slot, p);
+      *strain = PetscMax(*strain, CellPlasticStrain(g, slot, p));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

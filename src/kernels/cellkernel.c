@@ -59,15 +59,30 @@ static void CauchyStress(const double H[9], const double P[9], double pressure, 
 static void PlasticStress(const KernelCase *kernel, const double *constants, int p, const double H[9], double P[9])
 {
   const PlasticBatch *plastic = kernel->plastic;
+  const int           states  = ElementStates(plastic);
+  const int           at      = ElementStatePoints(kernel) - ElementGet(kernel->type)->points + p;
   const Lanes         bulk = (Lanes){0} + constants[0], shear = (Lanes){0} + constants[1];
-  Lanes               lanes_H[9], lanes_P[9], state[PLASTIC_STATE], dilatation;
+  Lanes               lanes_H[9], lanes_P[9], state[PLASTIC_MAX_STATE], dilatation;
 
+  if (plastic->umat) {
+    const UmatPlace place = {.finite  = kernel->kinematics == KINEMATICS_FINITE,
+                             .tensor  = ElementGet(kernel->type)->dim == 3 ? 6 : 4,
+                             .element = plastic->number[plastic->lane],
+                             .point   = p + 1,
+                             .t       = plastic->t,
+                             .dt      = plastic->dt};
+    double          W;
+
+    (void)UmatPoint(plastic->umat, &place, H, &plastic->state[at * states * KERNEL_LANES + plastic->lane], KERNEL_LANES,
+                    &W, P, NULL, NULL);
+    return;
+  }
   for (int r = 0; r < 9; r++) lanes_H[r] = (Lanes){0} + H[r];
-  for (int k = 0; k < PLASTIC_STATE; k++)
-    state[k] = (Lanes){0} + plastic->state[(p * PLASTIC_STATE + k) * KERNEL_LANES + plastic->lane];
+  for (int k = 0; k < states; k++)
+    state[k] = (Lanes){0} + plastic->state[(at * states + k) * KERNEL_LANES + plastic->lane];
   MaterialDilatation(lanes_H, &dilatation);
-  VonMisesLaw(kernel->kinematics == KINEMATICS_FINITE, lanes_H, &dilatation, &bulk, &shear, plastic->hardening, state,
-              NULL, lanes_P, NULL, NULL);
+  VonMisesLaw(kernel->kinematics == KINEMATICS_FINITE, lanes_H, &dilatation, &bulk, &shear, plastic->hardening,
+              plastic->dt, state, NULL, lanes_P, NULL, NULL);
   for (int r = 0; r < 9; r++) P[r] = lanes_P[r][0];
 }
 

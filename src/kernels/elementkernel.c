@@ -12,8 +12,13 @@ static const double largest_kappa = 1e4;
    modulus and over the modulus itself. Where the mean stress is a tension p, changes of the volume inside an element
    that the projection does not see are unstable from about p = mu + part on, although the solid is stable: bonded
    bushes stop there. Up to 20 shear moduli full integration does not lock noticeably, see `auto` in scene.c; at the
-   limit of fine meshes the part makes no difference. A tenth keeps moderate moduli projected too. */
+   limit of fine meshes the part makes no difference. A tenth keeps moderate moduli projected too. Plastic laws have no
+   such part: their mean stress is far below the shear modulus, and where they flow, 20 shear moduli lock. */
 static const double largest_local = 20, local_share = 0.1;
+
+/* Numbers of the state of a point, of any law */
+enum { MAX_STATE = UMAT_STATES + UMAT_MAX_STATES };
+_Static_assert((int)MAX_STATE >= (int)PLASTIC_MAX_STATE, "room for the states of all laws");
 
 const char *const Formulations[] = {"full", "enhanced", "fbar", "mixed", NULL};
 
@@ -90,11 +95,11 @@ static BatchFn *GetBatch(const KernelCase *kernel)
 {
   const int         axisymmetric = kernel->geometry == GEOMETRY_AXISYMMETRIC;
   const ElasticLaw *law          = MaterialGetLaw(kernel->law);
-  /* Mixed elements have points of their own, for which there are no plastic states. */
-  const int splits = !law->plastic && (kernel->kinematics == KINEMATICS_SMALL || law->separable);
+  const int         splits =
+    law->separable || (kernel->kinematics == KINEMATICS_SMALL && kernel->law != MATERIAL_UMAT);
 
-  switch (kernel->formulation) {
-  case FORMULATION_ENHANCED: return enhanced_batches[kernel->type][axisymmetric];
+  switch (kernel->formulation) { /* the modes of enhanced elements are found by an energy, which a routine has not */
+  case FORMULATION_ENHANCED: return kernel->law == MATERIAL_UMAT ? NULL : enhanced_batches[kernel->type][axisymmetric];
   case FORMULATION_FBAR: return mean_dilatation_batches[kernel->type][axisymmetric];
   case FORMULATION_MIXED: return splits ? mixed_batches[kernel->type][axisymmetric] : NULL;
   default: return full_batches[kernel->type][axisymmetric];
@@ -112,6 +117,57 @@ static BatchFn *GetBatch(const KernelCase *kernel)
 int ElementKernelExists(const KernelCase *kernel)
 {
   return GetBatch(kernel) != NULL;
+}
+
+/*@
+  ElementStates - counts the numbers of the state of a point.
+
+  Not collective
+@*/
+int ElementStates(const PlasticBatch *plastic)
+{
+  return plastic->umat ? UmatStates(plastic->umat) : PlasticStates(plastic->hardening);
+}
+
+/*@
+  ElementStatePoints - counts the points of an element that have a plastic state.
+
+  Not collective
+
+  Note:
+  Mixed triangles and tetrahedra integrate with more points than the element has in its table. The points of the table
+  follow theirs in the state, and give the results.
+@*/
+int ElementStatePoints(const KernelCase *kernel)
+{
+  const Element *e      = ElementGet(kernel->type);
+  const int      points = kernel->formulation == FORMULATION_MIXED ? MixedPoints(e) : e->points;
+
+  return points > e->points ? points + e->points : e->points;
+}
+
+/*@
+  ElementStateVolumes - computes the reference volumes of the points of an element that have a plastic state.
+
+  Not collective
+
+  Input Parameters:
++ kernel - element type, geometry and formulation
+- X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+
+  Output Parameter:
+. volume - [ElementStatePoints()]; 0 of points that give results alone
+@*/
+void ElementStateVolumes(const KernelCase *kernel, const double *X, double *volume)
+{
+  const Element *e = ElementGet(kernel->type);
+
+  if (ElementStatePoints(kernel) == e->points) {
+    ElementPointVolumes(kernel->type, e->dim, kernel->geometry, X, volume);
+    return;
+  }
+  MixedPointVolumes(e, kernel->geometry, X, volume);
+  for (int p = MixedPoints(e); p < ElementStatePoints(kernel); p++) volume[p] = 0;
 }
 
 /*@
@@ -140,7 +196,8 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
                      .law         = law,
                      .finite      = kernel->kinematics == KINEMATICS_FINITE,
                      .n_constants = kernel->n_constants ? kernel->n_constants : law->constants,
-                     .hardening   = kernel->plastic ? kernel->plastic->hardening : NULL,
+                     .plastic     = kernel->plastic,
+                     .states      = kernel->plastic ? ElementStates(kernel->plastic) : 0,
                      .constants   = constants};
 }
 
@@ -149,7 +206,8 @@ static VolumeModuli SplitVolume(const KernelCase *kernel, double modulus, double
 {
   VolumeModuli split = {.mu = mu};
 
-  if (ElementPressures(kernel) > 1) split.local = fmax(0, fmin(largest_local * mu, local_share * modulus));
+  if (ElementPressures(kernel) > 1 && !MaterialGetLaw(kernel->law)->plastic)
+    split.local = fmax(0, fmin(largest_local * mu, local_share * modulus));
   split.projected = modulus - split.local;
   split.kappa     = fmin(split.projected, largest_kappa * mu);
   return split;
@@ -241,6 +299,7 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
     SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
     call.multiplier = multiplier ? multiplier + part : NULL;
+    call.part       = part;
     call.X          = X + part;
     call.u          = u + part;
     call.u_0        = extrapolates ? reference->u + part : NULL;
@@ -253,18 +312,49 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
   }
 }
 
-/* Takes the state of all points of a part of a batch on to the displacement gradients H. */
-static void AcceptPoints(const BatchCall *call, const double *H, double *state)
+/* Evaluates a routine of the user at point p, one lane after the other. An element whose routine fails counts as one
+   that is turned inside out, so that the step is taken back. */
+void PointUmat(const BatchCall *call, int p, const Lanes H[9], double *next, Lanes *W, Lanes P[9],
+               Lanes A[MATERIAL_TANGENT_SIZE])
 {
-  for (int p = 0; p < call->e->points; p++) {
-    Lanes lanes_H[9], lanes_state[PLASTIC_STATE], dilatation;
+  const PlasticBatch *plastic = call->plastic;
+
+  for (int lane = 0; lane < LANES; lane++) {
+    const UmatPlace place = {.finite  = call->finite,
+                             .tensor  = call->e->dim == 3 ? 6 : 4,
+                             .element = plastic->number[call->part + lane],
+                             .point   = p + 1,
+                             .t       = plastic->t,
+                             .dt      = plastic->dt};
+    const size_t    at    = (size_t)p * call->states * KERNEL_LANES + lane;
+    double          h[9], energy, stress[9], tangent[MATERIAL_TANGENT_SIZE];
+
+    for (int r = 0; r < 9; r++) h[r] = H[r][lane];
+    if (UmatPoint(plastic->umat, &place, h, &call->state[at], KERNEL_LANES, &energy, stress, A ? tangent : NULL,
+                  next ? &next[at] : NULL))
+      call->J[lane] = NAN;
+    if (W) (*W)[lane] = energy;
+    for (int r = 0; r < 9 && P; r++) P[r][lane] = stress[r];
+    for (int k = 0; k < MATERIAL_TANGENT_SIZE && A; k++) A[k][lane] = tangent[k];
+  }
+}
+
+/* Takes the state of all points of a part of a batch on to the displacement gradients H. */
+static void AcceptPoints(const BatchCall *call, int points, const double *H, double *state)
+{
+  for (int p = 0; p < points; p++) {
+    Lanes lanes_H[9], lanes_state[PLASTIC_MAX_STATE], dilatation;
 
     for (int r = 0; r < 9; r++) lanes_H[r] = CONST_LANE(H, p * 9 + r);
-    for (int k = 0; k < PLASTIC_STATE; k++) lanes_state[k] = CONST_LANE(state, p * PLASTIC_STATE + k);
+    if (call->plastic->umat) {
+      PointUmat(call, p, lanes_H, state, NULL, NULL, NULL);
+      continue;
+    }
+    for (int k = 0; k < call->states; k++) lanes_state[k] = CONST_LANE(state, p * call->states + k);
     MaterialDilatation(lanes_H, &dilatation);
-    VonMisesLaw(call->finite, lanes_H, &dilatation, &call->constants[0], &call->constants[1], call->hardening,
-                lanes_state, NULL, NULL, NULL, lanes_state);
-    for (int k = 0; k < PLASTIC_STATE; k++) LANE(state, p * PLASTIC_STATE + k) = lanes_state[k];
+    VonMisesLaw(call->finite, lanes_H, &dilatation, &call->constants[0], &call->constants[1], call->plastic->hardening,
+                call->plastic->dt, lanes_state, NULL, NULL, NULL, lanes_state);
+    for (int k = 0; k < call->states; k++) LANE(state, p * call->states + k) = lanes_state[k];
   }
 }
 
@@ -278,26 +368,31 @@ accepted.
 + kernel    - with plastic, whose state is changed
 . X         - reference coordinates (length) [nodes][dim][lanes]
 . u         - displacements (length) [nodes][dim][lanes]
-- constants - of the law [n_constants][lanes]
+. constants - of the law [n_constants][lanes]
+- multiplier - of mixed elements (stress times root of volume) [pressures][lanes]; NULL: they are 0
 
   Note:
-  At the same u, ElementKernel() gives the same values before and after, up to round-off.
+  At the same u, ElementKernel() gives the same values before and after, up to round-off, and without time passing.
 @*/
-void ElementAcceptState(const KernelCase *kernel, const double *X, const double *u, const double *constants)
+void ElementAcceptState(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+                        const double *multiplier)
 {
   Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
   BatchCall call = StartCall(kernel, lanes_constants);
   double    H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], J[LANES];
 
-  call.J = J;
-  call.H = H;
+  call.J   = J;
+  call.H   = H;
+  call.all = 1;
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
     SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
-    call.X     = X + part;
-    call.u     = u + part;
-    call.state = kernel->plastic->state + part;
+    call.part       = part;
+    call.X          = X + part;
+    call.u          = u + part;
+    call.multiplier = multiplier ? multiplier + part : NULL;
+    call.state      = kernel->plastic->state + part;
     GetBatch(kernel)(&call);
-    AcceptPoints(&call, H, kernel->plastic->state + part);
+    AcceptPoints(&call, ElementStatePoints(kernel), H, kernel->plastic->state + part);
   }
 }
 
@@ -419,9 +514,10 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
   BatchCall call = StartCall(kernel, lanes_constants);
   const int dofs = call.e->nodes * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
-    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], lanes_state[ELEMENT_MAX_POINTS * PLASTIC_STATE * KERNEL_LANES],
+    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], lanes_state[ELEMENT_MAX_POINTS * MAX_STATE * KERNEL_LANES],
     lanes_pressure[ELEMENT_MAX_POINTS * KERNEL_LANES] = {0}, lanes_multiplier[MIXED_PRESSURES * KERNEL_LANES];
-  double J[LANES];
+  double       J[LANES];
+  PlasticBatch one;
 
   for (int lane = 0; lane < LANES; lane++) {
     for (int k = 0; k < dofs; k++) {
@@ -439,9 +535,12 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
   call.multiplier = lanes_multiplier;
   call.pressure   = lanes_pressure;
   if (kernel->plastic) {
-    for (int k = 0; k < call.e->points * PLASTIC_STATE; k++)
+    for (int k = 0; k < ElementStatePoints(kernel) * call.states; k++)
       LANE(lanes_state, k) = (Lanes){0} + kernel->plastic->state[k * KERNEL_LANES + kernel->plastic->lane];
     call.state = lanes_state;
+    one        = *kernel->plastic;
+    for (int lane = 0; lane < LANES; lane++) one.number[lane] = kernel->plastic->number[kernel->plastic->lane];
+    call.plastic = &one;
   }
   GetBatch(kernel)(&call);
   for (int k = 0; k < call.e->points * 9; k++) H[k] = lanes_H[k * KERNEL_LANES];

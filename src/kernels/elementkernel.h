@@ -3,7 +3,8 @@
 
    ElementKernel() treats a batch of KERNEL_LANES elements of one type, law, geometry, kinematics and formulation. Its
    arrays are [node][dim][lane], so that the inner loops vectorise. A short batch repeats its last element.
-   ElementAcceptState() takes the plastic state on to given displacements. ElementKernelExists() tells whether there is
+   ElementAcceptState() takes the plastic state on to given displacements; ElementStatePoints() counts its points,
+   ElementStates() the numbers of each, and ElementStateVolumes() gives their volumes. ElementKernelExists() tells whether there is
    a kernel for a case. The other functions treat one cell or one face: ElementPointState(), ElementPointStress(),
    ElementStress() and ElementVolumeEnergy() evaluate a state, ElementQuality() and CellVolume() a shape,
    FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes.
@@ -27,12 +28,15 @@ enum { KERNEL_LANES = 8 };
 /* The largest number of pressures of a mixed element: a linear pressure in space */
 enum { MIXED_PRESSURES = 4 };
 
-/* The accepted state of the quadrature points of a plastic batch. ElementKernel() and ElementAcceptState() take all
-   lanes, the functions that treat one cell take `lane` alone. */
+/* The accepted state of the points of a plastic batch, and the time since then. ElementKernel() and
+   ElementAcceptState() take all lanes, the functions that treat one cell take `lane` alone. */
 typedef struct {
   const Hardening *hardening;
-  double          *state; /* [points][PLASTIC_STATE][lanes] */
+  Umat            *umat; /* in the place of hardening, or NULL */
+  double           t, dt;
+  double          *state; /* [ElementStatePoints()][ElementStates()][lanes] */
   int              lane;
+  int              number[KERNEL_LANES]; /* of the elements, for umat */
 } PlasticBatch;
 
 typedef struct {
@@ -55,8 +59,12 @@ typedef struct {
 
 void   ElementKernel(const KernelCase *, const double *X, const double *u, const StressReference *,
                      const double *constants, const double *multiplier, double *W, double *f, double *K, double *J);
-void   ElementAcceptState(const KernelCase *, const double *X, const double *u, const double *constants);
+void   ElementAcceptState(const KernelCase *, const double *X, const double *u, const double *constants,
+                          const double *multiplier);
 int    ElementKernelExists(const KernelCase *);
+int    ElementStates(const PlasticBatch *);
+int    ElementStatePoints(const KernelCase *);
+void   ElementStateVolumes(const KernelCase *, const double *X, double *volume);
 int    ElementExtrapolates(const KernelCase *);
 void   ElementPointState(const KernelCase *, const double *X, const double *u, const double *constants,
                          const double *multiplier, double *H, double *pressure);

@@ -1,4 +1,4 @@
-/* Laws of isotropic hardening. */
+/* Laws of isotropic hardening, and of the overstress. */
 #include "hardening.h"
 #include <float.h>
 #include <math.h>
@@ -66,14 +66,41 @@ double HardeningStress(const Hardening *h, double strain, double *slope, double 
 }
 
 /*@
-  HardeningReturn - solves trial - stiffness x = yield stress(strain + x) for the increment x > 0 of the equivalent
-  plastic strain.
+  HardeningOverstress - returns what the rate of the plastic strain adds to the yield stress.
+
+  Not collective
+
+  Input Parameters:
++ h         - the hardening
+. increment - of the equivalent plastic strain, >= 0
+- dt        - time in which it grew, > 0 if the hardening has an overstress
+
+  Output Parameters:
++ slope - derivative of the overstress by the increment (stress); 0 at an increment of 0
+- work  - integral of the overstress over the increment (stress)
+@*/
+double HardeningOverstress(const Hardening *h, double increment, double dt, double *slope, double *work)
+{
+  double stress;
+
+  *slope = *work = 0;
+  if (h->overstress <= 0 || increment <= 0) return 0;
+  stress = h->overstress * pow(increment / (h->speed * dt), 1 / h->power);
+  *slope = stress / (h->power * increment);
+  *work  = stress * increment / (1 + 1 / h->power);
+  return stress;
+}
+
+/*@
+  HardeningReturn - solves trial - stiffness x = yield stress(strain + x) + overstress(x) for the increment x > 0 of the
+  equivalent plastic strain.
 
   Not collective
 
   Input Parameters:
 + h         - the hardening
 . strain    - equivalent plastic strain before
+. dt        - time of the increment
 . trial     - equivalent stress of the trial state, above the yield stress
 - stiffness - three times the shear modulus (stress)
 
@@ -81,15 +108,17 @@ double HardeningStress(const Hardening *h, double strain, double *slope, double 
   The left side falls and the right side does not, so there is one solution. It lies between 0 and (trial - yield
   stress) / stiffness. Newton's method, with bisection where it leaves the interval.
 @*/
-double HardeningReturn(const Hardening *h, double strain, double trial, double stiffness)
+double HardeningReturn(const Hardening *h, double strain, double dt, double trial, double stiffness)
 {
-  double slope, work, low = 0, high = (trial - HardeningStress(h, strain, &slope, &work)) / stiffness;
+  double slope, work, more, low = 0, high = (trial - HardeningStress(h, strain, &slope, &work)) / stiffness;
   double x = high * stiffness / (stiffness + slope);
 
   for (int i = 0; i < MAX_ITERATIONS; i++) {
-    const double left = trial - stiffness * x - HardeningStress(h, strain + x, &slope, &work);
+    const double over = HardeningOverstress(h, x, dt, &more, &work);
+    const double left = trial - stiffness * x - HardeningStress(h, strain + x, &slope, &work) - over;
     double       next;
 
+    slope += more;
     if (fabs(left) <= solved * trial) break;
     if (left > 0)
       low = x;

@@ -8,6 +8,7 @@
 #include "base/choices.h"
 #include "base/lanes.h"
 #include "kernels/hardening.h"
+#include "kernels/umat.h"
 
 extern const char *const MaterialLaws[]; /* words of the laws in a scene, NULL-terminated */
 
@@ -33,6 +34,7 @@ typedef struct {
   double      constants[MATERIAL_MAX_CONSTANTS];
   double      E, nu;     /* Young's modulus (stress), Poisson's ratio */
   Hardening   hardening; /* of a plastic law */
+  Umat       *umat;      /* of MATERIAL_UMAT; the scene owns it */
 } Material;
 
 /* LANES points are evaluated together, one in each lane of a vector as wide as the machine's registers. Component (i,
@@ -78,7 +80,7 @@ typedef struct {
      MATERIAL_TERMS is the key of a list of terms with two constants each. A law whose only key is mu takes E, too. */
   const char *keys[MATERIAL_MAX_KEYS + 1];
   int         required;
-  int         plastic; /* evaluate() is the elastic part of a law that has a state, see vonmises.h */
+  int         plastic; /* evaluate() is the elastic part of a law that has a state, see vonmises.h and umat.h */
 } ElasticLaw;
 
 #define MATERIAL_DECLARE(law, word, object) extern const ElasticLaw object;

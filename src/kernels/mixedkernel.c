@@ -142,6 +142,37 @@ static const Rule *GetRule(const Element *e, int output)
   return rule;
 }
 
+/*@
+  MixedPoints - counts the points at which a mixed element is integrated.
+
+  Not collective
+@*/
+int MixedPoints(const Element *e)
+{
+  return GetRule(e, 0)->points;
+}
+
+/*@
+  MixedPointVolumes - computes the reference volumes of these points, as ElementStateVolumes() does.
+
+  Not collective
+@*/
+void MixedPointVolumes(const Element *e, Geometry geometry, const double *X, double *volume)
+{
+  const Rule *rule = GetRule(e, 0);
+  double      lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES];
+
+  for (int k = 0; k < e->nodes * e->dim * KERNEL_LANES; k++) lanes_X[k] = X[k / KERNEL_LANES];
+  for (int q = 0; q < rule->points; q++) {
+    ChunkPoints c;
+    Lanes       lanes;
+
+    PointGradients(e->nodes, e->dim, geometry == GEOMETRY_AXISYMMETRIC, rule->N[q], rule->dN[q], rule->weight[q], 0,
+                   lanes_X, &c, &lanes);
+    volume[q] = lanes[0];
+  }
+}
+
 LANES_INLINE Lanes Root(Lanes a)
 {
   for (int lane = 0; lane < LANES; lane++) a[lane] = sqrt(a[lane]);
@@ -433,16 +464,17 @@ LANES_INLINE int Advance(const int dim, const BubbleSystem *s, const Lanes *d, B
   return left;
 }
 
-/* Solves for the bubble of each lane. A lane that does not converge gets J = NaN and no bubble. With small strains one
-   step is enough. */
+/* Solves for the bubble of each lane. A lane that does not converge gets J = NaN and no bubble. With small strains and
+   without plasticity one step is enough. */
 LANES_INLINE void SolveBubble(const BatchCall *call, const int points, const int modes, const int dim, const int hoop,
                               Mixed *x)
 {
-  BubbleState state = {.W = (Lanes){0} + __DBL_MAX__, .active = (Lanes){0} + 1};
-  int         left  = LANES;
+  const int   iterates = call->finite || call->state;
+  BubbleState state    = {.W = (Lanes){0} + __DBL_MAX__, .active = (Lanes){0} + 1};
+  int         left     = LANES;
 
   for (int q = 0; q < points; q++) state.scale += converged_strain2 * call->mu * x->volume[q];
-  for (int iteration = 0; left && iteration < (call->finite ? MAX_ITERATIONS : 1); iteration++) {
+  for (int iteration = 0; left && iteration < (iterates ? MAX_ITERATIONS : 1); iteration++) {
     BubbleSystem     s;
     BubbleDilatation dilatation;
     Lanes            d[MAX_BUBBLE];
@@ -451,7 +483,7 @@ LANES_INLINE void SolveBubble(const BatchCall *call, const int points, const int
     SolveBubbleSystem(dim, &s, d);
     left = Advance(dim, &s, d, &state, x);
   }
-  for (int lane = 0; lane < LANES && call->finite; lane++) {
+  for (int lane = 0; lane < LANES && iterates; lane++) {
     for (int k = 0; k < dim && state.active[lane] != 0; k++) x->b[k][lane] = 0;
     if (state.active[lane] != 0) call->J[lane] = NAN;
   }
@@ -614,18 +646,21 @@ LANES_INLINE void Condense(const int dofs, const int dim, double *full, double *
   }
 }
 
-/* Stores displacement gradient and pressure at the points of the element's table. */
+/* Stores displacement gradient and pressure at the points of the element's table, and the gradients at the points of
+   integration before them where all points of the state are asked for. */
 LANES_INLINE void StoreOutput(const BatchCall *call, const int n, const int bubble, const int modes, const int dim,
                               const int hoop, Mixed *x)
 {
-  const Rule *rule = GetRule(call->e, 1);
+  const Rule *rule  = GetRule(call->e, 1);
+  const int   first = call->all && bubble ? MixedPoints(call->e) : 0;
 
+  for (int q = 0; q < first; q++) StorePoint(call, q, x->H[q]);
   for (int q = 0; q < rule->points; q++) {
     Lanes H[9], phi[MIXED_PRESSURES], volume, dilatation, log_J;
 
     PointGradients(n + bubble, dim, hoop, rule->N[q], rule->dN[q], rule->weight[q], 0, x->X, &x->c, &volume);
     PointDisplacementGradient(n + bubble, dim, hoop, 0, x->u, &x->c, H);
-    StorePoint(call, q, H);
+    StorePoint(call, first + q, H);
     if (!call->pressure) continue;
     Monomials(n + bubble, modes, dim, rule->N[q], x, phi);
     Orthonormal(modes, x, phi);

@@ -30,6 +30,7 @@ static const XdmfArray shown[] = {
   {"von_mises", 1, SHOW_STRESS},
   {"stress", 6, SHOW_STRESS},
   {"plastic_strain", 1, SHOW_PLASTIC},
+  {"plastic_strain_tensor", 6, SHOW_PLASTIC},
   {"gap", 1, SHOW_CONTACT},
   {"penetration", 1, SHOW_CONTACT},
   {"penalty", 1, SHOW_CONTACT},
@@ -331,12 +332,13 @@ static PetscErrorCode FieldsWritePlasticStrain(Fields fields, hid_t file)
   PetscReal *strain, *weight;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(mesh->n_nodes, &strain, mesh->n_nodes, &weight));
+  PetscCall(PetscCalloc2(mesh->n_nodes * PLASTIC_FIELDS, &strain, mesh->n_nodes, &weight));
   PetscCall(ElasticityNodalPlasticStrain(fields->model->problem->elasticity, strain, weight));
-  PetscCall(MeshSumNodes(mesh, 1, strain));
+  PetscCall(MeshSumNodes(mesh, PLASTIC_FIELDS, strain));
   PetscCall(MeshSumNodes(mesh, 1, weight));
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) strain[n] /= weight[n];
-  PetscCall(FieldsWriteNodal(fields, file, "plastic_strain", strain, 1, 0, 1));
+  for (PetscInt k = 0; k < mesh->n_nodes * PLASTIC_FIELDS; k++) strain[k] /= weight[k / PLASTIC_FIELDS];
+  PetscCall(FieldsWriteNodal(fields, file, "plastic_strain", strain, PLASTIC_FIELDS, 0, 1));
+  PetscCall(FieldsWriteNodal(fields, file, "plastic_strain_tensor", strain, PLASTIC_FIELDS, 1, 6));
   PetscCall(PetscFree2(strain, weight));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -36,16 +36,17 @@ static PetscErrorCode PrintEffects(Model model, FILE *stream)
 PetscErrorCode PrecheckPlasticity(Model model, FILE *stream)
 {
   const Scene scene  = model->scene;
-  PetscInt64  points = ElasticityPlasticPoints(model->problem->elasticity);
+  PetscInt64  sum[2]; /* points and their bytes */
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   if (!SceneIsPlastic(scene)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &points, 1, MPIU_INT64, MPI_SUM, model->mesh->comm));
+  sum[0] = ElasticityPlasticPoints(model->problem->elasticity, &sum[1]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_INT64, MPI_SUM, model->mesh->comm));
   PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &rank));
   if (rank) PetscFunctionReturn(PETSC_SUCCESS);
-  fprintf(stream, "plastic  %lld quadrature points, %zu bytes each (%.3g MB)\n", (long long)points,
-          PLASTIC_STATE * sizeof(PetscReal), (double)points * PLASTIC_STATE * sizeof(PetscReal) / 1e6);
+  fprintf(stream, "plastic  %lld quadrature points, %lld bytes each (%.3g MB)\n", (long long)sum[0],
+          (long long)(sum[0] ? sum[1] / sum[0] : 0), (double)sum[1] / 1e6);
   for (int b = 0; b < scene->n_bodies; b++) {
     const SceneBody *body = &scene->bodies[b];
 

@@ -122,7 +122,9 @@ static int SceneStiffVolume(const SceneBody *body)
 /* Says whether mixed elements exist for the law of a body. With small strains all laws are Hooke's. */
 static int SceneLawSplits(Scene scene, const SceneBody *body)
 {
-  return scene->kinematics == KINEMATICS_SMALL || MaterialGetLaw(body->material.law)->separable;
+  const MaterialLaw law = body->material.law;
+
+  return MaterialGetLaw(law)->separable || (scene->kinematics == KINEMATICS_SMALL && law != MATERIAL_UMAT);
 }
 
 static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
@@ -133,7 +135,9 @@ static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
   PetscFunctionBeginUser;
   body->chosen = choice == FORMULATIONS;
   if (body->chosen && plastic)
-    body->formulation = scene->order == 2 ? FORMULATION_FULL : FORMULATION_FBAR;
+    body->formulation = scene->order == 1                        ? FORMULATION_FBAR
+                        : body->material.law == MATERIAL_VON_MISES ? FORMULATION_MIXED
+                                                                   : FORMULATION_FULL;
   else if (body->chosen)
     body->formulation = SceneStiffVolume(body) && SceneLawSplits(scene, body) ? FORMULATION_MIXED : FORMULATION_FULL;
   else
@@ -142,13 +146,13 @@ static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
     PetscCall(SceneRefuse(scene, body->path, "formulation",
                           "is for first-order elements; allowed with mesh.order: 2: full | mixed",
                           Formulations[body->formulation]));
-  if (body->formulation == FORMULATION_MIXED && plastic)
-    PetscCall(SceneRefuse(scene, body->path, "formulation",
-                          "is not for plastic bodies; allowed with von_mises: full | enhanced | fbar | auto",
+  if (body->formulation == FORMULATION_ENHANCED && body->material.law == MATERIAL_UMAT)
+    PetscCall(SceneRefuse(scene, body->path, "formulation", "needs an energy; allowed with umat: full | fbar",
                           Formulations[body->formulation]));
   if (body->formulation == FORMULATION_MIXED && !SceneLawSplits(scene, body))
     PetscCall(SceneRefuse(scene, body->path, "formulation",
-                          "needs a law whose volume part is separate; allowed with svk: full | enhanced | fbar",
+                          "needs a law whose volume part is separate; allowed with svk: full | enhanced | fbar, with umat: full | "
+                          "fbar",
                           Formulations[body->formulation]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -179,6 +183,7 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
   }
   PetscCall(SceneReadMaterial(scene, body));
   PetscCall(SceneReadPlasticity(scene, body));
+  PetscCall(SceneReadRoutine(scene, body));
   PetscCall(SceneReadFormulation(scene, body));
   PetscCall(SceneCheckIncompressible(scene, body));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -903,6 +908,7 @@ static PetscErrorCode SceneDestroyBodies(Scene scene)
     SceneBody *body = &scene->bodies[i];
 
     PetscCall(MotionFree(&body->motion));
+    UmatClose(&body->material.umat);
     PetscCall(PetscFree(body->path));
     PetscCall(PetscFree(body->name));
   }
@@ -1059,6 +1065,21 @@ PetscBool SceneIsPlastic(Scene scene)
 {
   for (int b = 0; b < scene->n_bodies; b++)
     if (!scene->bodies[b].rigid && MaterialGetLaw(scene->bodies[b].material.law)->plastic) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/*@
+  SceneHasRoutine - tells whether the law of some body is a routine of the user, which has no potential.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. scene - the scene
+@*/
+PetscBool SceneHasRoutine(Scene scene)
+{
+  for (int b = 0; b < scene->n_bodies; b++)
+    if (scene->bodies[b].material.umat) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 

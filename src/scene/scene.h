@@ -203,6 +203,7 @@ PetscBool      SceneSameProblem(const char *a, const char *b);
 const char    *SceneWhere(Scene, const char *path, const char *key);
 void           SceneBodySkin(const SceneBody *, char *name, size_t size);
 PetscBool      SceneIsPlastic(Scene);
+PetscBool      SceneHasRoutine(Scene);
 PetscBool      SceneBreaks(Scene, PetscReal t);
 PetscBool      SceneLoadVaries(const SceneLoad *, int component);
 PetscReal      SceneLoadValue(const SceneLoad *, int component, const PetscReal X[3], PetscReal t);

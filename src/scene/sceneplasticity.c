@@ -1,4 +1,4 @@
-/* Yield stress and hardening of a plastic body, see sceneplasticity.h. */
+/* Yield stress and hardening of a plastic body, and routines of users, see sceneplasticity.h. */
 #include "sceneplasticity.h"
 #include "sceneread.h"
 #include <math.h>
@@ -52,6 +52,26 @@ static PetscErrorCode SceneReadTerms(Scene scene, const SceneBody *body, Hardeni
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads backstresses and overstress. */
+static PetscErrorCode SceneReadRates(Scene scene, const SceneBody *body, Hardening *h)
+{
+  Document *const document = SceneDocument(scene);
+
+  PetscFunctionBeginUser;
+  if (SceneHas(scene, body->path, "material.kinematic"))
+    h->terms = SchemaCount(document, "%s.material.kinematic", body->path);
+  for (int k = 0; k < h->terms; k++) {
+    h->backstress[k][0] = SchemaReal(document, "%s.material.kinematic.%d.C", body->path, k);
+    h->backstress[k][1] = SchemaReal(document, "%s.material.kinematic.%d.gamma", body->path, k);
+  }
+  if (SceneHas(scene, body->path, "material.perzyna")) {
+    h->overstress = MaterialReal(scene, body, "perzyna.overstress");
+    h->speed      = MaterialReal(scene, body, "perzyna.speed");
+    h->power      = MaterialReal(scene, body, "perzyna.power");
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SceneReadPlasticity - reads yield stress and hardening of a body, or refuses them where the law has none.
 
@@ -65,15 +85,16 @@ PetscErrorCode SceneReadPlasticity(Scene scene, SceneBody *body)
 {
   static const char *const Terms[] = {"material.hardening.linear", "material.hardening.voce",
                                       "material.hardening.swift"};
-  const int                plastic = MaterialGetLaw(body->material.law)->plastic;
+  static const char *const Own[]   = {"material.yield", "material.hardening", "material.kinematic", "material.perzyna"};
+  const int                plastic = body->material.law == MATERIAL_VON_MISES;
   const int                table   = SceneHas(scene, body->path, "material.hardening.table");
   const int                yield   = SceneHas(scene, body->path, "material.yield");
 
   PetscFunctionBeginUser;
   if (!plastic) {
-    if (yield) PetscCall(SceneRefuse(scene, body->path, "material.yield", "is for law: von_mises", NULL));
-    if (SceneHas(scene, body->path, "material.hardening"))
-      PetscCall(SceneRefuse(scene, body->path, "material.hardening", "is for law: von_mises", NULL));
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(Own); k++)
+      if (SceneHas(scene, body->path, Own[k]))
+        PetscCall(SceneRefuse(scene, body->path, Own[k], "is for law: von_mises", NULL));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (yield && table)
@@ -93,5 +114,63 @@ PetscErrorCode SceneReadPlasticity(Scene scene, SceneBody *body)
     body->material.hardening.yield = MaterialReal(scene, body, "yield");
     PetscCall(SceneReadTerms(scene, body, &body->material.hardening));
   }
+  PetscCall(SceneReadRates(scene, body, &body->material.hardening));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads the list of constants of a routine. */
+static PetscErrorCode SceneReadConstants(Scene scene, const SceneBody *body, int *n, double **constants)
+{
+  const Node list = SceneHas(scene, body->path, "material.constants") ? SceneNode(scene, body->path, "material.constants")
+                                                                      : NULL;
+
+  PetscFunctionBeginUser;
+  *n = list ? list->n : 0;
+  PetscCall(PetscMalloc1(*n, constants));
+  for (int k = 0; k < *n; k++) (void)NodeReal(list->child[k], &(*constants)[k]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SceneReadRoutine - loads the routine of a body with law: umat, or refuses the keys of one where the law is another.
+
+  Collective
+
+  Input Parameters:
++ scene - the scene
+- body  - its law has been read; its material.umat is set, which UmatClose() frees
+
+  Note:
+  The path of the library counts from the folder of the scene.
+@*/
+PetscErrorCode SceneReadRoutine(Scene scene, SceneBody *body)
+{
+  static const char *const Own[] = {"material.library", "material.constants", "material.states"};
+  char                     path[PETSC_MAX_PATH_LEN], message[UMAT_MESSAGE];
+  const char              *file;
+  double                  *constants;
+  int                      n, failed;
+
+  PetscFunctionBeginUser;
+  if (body->material.law != MATERIAL_UMAT) {
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(Own); k++)
+      if (SceneHas(scene, body->path, Own[k]))
+        PetscCall(SceneRefuse(scene, body->path, Own[k], "is for law: umat", NULL));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (!SceneHas(scene, body->path, Own[0]))
+    PetscCall(SceneRefuse(scene, body->path, Own[0], "is missing; allowed: the path of a shared library", NULL));
+  file = SchemaText(SceneDocument(scene), "%s.%s", body->path, Own[0]);
+  if (snprintf(path, sizeof path, "%s%s%s", file[0] == '/' ? "" : scene->directory, file[0] == '/' ? "" : "/", file) >=
+      (int)sizeof path)
+    PetscCall(SceneRefuse(scene, body->path, Own[0], "the path is too long", NULL));
+  PetscCall(SceneReadConstants(scene, body, &n, &constants));
+  failed = UmatOpen(path, body->name, n, constants, SchemaInteger(SceneDocument(scene), "%s.%s", body->path, Own[2]),
+                    &body->material.umat, message);
+  PetscCall(PetscFree(constants));
+  if (failed)
+    PetscCall(SceneRefuse(scene, body->path, Own[0],
+                          "cannot be loaded; allowed: a shared library with a routine umat, see scripts/build_umat.sh",
+                          message));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -35,6 +35,7 @@ static void SchemaAllowed(const SchemaKey *key, char *text, size_t size)
     {POINT, "[x, y, z] (2D: [x, y])"},
     {POINTS, "[[x, y, z], [x, y, z]] (2D: [[x, y], [x, y]])"},
     {REALS, "an increasing list of numbers"},
+    {NUMBERS, "a list of numbers"},
     {TEXTS, "a list of names"},
     {CHOICES, "a list of"},
     {HISTORY, "[[t, factor], ...], at least two, t increasing from 0 within [0, 1]"},
@@ -219,7 +220,7 @@ static const char *CheckPairs(Node node)
 
 static const char *CheckEntries(const SchemaKey *key, Node node)
 {
-  const int   type = key->type & REALS ? REAL : key->type & TEXTS ? TEXT : CHOICE;
+  const int   type = key->type & (REALS | NUMBERS) ? REAL : key->type & TEXTS ? TEXT : CHOICE;
   const char *wrong;
   double      value, before = -HUGE_VAL;
 
@@ -230,7 +231,7 @@ static const char *CheckEntries(const SchemaKey *key, Node node)
       for (int j = 0; j < i; j++) {
         if (!strcmp(node->child[i]->text, node->child[j]->text)) return "names something twice";
       }
-    } else if (NodeReal(node->child[i], &value)) {
+    } else if (key->type & REALS && NodeReal(node->child[i], &value)) {
       if (value <= before) return "is not increasing";
       before = value;
     }
@@ -249,7 +250,7 @@ static const char *CheckList(const SchemaKey *key, Node node)
   if (key->type & HISTORY) return CheckHistory(node);
   if (key->type & TABLE) return CheckTable(node);
   if (key->type & PAIRS) return CheckPairs(node);
-  if (key->type & (REALS | TEXTS | CHOICES)) return CheckEntries(key, node);
+  if (key->type & (REALS | NUMBERS | TEXTS | CHOICES)) return CheckEntries(key, node);
   return WrongType;
 }
 

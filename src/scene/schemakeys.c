@@ -37,9 +37,9 @@ const SchemaKey SchemaKeys[] = {
   {"bodies.*.material", MAP, .help = "material of a deformable body"},
   {"bodies.*.material.law", CHOICE, REQUIRED, .values = CHOICE_WORDS(ELASTIC_LAWS),
    .help = "law of the material; linear is allowed only with kinematics: small; von_mises yields and needs yield or "
-           "hardening.table"},
+           "hardening.table; umat is a routine of the user's"},
   {"bodies.*.material.E", REAL, .range = "(0, inf)", .unit = "stress",
-   .help = "Young's modulus of linear, svk, neo_hookean, isochoric_neo_hookean and von_mises; needed there, or mu"},
+   .help = "Young's modulus of linear, svk, neo_hookean, isochoric_neo_hookean, von_mises and umat; needed there, or mu"},
   {"bodies.*.material.nu", REAL, .range = "(-1, 0.5]",
    .help = "Poisson's ratio of the undeformed state; 0.5 is incompressible. Every material has one of nu, K and "
            "incompressible"},
@@ -75,12 +75,31 @@ const SchemaKey SchemaKeys[] = {
   {"bodies.*.material.hardening.swift.strength", REAL, REQUIRED, .range = "(0, inf)", .unit = "stress",
    .help = "yield stress at e0 + strain = 1"},
   {"bodies.*.material.hardening.swift.exponent", REAL, REQUIRED, .range = "(0, 1]", .help = "exponent"},
+  {"bodies.*.material.kinematic", LIST, .range = "[1, 4]",
+   .help = "of von_mises: backstresses of Armstrong and Frederick, which are added"},
+  {"bodies.*.material.kinematic.*", MAP, .help = "a backstress"},
+  {"bodies.*.material.kinematic.*.C", REAL, REQUIRED, .range = "(0, inf)", .unit = "stress",
+   .help = "slope of the backstress over the plastic strain, in tension and at its start"},
+  {"bodies.*.material.kinematic.*.gamma", REAL, .range = "[0, inf)", .preset = "0",
+   .help = "rate of its recovery: in tension it grows to C/gamma; 0: it grows on"},
+  {"bodies.*.material.perzyna", MAP,
+   .help = "of von_mises: the plastic strain grows at the rate speed*((stress - yield stress)/overstress)^power"},
+  {"bodies.*.material.perzyna.overstress", REAL, REQUIRED, .range = "(0, inf)", .unit = "stress",
+   .help = "excess over the yield stress at the rate speed"},
+  {"bodies.*.material.perzyna.speed", REAL, REQUIRED, .range = "(0, inf)",
+   .help = "plastic strain in a unit of the load parameter t, which is the time"},
+  {"bodies.*.material.perzyna.power", REAL, .range = "[1, inf)", .preset = "1", .help = "power of the excess"},
+  {"bodies.*.material.library", FILENAME,
+   .help = "of umat, needed there: a shared library with Abaqus's UMAT interface; the path counts from the folder of "
+           "the scene. E and nu are the moduli of the undeformed state there, for penalties"},
+  {"bodies.*.material.constants", NUMBERS, .help = "of umat: PROPS"},
+  {"bodies.*.material.states", INTEGER, .range = "[0, 100]", .preset = "0", .help = "of umat: NSTATV"},
   {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar | mixed | auto", .preset = "auto",
    .help = "formulation of the elements; enhanced and fbar are for first-order quadrilaterals and bricks, of which "
            "enhanced bends without locking and fbar keeps its volume without locking. mixed has pressures of its own, "
            "for materials that keep their volume nearly or exactly: all elements but first-order triangles and "
            "tetrahedra. auto: mixed where the bulk modulus is above 20 times the shear modulus (nu above 0.475), "
-           "otherwise full; von_mises takes fbar at order 1 and full at order 2"},
+           "otherwise full; von_mises takes fbar at order 1 and mixed at order 2, umat fbar and full"},
   {"bodies.*.surface", TEXT, .help = "physical surface of a rigid tool; needs rigid"},
   {"bodies.*.rigid", MAP, .help = "makes the surface a meshed rigid tool"},
   {"bodies.*.rigid.point", POINT, .unit = "length",

@@ -196,7 +196,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscBool       ok;
 
   PetscFunctionBeginUser;
-  PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u));
+  PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t));
   if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u));
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));

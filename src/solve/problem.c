@@ -144,6 +144,7 @@ PetscErrorCode ProblemResidual(Problem problem, const PetscReal *u, PetscReal t,
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(problem->f, problem->mesh->n_nodes * problem->mesh->dim));
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
+  ElasticitySetTime(problem->elasticity, t);
   PetscCall(ElasticityResidual(problem->elasticity, u, problem->f, NULL, &sum[0], &mine));
   PetscCall(LoadsResidual(problem->loads, t, u, problem->f, NULL, &sum[1]));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
@@ -206,6 +207,7 @@ PetscErrorCode ProblemEnergy(Problem problem, const PetscReal *u, PetscReal t, i
 
   PetscFunctionBeginUser;
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
+  ElasticitySetTime(problem->elasticity, t);
   if (parts & ENERGY_ELASTIC) PetscCall(ElasticityResidual(problem->elasticity, u, NULL, &sum[0], NULL, &mine));
   if (parts & ENERGY_VOLUME) PetscCall(ElasticityVolumeEnergy(problem->elasticity, u, &sum[0]));
   if (parts & ENERGY_LOADS) PetscCall(LoadsResidual(problem->loads, t, u, NULL, &sum[0], NULL));
@@ -288,6 +290,7 @@ PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const StressR
   *change = (TangentChange){.C = NULL};
   if (problem->contact) PetscCall(ProblemContactTangent(problem, u, t, change));
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
+  ElasticitySetTime(problem->elasticity, t);
   PetscCall(ElasticityTangent(problem->elasticity, u, reference));
   PetscCall(LoadsTangent(problem->loads, t, u, problem->elasticity));
   PetscCall(ElasticityMatrix(problem->elasticity, joined ? change->C : NULL, problem->diagonal, &problem->P));
@@ -442,6 +445,7 @@ PetscErrorCode ProblemInOrder(Problem problem, const PetscReal *u_0, PetscReal t
 
   PetscFunctionBeginUser;
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
+  ElasticitySetTime(problem->elasticity, t);
   PetscCall(ElasticityResidual(problem->elasticity, u, NULL, NULL, NULL, &mine));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   PetscCallMPI(MPI_Allreduce(&mine, ok, sizeof(PetscBool), MPI_BYTE, MPI_BAND, problem->mesh->comm));
@@ -584,7 +588,8 @@ PetscBool ProblemIsPlastic(Problem problem)
 @*/
 PetscBool ProblemConservative(Problem problem)
 {
-  return (PetscBool)(LoadsConservative(problem->loads) && !ContactHasFriction(problem->contact));
+  return (PetscBool)(LoadsConservative(problem->loads) && !ContactHasFriction(problem->contact) &&
+                     !SceneHasRoutine(problem->scene));
 }
 
 /*@

@@ -15,9 +15,12 @@ REFERENCE = {3: (73613, 6.1133), 5: (76387, 5.9111), 7: (73395, 5.5277), 8: (693
              10: (57949, 4.4187)}
 CASES = {
     "fbar, 16 x 48": ["mesh.parameters={nr: 16, nl: 48, progression: 1.04}"],
-    "second order, 8 x 24": ["mesh.order=2"],
+    "second order, 8 x 24": ["mesh.order=2", "bodies.0.formulation=full"],
+    "mixed, 16 x 48": ["bodies.0.formulation=mixed", "mesh.parameters={nr: 16, nl: 48, progression: 1.04}"],
+    "mixed second order, 8 x 24": ["mesh.order=2", "bodies.0.formulation=mixed"],
+    "mixed triangles, 8 x 24": ["mesh.order=2", "bodies.0.formulation=mixed", "mesh.parameters.simplex=1"],
     "enhanced, 16 x 48": ["bodies.0.formulation=enhanced", "mesh.parameters={nr: 16, nl: 48, progression: 1.04}"],
-    "triangles of second order, 8 x 24": ["mesh.order=2", "mesh.parameters.simplex=1"],
+    "triangles of second order, 8 x 24": ["mesh.order=2", "bodies.0.formulation=full", "mesh.parameters.simplex=1"],
 }
 args = arguments()
 check = Check()

@@ -13,7 +13,8 @@ E, Y, A, B, BORE = 21000, 24, 1, 2, 0.02
 PLANE = 2 * Y / math.sqrt(3)
 LIMIT = PLANE * math.log(B / A)
 ALLOWED, ALLOWED_LIMIT = 0.01, 0.005  # parts of the limit
-CASES = [("fbar", 1, 0.4999), ("enhanced", 1, 0.4999), ("fbar", 1, 0.3), ("enhanced", 1, 0.3), ("full", 2, 0.3)]
+CASES = [("fbar", 1, 0.4999), ("enhanced", 1, 0.4999), ("fbar", 1, 0.3), ("enhanced", 1, 0.3), ("full", 2, 0.3),
+         ("mixed", 1, 0.4999), ("mixed", 2, 0.4999), ("mixed", 2, 0.3)]
 FORMS = {"plane_strain": 0, "solid": 1, "axisymmetric": 2}
 
 

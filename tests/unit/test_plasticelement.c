@@ -14,15 +14,26 @@
 enum { MAX_DOFS = ELEMENT_MAX_NODES * 3 };
 
 static const double    E = 200, nu = 0.3;
-static const Hardening hardening = {.yield = 0.5, .linear = 3, .saturation = 0.9, .rate = 15};
+static const Hardening hardenings[] = {
+  {.yield = 0.5, .linear = 3, .saturation = 0.9, .rate = 15},
+  {.yield      = 0.5,
+   .linear     = 3,
+   .terms      = 2,
+   .backstress = {{5, 30}, {2, 0}},
+   .overstress = 0.2,
+   .speed      = 0.7,
+   .power      = 3},
+  {.yield = 0.5, .linear = 3, .terms = 1, .backstress = {{5, 30}}},
+};
+enum { HARDENINGS = sizeof hardenings / sizeof *hardenings };
 
 typedef struct {
   KernelCase     kernel;
   PlasticBatch   plastic;
   const Element *e;
-  int            dofs;
+  int            dofs, states; /* states: of a point */
   double         X[MAX_DOFS * KERNEL_LANES], u[MAX_DOFS * KERNEL_LANES], constants[2 * KERNEL_LANES],
-    state[ELEMENT_MAX_POINTS * PLASTIC_STATE * KERNEL_LANES], W[KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES],
+    state[ELEMENT_MAX_POINTS * PLASTIC_MAX_STATE * KERNEL_LANES], W[KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES],
     J[KERNEL_LANES];
 } Batch;
 
@@ -44,15 +55,16 @@ static void Deform(Batch *b, double stretch)
   }
 }
 
-static void BatchCreate(Batch *b, KernelCase kernel)
+static void BatchCreate(Batch *b, KernelCase kernel, const Hardening *hardening)
 {
   const Material material = MaterialFromModuli(MATERIAL_VON_MISES, E, nu);
 
   memset(b, 0, sizeof *b);
   b->kernel         = kernel;
-  b->plastic        = (PlasticBatch){.hardening = &hardening, .state = b->state};
+  b->plastic        = (PlasticBatch){.hardening = hardening, .dt = 0.4, .state = b->state};
   b->kernel.plastic = &b->plastic;
   b->e              = ElementGet(kernel.type);
+  b->states         = PlasticStates(hardening);
   b->dofs           = b->e->nodes * b->e->dim;
   for (int lane = 0; lane < KERNEL_LANES; lane++) {
     for (int k = 0; k < 2; k++) b->constants[k * KERNEL_LANES + lane] = material.constants[k];
@@ -61,7 +73,7 @@ static void BatchCreate(Batch *b, KernelCase kernel)
         b->e->node[k / b->e->dim][k % b->e->dim] + 0.1 * Random() + (k % b->e->dim == 0 ? 3 : 0);
   }
   Deform(b, 0.04);
-  ElementAcceptState(&b->kernel, b->X, b->u, b->constants);
+  ElementAcceptState(&b->kernel, b->X, b->u, b->constants, NULL);
 }
 
 static void Evaluate(Batch *b, double *W, double *f, double *K)
@@ -69,13 +81,13 @@ static void Evaluate(Batch *b, double *W, double *f, double *K)
   ElementKernel(&b->kernel, b->X, b->u, NULL, b->constants, NULL, W, f, K, b->J);
 }
 
-/* All elements x geometries x formulations with a kernel, in small and in finite strains */
-static int NextCase(KernelCase *kernel)
+/* All hardenings x elements x geometries x formulations with a kernel, in small and in finite strains */
+static int NextCase(KernelCase *kernel, const Hardening **hardening)
 {
   static int next = 0;
 
-  for (; next < ELEMENT_TYPES * 2 * 2 * FORMULATIONS; next++) {
-    const ElementType type = (ElementType)(next / (4 * FORMULATIONS));
+  for (; next < HARDENINGS * ELEMENT_TYPES * 2 * 2 * FORMULATIONS; next++) {
+    const ElementType type = (ElementType)(next / (4 * FORMULATIONS) % ELEMENT_TYPES);
     const int         axis = next / (2 * FORMULATIONS) % 2, dim = ElementGet(type)->dim;
 
     *kernel = (KernelCase){.type        = type,
@@ -86,6 +98,7 @@ static int NextCase(KernelCase *kernel)
                            .law         = MATERIAL_VON_MISES,
                            .formulation = (Formulation)(next % FORMULATIONS)};
     if (dim < 2 || (dim == 3 && axis) || !ElementKernelExists(kernel)) continue;
+    *hardening = &hardenings[next / (ELEMENT_TYPES * 4 * FORMULATIONS)];
     next++;
     return 1;
   }
@@ -98,24 +111,25 @@ static double LargestStrain(const Batch *b, int lane)
   double strain = 0;
 
   for (int p = 0; p < b->e->points; p++)
-    strain = fmax(strain, b->state[(p * PLASTIC_STATE + PLASTIC_STRAIN) * KERNEL_LANES + lane]);
+    strain = fmax(strain, b->state[(p * b->states + PLASTIC_STRAIN) * KERNEL_LANES + lane]);
   return strain;
 }
 
 static void ForceAndTangentAreDerivatives(void **unused)
 {
-  const double step = 1e-6;
-  KernelCase   kernel;
-  int          cases = 0;
+  const double     step = 2e-7; /* the onset of viscous flow is curved */
+  const Hardening *hardening;
+  KernelCase       kernel;
+  int              cases = 0;
 
   (void)unused;
-  for (; NextCase(&kernel); cases++) {
+  for (; NextCase(&kernel, &hardening); cases++) {
     Batch   b;
     double *K, f[MAX_DOFS * KERNEL_LANES], plus[MAX_DOFS * KERNEL_LANES], minus[MAX_DOFS * KERNEL_LANES],
       W[2][KERNEL_LANES];
     double stiffness = 0;
 
-    BatchCreate(&b, kernel);
+    BatchCreate(&b, kernel, hardening);
     for (int lane = 0; lane < KERNEL_LANES; lane++) assert_true(LargestStrain(&b, lane) > 0.005);
     Deform(&b, 0.06);
     K = calloc((size_t)b.dofs * b.dofs * KERNEL_LANES, sizeof *K);
@@ -138,46 +152,52 @@ static void ForceAndTangentAreDerivatives(void **unused)
     }
     free(K);
   }
-  assert_true(cases > 30);
+  assert_true(cases > 80);
 }
 
 /* Energy and force are the same after a state was accepted. Accepted again, it stays. */
 static void AcceptedStateStays(void **unused)
 {
-  KernelCase kernel;
+  const Hardening *hardening;
+  KernelCase       kernel;
 
   (void)unused;
-  while (NextCase(&kernel)) {
+  while (NextCase(&kernel, &hardening)) {
     Batch  b, again;
     double f[MAX_DOFS * KERNEL_LANES], W[KERNEL_LANES], largest = 0;
+    int    bubble = ElementStatePoints(&kernel) > ElementGet(kernel.type)->points;
 
-    BatchCreate(&b, kernel);
+    BatchCreate(&b, kernel, hardening);
     Deform(&b, 0.06);
     Evaluate(&b, b.W, b.f, NULL);
-    ElementAcceptState(&b.kernel, b.X, b.u, b.constants);
+    ElementAcceptState(&b.kernel, b.X, b.u, b.constants, NULL);
+    b.plastic.dt = 0;
     Evaluate(&b, W, f, NULL);
     for (int k = 0; k < b.dofs * KERNEL_LANES; k++) largest = fmax(largest, fabs(f[k]));
     for (int k = 0; k < b.dofs * KERNEL_LANES; k++) assert_near(f[k], b.f[k], 1e-7 * largest);
-    for (int lane = 0; lane < KERNEL_LANES; lane++) assert_near(W[lane], b.W[lane], 1e-9 * W[lane]);
+    for (int lane = 0; lane < KERNEL_LANES && hardening->overstress <= 0; lane++)
+      assert_near(W[lane], b.W[lane], 1e-9 * W[lane]);
     again                = b;
     again.plastic.state  = again.state;
     again.kernel.plastic = &again.plastic;
-    ElementAcceptState(&again.kernel, b.X, b.u, b.constants);
-    for (int k = 0; k < b.e->points * PLASTIC_STATE * KERNEL_LANES; k++)
-      assert_near(again.state[k], b.state[k], kernel.formulation == FORMULATION_ENHANCED ? 1e-7 : 0);
+    ElementAcceptState(&again.kernel, b.X, b.u, b.constants, NULL);
+    for (int k = 0; k < ElementStatePoints(&b.kernel) * b.states * KERNEL_LANES; k++)
+      assert_near(again.state[k], b.state[k], kernel.formulation == FORMULATION_ENHANCED || bubble ? 1e-7 : 0);
   }
 }
 
 /* The stress of one cell is that of its lane. */
 static void StressIsThatOfTheLane(void **unused)
 {
-  KernelCase kernel;
+  const Hardening *hardening;
+  KernelCase       kernel;
 
   (void)unused;
-  while (NextCase(&kernel)) {
+  while (NextCase(&kernel, &hardening)) {
     Batch b;
 
-    BatchCreate(&b, kernel);
+    if (hardening->terms) continue;
+    BatchCreate(&b, kernel, hardening);
     for (int lane = 0; lane < KERNEL_LANES; lane++) {
       double X[MAX_DOFS], u[MAX_DOFS], constants[2], stress[ELEMENT_MAX_POINTS * 6], volume[ELEMENT_MAX_POINTS];
 
@@ -190,13 +210,13 @@ static void StressIsThatOfTheLane(void **unused)
       ElementPointStress(&b.kernel, X, u, constants, NULL, stress, volume);
       for (int p = 0; p < b.e->points; p++) {
         const double *s = &stress[6 * p], mean = (s[0] + s[1] + s[2]) / 3;
-        const double  strain = b.state[(p * PLASTIC_STATE + PLASTIC_STRAIN) * KERNEL_LANES + lane];
-        double        slope, work, yield = HardeningStress(&hardening, strain, &slope, &work), square = 0, J = 1;
+        const double  strain = b.state[(p * b.states + PLASTIC_STRAIN) * KERNEL_LANES + lane];
+        double        slope, work, yield = HardeningStress(hardening, strain, &slope, &work), square = 0, J = 1;
 
         for (int i = 0; i < 3; i++) square += (s[i] - mean) * (s[i] - mean) + 2 * s[3 + i] * s[3 + i];
         for (int i = 0; i < 50; i++) J = exp(3 * mean * (1 - 2 * nu) / E * J); /* mean = bulk ln J / J */
         if (kernel.kinematics == KINEMATICS_FINITE) yield /= J;                /* Kirchhoff stress is J times Cauchy */
-        if (strain > 0 && kernel.formulation != FORMULATION_ENHANCED)
+        if (strain > 0 && kernel.formulation != FORMULATION_ENHANCED && kernel.formulation != FORMULATION_MIXED)
           assert_near(sqrt(1.5 * square), yield, 1e-10 * yield);
       }
     }

@@ -26,7 +26,7 @@ typedef struct {
   PetscReal   *X; /* [nodes][dim][lanes] */
   PetscReal   *constants;   /* of the law [n_constants][lanes] */
   PetscInt     multipliers; /* where those of the first batch are in VolumeState; -1: the group has none */
-  PetscReal   *state;       /* of a plastic law, accepted [points][PLASTIC_STATE][lanes]; else NULL */
+  PetscReal   *state;       /* of a plastic law, accepted [points][states][lanes]; else NULL */
   PlasticBatch plastic;     /* what kernel.plastic points to, for the batch at hand */
 } CellGroup;
 
@@ -51,6 +51,7 @@ struct _n_Elasticity {
   PetscInt    inverted;     /* a local cell that the last residual found inverted, or -1 */
   PetscBool   symmetric;
   NodeMatrix  matrix;
+  PetscReal   accepted_t; /* time of the accepted plastic state */
   PetscBool   augments; /* a body has multipliers, perhaps on other ranks only */
   VolumeState state, accepted;
 };

@@ -40,8 +40,10 @@ typedef struct {
   const ElasticLaw *law;
   int               finite, n_constants;
   const Lanes      *constants;
-  const Hardening  *hardening;
-  const double     *state; /* of a plastic law [points][PLASTIC_STATE], or NULL */
+  const PlasticBatch *plastic;
+  const double       *state; /* of a plastic law [points][states], or NULL; its first lane */
+  int                 states, part; /* part: of the batch, its first lane */
+  int                 all; /* H takes all points of the state */
   const double     *X, *u;
   const double     *u_0;  /* displacements from which K extrapolates the stress, or NULL */
   double            rate; /* of StressReference */
@@ -251,21 +253,26 @@ LANES_INLINE void StartLeastJ(const BatchCall *call)
 LANES_INLINE void KeepLeastJ(const BatchCall *call, const Lanes *dilatation)
 {
   for (int lane = 0; lane < LANES && call->finite; lane++) {
-    if (!(1 + (*dilatation)[lane] >= call->J[lane]))
+    if (!(1 + (*dilatation)[lane] >= call->J[lane]) && !isnan(call->J[lane]))
       call->J[lane] = 1 + (*dilatation)[lane]; /* the negated comparison lets NaN through */
   }
 }
+
+void PointUmat(const BatchCall *, int p, const Lanes H[9], double *next, Lanes *W, Lanes P[9],
+               Lanes A[MATERIAL_TANGENT_SIZE]);
 
 /* Evaluates the law at quadrature point p of the element. */
 LANES_INLINE void PointLaw(const BatchCall *call, int p, const Lanes H[9], const Lanes *dilatation, Lanes *W,
                            Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
-  if (call->state) {
-    Lanes state[PLASTIC_STATE];
+  if (call->state && call->plastic->umat)
+    PointUmat(call, p, H, NULL, W, P, A);
+  else if (call->state) {
+    Lanes state[PLASTIC_MAX_STATE];
 
-    for (int k = 0; k < PLASTIC_STATE; k++) state[k] = CONST_LANE(call->state, p * PLASTIC_STATE + k);
-    VonMisesLaw(call->finite, H, dilatation, &call->constants[0], &call->constants[1], call->hardening, state, W, P, A,
-                NULL);
+    for (int k = 0; k < call->states; k++) state[k] = CONST_LANE(call->state, p * call->states + k);
+    VonMisesLaw(call->finite, H, dilatation, &call->constants[0], &call->constants[1], call->plastic->hardening,
+                call->plastic->dt, state, W, P, A, NULL);
   } else
     call->law->evaluate(H, dilatation, call->n_constants, call->constants, W, P, A);
 }
@@ -282,3 +289,6 @@ extern BatchFn *const enhanced_batches[ELEMENT_TYPES][2];
 extern BatchFn *const mean_dilatation_batches[ELEMENT_TYPES][2];
 extern BatchFn *const mixed_batches[ELEMENT_TYPES][2];
 extern const int      mixed_pressures[ELEMENT_TYPES];
+
+int  MixedPoints(const Element *);
+void MixedPointVolumes(const Element *, Geometry, const double *X, double *volume);

@@ -15,6 +15,7 @@
        displacement          N x 3 (third component 0 in 2D)
        stress, von_mises     N x 6 (xx yy zz xy yz xz, Cauchy), N
        plastic_strain        N, equivalent; where a body is plastic
+       plastic_strain_tensor N x 6, as stress
        contact/PAIR/         gap, penetration, penalty, pressure: n; normal: n x 3; rows as /contact/PAIR/nodes;
                              attribute plane (point, normal), cylinder (point, axis, radius) or sphere (centre, radius)
                              where the master is one

@@ -26,6 +26,7 @@ typedef enum {
   FORMULA  = 1 << 16, /* an expression; with POINT, each of its entries may be one */
   PAIRS    = 1 << 17, /* a list of pairs of reals */
   TABLE    = 1 << 18, /* a list of pairs [a, b], the a increasing from 0 */
+  NUMBERS  = 1 << 19, /* a list of reals in any order */
 } ValueType;
 
 /* The longest name of the scene, a pair or a probe, in characters. The name of a pair becomes part of a path in
