@@ -257,8 +257,8 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
 /* Says whether fresh lists find the same of this term as the solve did. An open term must be open. On facets a closed
    gap must agree. On fits the gap changes a little with their frames, so frames and points must agree, and with
    offsets the gap must agree within `drift`. Area factors must agree on both, weighted by the term's pressure over
-   the pair's largest one, or be as close to a jump of what the solution asks for. depth is the largest penetration of the
-   pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead. */
+   the pair's largest one, or be as close to a jump of what the solution asks for. depth is the largest penetration of
+   the pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead. */
 static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscInt c, PetscReal gap,
                             const PetscReal *factor, PetscReal t, PetscReal depth, PetscReal pressure, PetscReal drift)
 {

@@ -185,8 +185,8 @@ static PetscErrorCode Apply(Fluids fluids, Fluid *fluid, const PetscReal *u, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds what contact alone presses at the nodes, from the forces of the last residual. Where the fluid's load lies these
-   are the forces beyond the fluid. */
+/* Finds what contact alone presses at the nodes, from the forces of the last residual. Where the fluid's load lies
+   these are the forces beyond the fluid. */
 static PetscErrorCode Measure(Fluids fluids, Fluid *fluid, const PetscReal *u, PetscReal t)
 {
   const SurfaceGraph s = fluid->surface;
@@ -232,10 +232,10 @@ static void FindOpen(const Fluid *fluid, char *open)
 /* The lowest pressure with which the fluid would reach its other end in the contact as it is. */
 static PetscErrorCode FindBarrier(Fluid *fluid)
 {
-  const int        n = fluid->surface->graph.n;
-  PetscReal       *height;
-  int             *order, *root, highest;
-  PetscInt        *index;
+  const int  n = fluid->surface->graph.n;
+  PetscReal *height;
+  int       *order, *root, highest;
+  PetscInt  *index;
 
   PetscFunctionBeginUser;
   fluid->height = NAN;
