@@ -82,14 +82,35 @@ static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Between which factors of this step that of slave point q must be: a solution with the lower one asks for more, one
+   with the higher one for less. -1 and 2 where none of them is known. fresh: what the present solution asks for. */
+static void FactorBracket(const ContactPair *pair, PetscInt q, PetscReal fresh, PetscReal *low, PetscReal *high)
+{
+  const PetscReal now = pair->factor[q];
+
+  *low  = fresh > now ? now : pair->factor_low[q];
+  *high = fresh < now ? now : pair->factor_high[q];
+  if (*low < *high) return;
+  if (fresh > now) /* the solution has changed so much that the other end says nothing any more */
+    *high = 2;
+  else
+    *low = -1;
+}
+
 /* Factors follow the solution, and the solution follows the factors. Within a step a factor that would turn back is set
-   between its last two values, where their secant sees no change any more. */
+   between its last two values, where their secant sees no change any more. One that turns back again is set to the
+   middle: a soft body may answer to a little more or less area by a jump. */
 static void PairDampFactors(ContactPair *pair)
 {
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
+    const PetscBool known = (PetscBool)(pair->factor_low[q] >= 0 && pair->factor_high[q] <= 1);
     const PetscReal now = pair->factor[q], change = pair->next_factor[q] - now, before = pair->factor_change[q];
 
-    if (change * before < 0) pair->next_factor[q] = now - change * (now - pair->factor_before[q]) / (change - before);
+    FactorBracket(pair, q, pair->next_factor[q], &pair->factor_low[q], &pair->factor_high[q]);
+    if (known && change != 0 && pair->factor_low[q] >= 0 && pair->factor_high[q] <= 1)
+      pair->next_factor[q] = (pair->factor_low[q] + pair->factor_high[q]) / 2;
+    else if (change * before < 0)
+      pair->next_factor[q] = now - change * (now - pair->factor_before[q]) / (change - before);
     pair->factor_change[q] = change;
     pair->factor_before[q] = now;
   }
@@ -184,6 +205,10 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
     if (pair->next) PetscCall(PairTakeNext(pair));
     PetscCall(PetscArrayzero(pair->factor_change, pair->lists->n_slaves));
+    for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
+      pair->factor_low[q]  = -1;
+      pair->factor_high[q] = 2;
+    }
     if (pair->friction) PetscCall(ContactPairProject(contact, pair, u, t));
     if (pair->friction) PetscCall(FrictionBegin(pair, t));
     pair->lost    = (ContactLost){0, NAN, 0, -1};
@@ -232,8 +257,8 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
 /* Says whether fresh lists find the same of this term as the solve did. An open term must be open. On facets a closed
    gap must agree. On fits the gap changes a little with their frames, so frames and points must agree, and with
    offsets the gap must agree within `drift`. Area factors must agree on both, weighted by the term's pressure over
-   the pair's largest one. depth is the largest penetration of the
-   pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead. */
+   the pair's largest one, or be as close to a jump of what the solution asks for. depth is the largest penetration of
+   the pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead. */
 static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscInt c, PetscReal gap,
                             const PetscReal *factor, PetscReal t, PetscReal depth, PetscReal pressure, PetscReal drift)
 {
@@ -250,8 +275,11 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
   if (!(old - rest < 0) && !(gap - rest < (fitted ? -tolerance : 0))) return PETSC_TRUE;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt q = pair->term_point[k];
+    PetscReal      low, high;
 
-    if (share * PetscAbsReal(factor[q] - pair->factor[q]) > CONTACT_FACTOR_AGREES) return PETSC_FALSE;
+    FactorBracket(pair, q, factor[q], &low, &high);
+    if (share * PetscMin(PetscAbsReal(factor[q] - pair->factor[q]), high - low) > CONTACT_FACTOR_AGREES)
+      return PETSC_FALSE;
     if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
   }
   if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(gap - old) <= tolerance);

@@ -172,7 +172,8 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
                          &pair->stiffness, pair->n, &pair->stiffness_before));
   PetscCall(PetscCalloc6(slaves->n, &pair->factor, slaves->n, &pair->next_factor, slaves->n, &pair->seed, slaves->n,
                          &pair->point_gap, 3 * slaves->n, &pair->point_normal, slaves->n, &pair->point_force));
-  PetscCall(PetscCalloc2(slaves->n, &pair->factor_before, slaves->n, &pair->factor_change));
+  PetscCall(PetscCalloc4(slaves->n, &pair->factor_before, slaves->n, &pair->factor_change, slaves->n, &pair->factor_low,
+                         slaves->n, &pair->factor_high));
   PetscCall(ContactVariationsCreate(mesh->dim, slaves->n, &pair->variations));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -402,7 +403,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree5(pair->force, pair->normal, pair->pressure, pair->stiffness, pair->stiffness_before));
   PetscCall(
     PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
-  PetscCall(PetscFree2(pair->factor_before, pair->factor_change));
+  PetscCall(PetscFree4(pair->factor_before, pair->factor_change, pair->factor_low, pair->factor_high));
   PetscCall(ContactVariationsDestroy(&pair->variations));
   PetscCall(PetscFree(pair->before));
   PetscCall(AndersonDestroy(&pair->mixing));

@@ -8,9 +8,6 @@
 /* Pressures that differ by less than this part of the fluid's are the same. It is above what the tolerance of the
    solver leaves, and far below what matters. */
 #define FLUID_SAME 1e-6
-/* So many times in a step places may become dry again. After that the wet part only grows, so that it settles. A place
-   that stays wet although contact presses more there changes no force. */
-#define FLUID_RETREATS 3
 /* A step in which the fluid reaches the other end is repeated with shorter ones, until its length is this part of t,
    and the pressure changes by this part in it. The leak pressure is interpolated, and better than this. */
 #define FLUID_LEAK_STEP 0.01
@@ -31,7 +28,7 @@ enum { FLUID_NODES, FLUID_FACES, FLUID_FORMS };
 /* What a fluid is in one state. It is what cutbacks and checkpoints keep. */
 typedef struct {
   char      *wet, *form;             /* n: by node of the graph; form: of the pair that presses most */
-  PetscReal *p;                      /* n: what contact presses, at wet nodes beyond the fluid */
+  PetscReal *p;                      /* n: what contact alone presses; 0 where it presses less than the fluid there */
   PetscInt   n_sealed;               /* accepted states without a leak, FLUID_STATES at most */
   PetscReal  sealed_p[FLUID_STATES]; /* pressure of the fluid in them, the last one first */
   PetscReal  barrier[FLUID_STATES];  /* and the pressure with which it would have leaked */
@@ -48,7 +45,7 @@ typedef struct {
   char            *from, *to;         /* n: the two ends */
   PetscBool        has_from, has_to;
   FluidState       now, accepted;
-  PetscInt         retreats;                       /* times that places became dry in this step */
+  char            *laid;                           /* n: where the fluid's load lies: wet places and those ahead */
   PetscReal       *area[FLUID_FORMS];              /* n_nodes: present area of the surface around each node */
   PetscReal       *wet, *pressing, *pressing_form; /* n_nodes: of the state, by local node */
   PetscReal       *nodes, *points;                 /* shares for the load, see LoadsSetShares() */
@@ -170,7 +167,7 @@ static PetscErrorCode Apply(Fluids fluids, Fluid *fluid, const PetscReal *u, Pet
   PetscFunctionBeginUser;
   PetscCall(LoadsPressure(fluids->loads, fluid->number, t, &fluid->pressure));
   PetscCall(SetAreas(fluids, fluid, u));
-  SurfaceGraphScatter(fluid->surface, fluid->now.wet, fluid->wet);
+  SurfaceGraphScatter(fluid->surface, fluid->laid, fluid->wet);
   SurfaceGraphScatter(fluid->surface, fluid->now.form, fluid->pressing_form);
   for (int i = 0; i < fluid->surface->graph.n; i++)
     if (fluid->surface->local[i] >= 0) fluid->pressing[fluid->surface->local[i]] = fluid->now.p[i];
@@ -188,13 +185,16 @@ static PetscErrorCode Apply(Fluids fluids, Fluid *fluid, const PetscReal *u, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds what contact alone would press at the nodes, from the forces of the last residual. */
+/* Finds what contact alone presses at the nodes, from the forces of the last residual. Where the fluid's load lies
+   these are the forces beyond the fluid. */
 static PetscErrorCode Measure(Fluids fluids, Fluid *fluid, const PetscReal *u, PetscReal t)
 {
   const SurfaceGraph s = fluid->surface;
+  PetscReal          same;
 
   PetscFunctionBeginUser;
   PetscCall(LoadsPressure(fluids->loads, fluid->number, t, &fluid->pressure));
+  same = FLUID_SAME * fluid->pressure;
   PetscCall(SetAreas(fluids, fluid, u));
   for (int form = 0; form < FLUID_FORMS; form++) PetscCall(PetscArrayzero(fluid->force[form], fluids->mesh->n_nodes));
   for (int p = 0; p < ContactPairs(fluids->contact); p++)
@@ -214,28 +214,28 @@ static PetscErrorCode Measure(Fluids fluids, Fluid *fluid, const PetscReal *u, P
   PetscCall(SurfaceGraphGather(s, fluid->force[1], fluid->now.p));
   for (int i = 0; i < s->graph.n; i++) fluid->now.form[i] = (char)fluid->now.p[i];
   PetscCall(SurfaceGraphGather(s, fluid->force[0], fluid->now.p));
+  for (int i = 0; i < s->graph.n; i++)
+    if (fluid->laid[i]) fluid->now.p[i] = fluid->now.p[i] > same ? fluid->now.p[i] + fluid->pressure : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says which nodes let the fluid in: those at which contact presses less than the fluid. At a wet node p is what
-   contact presses beyond the fluid. A fluid without pressure is where the surfaces are apart. */
-static void FindOpen(const Fluid *fluid, PetscBool only_grow, char *open)
+/* Says which nodes let the fluid in: those at which contact presses less than the fluid. A fluid without pressure is
+   where the surfaces are apart. */
+static void FindOpen(const Fluid *fluid, char *open)
 {
-  const PetscReal  same = FLUID_SAME * fluid->pressure;
-  const PetscReal *p    = fluid->now.p;
+  const PetscReal  least = (1 - FLUID_SAME) * fluid->pressure;
+  const PetscReal *p     = fluid->now.p;
 
-  for (int i = 0; i < fluid->surface->graph.n; i++)
-    open[i] = fluid->now.wet[i] ? only_grow || p[i] <= same : p[i] == 0 || p[i] < fluid->pressure - same;
+  for (int i = 0; i < fluid->surface->graph.n; i++) open[i] = p[i] == 0 || p[i] < least;
 }
 
 /* The lowest pressure with which the fluid would reach its other end in the contact as it is. */
 static PetscErrorCode FindBarrier(Fluid *fluid)
 {
-  const int        n = fluid->surface->graph.n;
-  const PetscReal *p = fluid->now.p;
-  PetscReal       *height;
-  int             *order, *root, highest;
-  PetscInt        *index;
+  const int  n = fluid->surface->graph.n;
+  PetscReal *height;
+  int       *order, *root, highest;
+  PetscInt  *index;
 
   PetscFunctionBeginUser;
   fluid->height = NAN;
@@ -243,7 +243,7 @@ static PetscErrorCode FindBarrier(Fluid *fluid)
   PetscCall(PetscMalloc4(n, &height, n, &order, n, &index, n + 2, &root));
   for (int i = 0; i < n; i++) {
     index[i]  = i;
-    height[i] = p[i] + (fluid->now.wet[i] && p[i] > FLUID_SAME * fluid->pressure ? fluid->pressure : 0);
+    height[i] = fluid->now.p[i];
   }
   PetscCall(PetscSortRealWithPermutation(n, height, index));
   for (int i = 0; i < n; i++) order[i] = (int)index[i];
@@ -261,30 +261,55 @@ static PetscBool ReachesEnd(const Fluid *fluid)
   return PETSC_FALSE;
 }
 
-/* Moves one fluid to where it can be at the present solution. */
+/* Lays the fluid's load on wet places and on those to which the contact pressure rises from them. Contact presses more
+   than the fluid there, so that this changes no force, and Newton's method itself finds how far the front moves up to
+   the crest of the pressure. Where the load lies it stays until the step ends. */
+static PetscErrorCode LayAhead(Fluid *fluid)
+{
+  const PassageGraph *graph = &fluid->surface->graph;
+  const FluidState   *now   = &fluid->now;
+  int                *stack, top = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(graph->n, &stack));
+  for (int i = 0; i < graph->n; i++) {
+    if (now->wet[i]) stack[top++] = i;
+    fluid->laid[i] |= now->wet[i];
+  }
+  while (top) {
+    const int i = stack[--top];
+
+    for (int k = graph->ptr[i]; k < graph->ptr[i + 1]; k++) {
+      const int j = graph->adj[k];
+
+      if (fluid->laid[j] || (!now->wet[i] && now->p[j] < now->p[i])) continue;
+      fluid->laid[j] = 1;
+      stack[top++]   = j;
+    }
+  }
+  PetscCall(PetscFree(stack));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves one fluid to where it can be at the present solution. *moved: it is where its load did not lie. */
 static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, PetscReal t, PetscBool *moved)
 {
-  const int n        = fluid->surface->graph.n;
-  PetscBool retreats = PETSC_FALSE, only_grow = (PetscBool)(fluid->retreats >= FLUID_RETREATS);
-  char     *open, *wet;
+  const int n = fluid->surface->graph.n;
+  char     *open;
   int      *stack;
 
   PetscFunctionBeginUser;
   PetscCall(Measure(fluids, fluid, u, t));
-  PetscCall(PetscMalloc3(n, &open, n, &wet, n, &stack));
-  FindOpen(fluid, only_grow, open);
-  PassageFlood(&fluid->surface->graph, open, fluid->from, stack, wet);
+  PetscCall(PetscMalloc2(n, &open, n, &stack));
+  FindOpen(fluid, open);
+  PassageFlood(&fluid->surface->graph, open, fluid->from, stack, fluid->now.wet);
+  PetscCall(PetscFree2(open, stack));
   *moved = PETSC_FALSE;
-  for (int i = 0; i < n; i++) {
-    if (only_grow && fluid->now.wet[i]) wet[i] = 1;
-    *moved   = (PetscBool)(*moved || wet[i] != fluid->now.wet[i]);
-    retreats = (PetscBool)(retreats || wet[i] < fluid->now.wet[i]);
-  }
-  fluid->retreats += retreats;
+  for (int i = 0; i < n; i++) *moved = (PetscBool)(*moved || (fluid->now.wet[i] && !fluid->laid[i]));
   if (!*moved) PetscCall(FindBarrier(fluid));
-  PetscCall(PetscArraycpy(fluid->now.wet, wet, n));
-  PetscCall(PetscFree3(open, wet, stack));
-  if (*moved) PetscCall(Apply(fluids, fluid, u, t));
+  if (!*moved) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LayAhead(fluid));
+  PetscCall(Apply(fluids, fluid, u, t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -428,7 +453,7 @@ static PetscErrorCode CreateOne(Fluids fluids, int load, Fluid *fluid)
   PetscCall(SurfaceGraphCreate(mesh, group, &fluid->surface));
   n = fluid->surface->graph.n;
   PetscCall(FindPairs(fluids, fluid));
-  PetscCall(PetscCalloc3(n, &fluid->from, n, &fluid->to, n, &fluid->weight));
+  PetscCall(PetscCalloc4(n, &fluid->from, n, &fluid->to, n, &fluid->laid, n, &fluid->weight));
   for (int form = 0; form < FLUID_FORMS; form++)
     PetscCall(PetscCalloc2(mesh->n_nodes, &fluid->area[form], mesh->n_nodes, &fluid->force[form]));
   PetscCall(
@@ -501,7 +526,7 @@ PetscErrorCode FluidDestroy(Fluids *fluids)
     Fluid *fluid = &(*fluids)->fluid[i];
 
     PetscCall(SurfaceGraphDestroy(&fluid->surface));
-    PetscCall(PetscFree3(fluid->from, fluid->to, fluid->weight));
+    PetscCall(PetscFree4(fluid->from, fluid->to, fluid->laid, fluid->weight));
     for (int form = 0; form < FLUID_FORMS; form++) PetscCall(PetscFree2(fluid->area[form], fluid->force[form]));
     PetscCall(PetscFree3(fluid->wet, fluid->pressing, fluid->pressing_form));
     PetscCall(PetscFree2(fluid->nodes, fluid->points));
@@ -593,34 +618,6 @@ PetscErrorCode FluidStart(Fluids fluids, const PetscReal *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Wets the nodes to which the contact pressure rises from wet places. Contact presses more than the fluid there, so
-   that this changes no force, and Newton's method itself finds how far the front moves up to the crest of the pressure.
- */
-static PetscErrorCode WetAhead(Fluid *fluid)
-{
-  const PassageGraph *graph = &fluid->surface->graph;
-  char               *wet   = fluid->now.wet;
-  int                *stack, top = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(graph->n, &stack));
-  for (int i = 0; i < graph->n; i++)
-    if (wet[i]) stack[top++] = i;
-  while (top) {
-    const int i = stack[--top];
-
-    for (int k = graph->ptr[i]; k < graph->ptr[i + 1]; k++) {
-      const int j = graph->adj[k];
-
-      if (wet[j] || (!fluid->accepted.wet[i] && fluid->now.p[j] < fluid->now.p[i])) continue;
-      wet[j]       = 1;
-      stack[top++] = j;
-    }
-  }
-  PetscCall(PetscFree(stack));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   FluidBegin - begins a load step: the fluids are where they were accepted, with their pressures at t.
 
@@ -637,9 +634,9 @@ PetscErrorCode FluidBegin(Fluids fluids, const PetscReal *u, PetscReal t)
   for (int i = 0; fluids && i < fluids->n; i++) {
     Fluid *fluid = &fluids->fluid[i];
 
-    fluid->retreats = 0;
     PetscCall(StateCopy(fluid->surface->graph.n, &fluid->accepted, &fluid->now));
-    PetscCall(WetAhead(fluid));
+    PetscCall(PetscArrayzero(fluid->laid, fluid->surface->graph.n));
+    PetscCall(LayAhead(fluid));
     PetscCall(Apply(fluids, fluid, u, t));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -772,6 +769,7 @@ PetscErrorCode FluidRestore(Fluids fluids, const PetscReal *u, PetscReal t)
     Fluid *fluid = &fluids->fluid[i];
 
     PetscCall(StateCopy(fluid->surface->graph.n, &fluid->accepted, &fluid->now));
+    PetscCall(PetscArraycpy(fluid->laid, fluid->now.wet, fluid->surface->graph.n));
     PetscCall(Apply(fluids, fluid, u, t));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,9 +2,6 @@
 #include "modelimpl.h"
 #include "contact/contactturn.h"
 
-/* Energy of a state with an inverted element. It is above that of any other state, and its square, which the line
-   search forms, is still a number. */
-#define LINE_INVERTED 1e100
 /* Below this residual, relative to F_ref, the energies that the line search compares differ by round-off only, because
    their differences go with the square of the residual. From there on residuals are compared. */
 #define LINE_ENERGY_ROUND_OFF 1e-6
@@ -18,7 +15,7 @@
 /* Energies that differ by less than this many machine epsilons of the energy differ by round-off only. */
 #define LINE_RISE 64
 
-/* Potential energy at x with that of the contact springs; LINE_INVERTED where an element is inverted. */
+/* Potential energy at x with that of the contact springs; MODEL_INVERTED where an element is inverted. */
 static PetscErrorCode ObjectiveEnergy(Model model, Vec x, PetscReal *objective)
 {
   PetscBool ok;
@@ -29,7 +26,7 @@ static PetscErrorCode ObjectiveEnergy(Model model, Vec x, PetscReal *objective)
   if (ok)
     model->work->energy = *objective;
   else
-    *objective = LINE_INVERTED;
+    *objective = MODEL_INVERTED;
   PetscCall(ContactSpringsEnergy(model->problem->springs, x, objective));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -86,22 +83,23 @@ void ModelChooseObjective(Model model, PetscReal residual, PetscReal slope)
   model->work->objective = small || flat ? OBJECTIVE_RESIDUAL : OBJECTIVE_ENERGY;
 }
 
-/* Changes Newton's step so that its contact is right at its end, and chooses the objective anew from
-   the slope of the energy. Where the tangent is indefinite, Newton's step may lead uphill, to a saddle of the energy.
-   The opposite step leads downhill then. */
+/* Changes Newton's step so that its contact is right at its end, and chooses the objective anew from the slope of the
+   energy. Where the tangent is indefinite, Newton's step may lead uphill, to a saddle of the energy. The opposite step
+   leads downhill then. With loads that follow the surface the work of the residual stands for the energy. */
 static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x, Vec y)
 {
-  SNES      snes;
-  Vec       F;
-  PetscReal slope, energy;
+  const PetscBool conservative = ProblemConservative(model->problem);
+  SNES            snes;
+  Vec             F;
+  PetscReal       slope, energy;
 
   PetscFunctionBeginUser;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
   PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, y));
-  if (model->work->objective == OBJECTIVE_RESIDUAL || !ProblemConservative(model->problem))
+  if (model->work->objective == OBJECTIVE_RESIDUAL || ContactHasFriction(model->contact))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESLineSearchGetSNES(search, &snes));
-  if (model->work->energy == 0)
+  if (conservative && model->work->energy == 0)
     PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated in this load step */
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
@@ -110,7 +108,7 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
     model->work->turned++;
     model->work->uphill = PETSC_TRUE;
   }
-  ModelChooseObjective(model, NAN, slope);
+  if (conservative) ModelChooseObjective(model, NAN, slope);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -245,20 +243,22 @@ static PetscErrorCode ModelSearchResidual(SNESLineSearch search, void *context)
 . model - its SNES has its line search
 
   Note:
-  With follower loads there is no energy. SNES then compares residuals by itself. With friction there is none either,
-  and residuals are compared with those of several iterates.
+  With follower loads there is no energy. The search then takes the work of the residual for it. With friction residuals
+  are compared with those of several iterates.
 @*/
 PetscErrorCode ModelCreateLineSearch(Model model)
 {
-  SNESLineSearch search;
+  SNESLineSearch search, *plain = &model->work->backtracking;
 
   PetscFunctionBeginUser;
   if (ProblemConservative(model->problem)) PetscCall(SNESSetObjective(model->snes, ModelObjective, model));
+  PetscCall(SNESLineSearchCreate(model->mesh->comm, plain));
+  PetscCall(SNESLineSearchSetSNES(*plain, model->snes));
+  PetscCall(SNESLineSearchSetType(*plain, SNESLINESEARCHBT));
   PetscCall(SNESGetLineSearch(model->snes, &search));
-  if (ContactHasFriction(model->contact)) {
-    PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
-    PetscCall(SNESLineSearchShellSetUserFunc(search, ModelSearchResidual, model));
-  }
+  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
+  PetscCall(SNESLineSearchShellSetUserFunc(
+    search, ContactHasFriction(model->contact) ? ModelSearchResidual : ModelSearchRelaxed, model));
   PetscCall(SNESLineSearchSetPreCheck(search, ModelPrepareStep, model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

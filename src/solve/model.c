@@ -78,6 +78,9 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(SNESDestroy(&m->snes));
   PetscCall(LinearSolverDestroy(&m->work->solver));
   PetscCall(LinearCheckDestroy(&m->linear));
+  PetscCall(SNESLineSearchDestroy(&m->work->backtracking));
+  PetscCall(VecDestroy(&m->work->relaxed.x));
+  PetscCall(VecDestroy(&m->work->relaxed.y));
   PetscCall(ContactCycleDestroy(&m->work->watch));
   PetscCall(ExtrapolationDestroy(&m->work->extrapolation));
   PetscCall(EnergyBalanceDestroy(&m->balance));

@@ -178,7 +178,7 @@ static PetscErrorCode ModelReference(Model model, StressReference *reference)
   PetscCall(SNESGetIterationNumber(model->snes, &iteration));
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchGetLambda(search, &lambda));
-  if (iteration > 0) work->shortened = (PetscBool)(lambda < 1);
+  if (iteration > 0) work->shortened = (PetscBool)(lambda < 1 && !work->relaxed.linear);
   *reference = work->shortened ? (StressReference){work->solved, 0, 0} : (StressReference){work->from, 1, 0};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -380,7 +380,6 @@ PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(SNESSetConvergenceTest(model->snes, ModelConverged, model, NULL));
   PetscCall(SNESSetErrorIfNotConverged(model->snes, PETSC_FALSE));
   PetscCall(SNESGetLineSearch(model->snes, &search));
-  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBT));
   PetscCall(ModelCreateLineSearch(model));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(ModelReadOptions(model, CheckFactorOptions));
@@ -461,7 +460,9 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchSetDamping(search, model->work->damping));
   if (model->contact) PetscCall(ContactCycleStart(model->work->watch));
-  model->work->turned = 0;
+  model->work->turned           = 0;
+  model->work->relaxed.waits    = PETSC_FALSE;
+  model->work->relaxed.farthest = MODEL_FARTHEST;
   PetscCall(PetscArrayzero(model->work->cuts, CUT_CAUSES));
   PetscCall(SNESSolve(model->snes, NULL, model->x));
   PetscCall(SNESGetConvergedReason(model->snes, &reason));

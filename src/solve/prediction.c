@@ -2,11 +2,6 @@
 #include "base/timing.h"
 #include "modelimpl.h"
 
-/* A linear step is divided into pieces if it moves the two ends of a cell's edge relative to each other by more than
-   this part of the edge's length. A rotation of this size becomes, in a linear step, a stretch of one sixth. On a pipe
-   between plates values from 0.5 to 0.75 work. Shorter pieces cost more than they save, because each of them may leave
-   the contact. */
-#define PREDICTION_FARTHEST 0.6
 /* A prediction has at most this many pieces. The rest of the way is then taken at once. */
 #define PREDICTION_PIECES 8
 /* Penalties during a prediction in pieces, in automatic penalties. The contact that is met must turn the bodies back;
@@ -77,34 +72,6 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest motion of the two ends of a cell's edge against each other, from displacements u to v, over the length of the
-   edge; of all ranks. */
-static PetscErrorCode ModelLargestTurn(Model model, const PetscReal *u, const PetscReal *v, PetscReal *turn)
-{
-  const Mesh mesh = model->mesh;
-
-  PetscFunctionBeginUser;
-  *turn = 0;
-  for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const Element  *element = ElementGet(mesh->cell_type[c]);
-    const PetscInt *nodes   = &mesh->cell_nodes[mesh->cell_ptr[c]];
-
-    for (int e = 0; e < element->edges; e++) {
-      const PetscInt a = nodes[element->edge_corners[e][0]] * mesh->dim,
-                     b = nodes[element->edge_corners[e][1]] * mesh->dim;
-      PetscReal motion = 0, length = 0;
-
-      for (int d = 0; d < mesh->dim; d++) {
-        motion += PetscSqr((v[b + d] - v[a + d]) - (u[b + d] - u[a + d]));
-        length += PetscSqr(mesh->coords[b + d] - mesh->coords[a + d]);
-      }
-      *turn = PetscMax(*turn, PetscSqrtReal(motion / length));
-    }
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, turn, 1, MPIU_REAL, MPI_MAX, mesh->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   ModelExtrapolate - extrapolates the accepted states to a load parameter.
 
@@ -147,7 +114,7 @@ static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *re
     PetscCall(ModelStepLoads(model, u, model->t, (PetscBool)(model->contact != NULL), PETSC_FALSE, report));
     PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
     PetscCall(ModelLargestTurn(model, u, v, &turn));
-    work->extrapolated = (PetscBool)(report->result == SOLVE_CONVERGED && turn <= PREDICTION_FARTHEST);
+    work->extrapolated = (PetscBool)(report->result == SOLVE_CONVERGED && turn <= MODEL_FARTHEST);
   }
   PetscCall(PetscFree2(u, v));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -252,8 +219,8 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
   for (PetscInt piece = 0; piece < PREDICTION_PIECES && report->result == SOLVE_CONVERGED; piece++) {
     PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
     PetscCall(ModelLargestTurn(model, u, v, &turn));
-    if (turn <= PREDICTION_FARTHEST) break;
-    part = PREDICTION_FARTHEST / turn;
+    if (turn <= MODEL_FARTHEST) break;
+    part = MODEL_FARTHEST / turn;
     t += part * (model->t - t);
     PetscCall(VecAXPBY(model->x, 1 - part, part, from));
     PetscCall(VecCopy(model->x, from));

@@ -8,6 +8,9 @@
 #define STEP_MANY_ITERATIONS 12.0
 /* control: iterations. An accepted step shrinks dt by at most this factor. */
 #define STEP_SHRINK 0.5
+/* control: iterations. A step that is shorter than the one before it by at least this factor, and takes as many
+   iterations, shows that they do not come from its length: dt returns to what it was. */
+#define STEP_SHORTER 0.99
 /* control: fixed. After a cut dt grows by this factor in each step until it has the value of the scene again. */
 #define STEP_RECOVER 2.0
 
@@ -22,7 +25,7 @@ static PetscErrorCode StepControlNext_Fixed(Model model, PetscReal dt, PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* dt by the Newton iterations of the last step. */
+/* dt by the Newton iterations of the last step, and whether it was worth while to shorten that. */
 static PetscErrorCode StepControlNext_Iterations(Model model, PetscReal dt, PetscBool clipped, PetscInt newton,
                                                  StepSize *size)
 {
@@ -31,7 +34,13 @@ static PetscErrorCode StepControlNext_Iterations(Model model, PetscReal dt, Pets
 
   PetscFunctionBeginUser;
   (void)model;
-  if (!clipped) size->dt = dt * PetscMax(STEP_SHRINK, PetscMin(size->growth, factor));
+  if (clipped) PetscFunctionReturn(PETSC_SUCCESS);
+  if (factor < 1 && dt < STEP_SHORTER * size->last_dt && n >= size->last_iterations)
+    size->dt = PetscMin(size->growth * dt, size->last_dt);
+  else
+    size->dt = dt * PetscMax(STEP_SHRINK, PetscMin(size->growth, factor));
+  size->last_dt         = dt;
+  size->last_iterations = n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -467,7 +467,8 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   StepSize       size    = ArchiveLoads(archive) ? stepper->size : stepper->start;
   PetscReal      initial = size.initial, dt = size.dt;
   PetscReal *real[]    = {&initial,       &dt,           &size.beta,     &size.together, &size.shortfall, &size.planned,
-                          &report->taken, &report->left, &report->share, &report->tied};
+                          &report->taken, &report->left, &report->share, &report->tied,
+                          &size.last_dt,  &size.last_iterations};
   PetscInt  *integer[] = {&report->steps,
                           &report->steps_failed,
                           &report->steps_repeated,

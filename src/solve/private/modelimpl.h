@@ -2,12 +2,12 @@
    offers to those above it.
 
    problem.c is below all of them, and freebodies.c and rigidsearch.c below it. linearcontact.c finds the contact that
-   is right at the end of a linear step. linecuts.c says why a line search shortened its step. linesearch.c chooses what
-   the line search compares, and corrects steps for contact. newton.c runs SNES once with the present contact lists.
-   prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties, penaltyerror.c estimates what
-   penetration leaves of error and stiffens penalties, jump.c tells an equilibrium that was reached by a jump.
-   equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file calls only
-   those named before it. */
+   is right at the end of a linear step. linecuts.c says why a line search shortened its step. relaxedsearch.c
+   is the line search, linesearch.c chooses what it compares, and corrects steps for contact. newton.c runs SNES once
+   with the present contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties,
+   penaltyerror.c estimates what penetration leaves of error and stiffens penalties, jump.c tells an equilibrium that
+   was reached by a jump. equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state.
+   Each file calls only those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "extrapolation.h"
@@ -18,6 +18,16 @@
    settle. */
 #define MODEL_MAX_REGATHER 8
 
+/* A linear step is divided into pieces if it moves the two ends of a cell's edge relative to each other by more than
+   this part of the edge's length. A rotation of this size becomes, in a linear step, a stretch of one sixth. On a pipe
+   between plates values from 0.5 to 0.75 work. Shorter pieces cost more than they save, because each of them may leave
+   the contact. */
+#define MODEL_FARTHEST 0.6
+
+/* Energy of a state with an inverted element. It is above that of any other state, and its square, which the line
+   search forms, is still a number. */
+#define MODEL_INVERTED 1e100
+
 /* What the line search compares. Energy is the potential energy; it needs conservative loads. Residual is the norm of
    the residual, for iterates so close to equilibrium that energies differ by round-off only. */
 typedef enum { OBJECTIVE_ENERGY, OBJECTIVE_RESIDUAL } Objective;
@@ -26,14 +36,27 @@ typedef enum { OBJECTIVE_ENERGY, OBJECTIVE_RESIDUAL } Objective;
    23, 1986). With one alone searches end in kinks; with ten nothing is gained. */
 enum { LINE_MEMORY = 4 };
 
+/* A step over which the energy rises, until it is known whether it pays */
+typedef struct {
+  PetscBool waits;    /* there is one, and it is not known yet */
+  PetscBool linear;   /* the last step was taken as far as cells may turn, whatever its energy */
+  PetscInt  times;    /* steps since */
+  PetscReal rise;     /* of the energy over it and the steps since, where there is no energy to evaluate */
+  PetscReal slope;    /* of the energy along it */
+  PetscReal turn;     /* by which it turned a cell, see ModelLargestTurn() */
+  PetscReal farthest; /* by which the next one may */
+  Vec       x, y;     /* free displacements at its start, and the whole step (length) */
+} RelaxedStep;
+
 typedef struct _n_ModelWork {
-  LinearSolver  solver;
-  PetscBool     ordered;       /* the linear solver has chosen the order of its unknowns */
-  Vec           residual;      /* of a trial point, for OBJECTIVE_RESIDUAL */
-  Vec           step;          /* the whole step that the line search has got last: from x to x - step (length) */
-  ContactCycle  watch;         /* of the contact set; NULL without contact */
-  Extrapolation extrapolation; /* NULL with small kinematics and no plasticity: bodies move along straight lines */
-  PetscReal     damping;       /* of the line search while no contact set repeats itself */
+  LinearSolver   solver;
+  PetscBool      ordered;       /* the linear solver has chosen the order of its unknowns */
+  Vec            residual;      /* of a trial point, for OBJECTIVE_RESIDUAL */
+  Vec            step;          /* the whole step that the line search has got last: from x to x - step (length) */
+  SNESLineSearch backtracking;  /* PETSc's, for steps that are to be shortened */
+  ContactCycle   watch;         /* of the contact set; NULL without contact */
+  Extrapolation  extrapolation; /* NULL with small kinematics and no plasticity: bodies move along straight lines */
+  PetscReal      damping;       /* of the line search while no contact set repeats itself */
 
   /* The accepted state */
   PetscReal *accepted_u; /* local displacements (length) */
@@ -68,20 +91,24 @@ typedef struct _n_ModelWork {
   PetscBool  uphill;    /* it led uphill and was turned round: the next tangent is the derivative of the residual */
 
   /* One solve by SNES */
-  Objective objective;
-  PetscReal norms[LINE_MEMORY]; /* residuals of the last iterates, where there is friction */
-  PetscBool soft;               /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
-  PetscBool balanced;           /* the residual of the iterate is within the tolerance */
-  PetscBool left;               /* the solve ended because a slave point slid out of its lists */
-  PetscBool cycling;            /* the solve ended because the contact set repeats itself with shorter steps too */
-  PetscInt  cuts[CUT_CAUSES];   /* iterations that the line search shortened, by their cause */
-  PetscInt  turned;             /* iterations whose step led uphill and was turned round */
+  Objective   objective;
+  RelaxedStep relaxed;
+  PetscReal   norms[LINE_MEMORY]; /* residuals of the last iterates, where there is friction */
+  PetscBool   soft;               /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
+  PetscBool   balanced;           /* the residual of the iterate is within the tolerance */
+  PetscBool   left;               /* the solve ended because a slave point slid out of its lists */
+  PetscBool   cycling;            /* the solve ended because the contact set repeats itself with shorter steps too */
+  PetscInt    cuts[CUT_CAUSES];   /* iterations that the line search shortened, by their cause */
+  PetscInt    turned;             /* iterations whose step led uphill and was turned round */
 } ModelWork;
 
 /* linearcontact.c */
 PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
 /* linecuts.c */
 PetscErrorCode ModelCountCut(Model, Vec x);
+/* relaxedsearch.c */
+PetscErrorCode ModelLargestTurn(Model, const PetscReal *u, const PetscReal *v, PetscReal *turn);
+PetscErrorCode ModelSearchRelaxed(SNESLineSearch, void *model);
 /* linesearch.c */
 PetscErrorCode ModelCreateLineSearch(Model);
 void           ModelChooseObjective(Model, PetscReal residual, PetscReal slope);

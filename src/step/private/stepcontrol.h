@@ -11,6 +11,10 @@ typedef struct {
   PetscReal dt;                              /* of the next step, before it lands anywhere */
   PetscReal initial, dt_min, dt_max, growth; /* of the scene */
 
+  /* The control by iterations */
+  PetscReal last_dt;         /* of the step before the last one; 0: none */
+  PetscReal last_iterations; /* that it took */
+
   /* The control by contact alone */
   PetscReal wanted;    /* nodes, or part of the slave area, that may change their status in one step */
   PetscBool by_area;   /* wanted is a part of the slave area */

@@ -1,0 +1,76 @@
+"""The rubber O-ring of runs/o_ring.yaml at default settings: squeezed by 20 % and 30 % of its cord, and by 20 % in one
+single step, for elements of both orders and Poisson's ratios from 0.49 to 0.5. Forces are compared with those of a finer
+mesh of second-order quadrilaterals of the same ratio. Writes runs/records/o_ring.csv, one row for each run.
+
+    build/venv/bin/python scripts/o_ring_table.py --burnish build/burnish
+"""
+import argparse
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from launch import ROOT, environment
+
+ELEMENTS = {  # name -> order, triangles, elements along a quarter of the cord
+    "quad4": (1, 0, (16, 24)),
+    "quad9": (2, 0, (8, 12)),
+    "tri6": (2, 1, (8, 10, 12, 14))
+}
+FINE = ("quad9", 24)
+WAYS = {  # name -> overrides, whose force is compared with that of the first way of the same squeeze
+    "20 %": (),
+    "30 %": ("bodies.2.rigid.motion=[{uy: -1.059}]", ),
+    "20 % in one step": ("stepping={control: fixed, initial: 1}", )
+}
+LIMITS = {"20 %": "20 %", "30 %": "30 %", "20 % in one step": "20 %"}
+NUS = (0.49, 0.499, 0.4999, 0.5)
+COLUMNS = ("squeeze", "element", "n", "nu", "status", "steps", "failed", "iterations", "cuts", "turned", "force", "error")
+
+
+def run(burnish, way, element, n, nu):
+    """The summary of one run."""
+    order, triangles, _ = ELEMENTS[element]
+    with tempfile.TemporaryDirectory() as directory:
+        command = [burnish, str(ROOT / "runs/o_ring.yaml"), "-o", directory + "/run", "-quiet"]
+        for value in (f"mesh.order={order}", f"mesh.parameters.triangles={triangles}", f"mesh.parameters.n={n}",
+                      f"bodies.0.material.nu={nu}", "output.every=0", *WAYS[way]):
+            command += ["-set", value]
+        finished = subprocess.run(command, env=environment(burnish), capture_output=True, text=True, check=False)
+        if finished.returncode not in (0, 2):
+            sys.exit(f"{' '.join(command)}\n{finished.stderr}")
+        return json.loads((pathlib.Path(directory) / "run/summary.json").read_text())
+
+
+def row(way, element, n, nu, summary, limit):
+    done = summary["status"] == "done"
+    force = summary["probes"]["force"] if done else None
+    guards = summary["guards"]
+    return dict(zip(COLUMNS, (way, element, n, nu, summary["status"], summary["steps"], summary["steps_failed"],
+                              summary["newton_iterations"], guards["line_search_cuts"], guards["line_search_turned"],
+                              f"{force:.7g}" if done else "", f"{force / limit - 1:+.5f}" if done and limit else "")))
+
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("--burnish", default=str(ROOT / "build/burnish"))
+parser.add_argument("--record", default=str(ROOT / "runs/records/o_ring.csv"))
+parser.add_argument("--nu", nargs="*", type=float, default=NUS)
+args = parser.parse_args()
+with open(args.record, "w", newline="") as file:
+    table = csv.DictWriter(file, COLUMNS)
+    table.writeheader()
+    limits = {}
+    for way in WAYS:
+        for nu in args.nu:
+            if LIMITS[way] == way:
+                fine = run(args.burnish, way, *FINE, nu)
+                limits[way, nu] = fine["probes"]["force"]
+                table.writerow(row(way, *FINE, nu, fine, limits[way, nu]))
+            for element, (_, _, sizes) in ELEMENTS.items():
+                for n in sizes:
+                    values = row(way, element, n, nu, run(args.burnish, way, element, n, nu), limits[LIMITS[way], nu])
+                    table.writerow(values)
+                    file.flush()
+                    print(", ".join(f"{key} {value}" for key, value in values.items()), flush=True)

@@ -1,0 +1,321 @@
+/* A line search that lets the energy rise over a step and looks on after the next ones whether it has paid. */
+#include "modelimpl.h"
+
+/* The energy must fall by this part of what its slope promises. */
+#define SEARCH_FALL 1e-4
+/* A step over which the energy rises is kept if the energy has fallen below that of its start after this many more
+   steps. The first of them mostly does it, and needs a second one where contact opens or closes. */
+#define SEARCH_PATIENCE 2
+/* The next such step turns the cells at most by this part of a step that did not pay, and by this multiple of one that
+   did. */
+#define SEARCH_SHRINK 0.25
+#define SEARCH_GROW   2.0
+/* A step that leaves the contact lists or inverts an element is halved this many times. */
+#define SEARCH_HALVINGS 3
+/* Without an energy a step is shortened this many times, each time to between a tenth and a half. */
+#define SEARCH_CUTS 20
+
+/* Where a search stands: vectors of SNES, which owns them. */
+typedef struct {
+  Model          model;
+  SNESLineSearch search;
+  SNES           snes;
+  Vec            x, F, y, w, G; /* iterate, residual, step; a trial point and its residual */
+} Search;
+
+/*@
+  ModelLargestTurn - finds how far a step turns or stretches a cell.
+
+  Collective
+
+  Input Parameters:
++ model - the model
+. u     - local displacements u[n_nodes*dim] (length) at the start of the step
+- v     - those at its end
+
+  Output Parameter:
+. turn - largest motion of the two ends of a cell's edge against each other, over the length of the edge; of all ranks
+@*/
+PetscErrorCode ModelLargestTurn(Model model, const PetscReal *u, const PetscReal *v, PetscReal *turn)
+{
+  const Mesh mesh = model->mesh;
+
+  PetscFunctionBeginUser;
+  *turn = 0;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const Element  *element = ElementGet(mesh->cell_type[c]);
+    const PetscInt *nodes   = &mesh->cell_nodes[mesh->cell_ptr[c]];
+
+    for (int e = 0; e < element->edges; e++) {
+      const PetscInt a = nodes[element->edge_corners[e][0]] * mesh->dim,
+                     b = nodes[element->edge_corners[e][1]] * mesh->dim;
+      PetscReal motion = 0, length = 0;
+
+      for (int d = 0; d < mesh->dim; d++) {
+        motion += PetscSqr((v[b + d] - v[a + d]) - (u[b + d] - u[a + d]));
+        length += PetscSqr(mesh->coords[b + d] - mesh->coords[a + d]);
+      }
+      *turn = PetscMax(*turn, PetscSqrtReal(motion / length));
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, turn, 1, MPIU_REAL, MPI_MAX, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Evaluates the residual at x - lambda y, into G. *ok: no element is inverted there, and the contact lists reach. */
+static PetscErrorCode Try(const Search *s, PetscReal lambda, PetscBool *ok)
+{
+  PetscBool inverted;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecWAXPY(s->w, -lambda, s->y, s->x));
+  PetscCall(SNESComputeFunction(s->snes, s->w, s->G));
+  PetscCall(SNESGetFunctionDomainError(s->snes, &inverted));
+  *ok = (PetscBool)!inverted;
+  if (*ok && s->model->contact) PetscCall(ContactListsReach(s->model->contact, ok));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rise of the energy between two iterates, PETSC_MAX_REAL where an element is inverted at the second. */
+static PetscErrorCode EnergyRise(const Search *s, Vec from, Vec to, PetscReal *rise)
+{
+  PetscReal before, after;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESComputeObjective(s->snes, from, &before));
+  PetscCall(SNESComputeObjective(s->snes, to, &after));
+  *rise = after >= MODEL_INVERTED ? PETSC_MAX_REAL : after - before;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rise of the energy from x to x - lambda y, PETSC_MAX_REAL where an element is inverted. Loads that follow the
+   surface have no energy. There it is the work that is done against the residual on the way, by Simpson's rule, which
+   is exact for energies of fourth degree. */
+static PetscErrorCode Rise(const Search *s, PetscReal lambda, PetscReal *rise)
+{
+  PetscReal work, sum;
+  PetscBool inverted = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (ProblemConservative(s->model->problem)) {
+    PetscCall(VecWAXPY(s->w, -lambda, s->y, s->x));
+    PetscCall(EnergyRise(s, s->x, s->w, rise));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecDotRealPart(s->F, s->y, &sum));
+  for (int i = 1; i <= 2 && !inverted; i++) {
+    PetscCall(VecWAXPY(s->w, -lambda * i / 2, s->y, s->x));
+    PetscCall(SNESComputeFunction(s->snes, s->w, s->G));
+    PetscCall(SNESGetFunctionDomainError(s->snes, &inverted));
+    PetscCall(VecDotRealPart(s->G, s->y, &work));
+    sum += (i == 1 ? 4 : 1) * work;
+  }
+  *rise = inverted || PetscIsInfOrNanReal(sum) ? PETSC_MAX_REAL : -lambda / 6 * sum;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ends the search at x - lambda y, where no element is inverted. */
+static PetscErrorCode Take(const Search *s, PetscReal lambda)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecAXPY(s->x, -lambda, s->y));
+  PetscCall(SNESComputeFunction(s->snes, s->x, s->F));
+  PetscCall(SNESLineSearchSetLambda(s->search, lambda));
+  PetscCall(SNESLineSearchSetReason(s->search, SNES_LINESEARCH_SUCCEEDED));
+  PetscCall(SNESLineSearchComputeNorms(s->search));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ends the search as PETSc's backtracking does. */
+static PetscErrorCode Backtrack(const Search *s)
+{
+  SNESLineSearch       plain = s->model->work->backtracking;
+  SNESLineSearchReason reason;
+  PetscReal            lambda, norm;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESLineSearchGetDamping(s->search, &lambda));
+  PetscCall(SNESLineSearchSetDamping(plain, lambda));
+  PetscCall(VecNorm(s->F, NORM_2, &norm));
+  PetscCall(SNESLineSearchApply(plain, s->x, s->F, &norm, s->y));
+  PetscCall(SNESLineSearchGetLambda(plain, &lambda));
+  PetscCall(SNESLineSearchGetReason(plain, &reason));
+  PetscCall(SNESLineSearchSetLambda(s->search, lambda));
+  PetscCall(SNESLineSearchSetReason(s->search, reason));
+  PetscCall(SNESLineSearchComputeNorms(s->search));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Shortens the step until the energy falls. */
+static PetscErrorCode Shorten(const Search *s)
+{
+  PetscReal lambda, slope, rise;
+
+  PetscFunctionBeginUser;
+  if (ProblemConservative(s->model->problem)) {
+    PetscCall(Backtrack(s));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SNESLineSearchGetDamping(s->search, &lambda));
+  PetscCall(VecDotRealPart(s->F, s->y, &slope));
+  for (int i = 0; i < SEARCH_CUTS; i++) {
+    PetscCall(Rise(s, lambda, &rise));
+    if (rise <= -SEARCH_FALL * lambda * slope) {
+      PetscCall(Take(s, lambda));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    lambda *=
+      rise == PETSC_MAX_REAL ? 0.5 : PetscMax(0.1, PetscMin(0.5, lambda * slope / (2 * (rise + lambda * slope))));
+  }
+  PetscCall(SNESLineSearchSetReason(s->search, SNES_LINESEARCH_FAILED_REDUCT));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Keeps the start of a step over which the energy rises. */
+static PetscErrorCode Keep(const Search *s, PetscReal rise, PetscReal slope, PetscReal turn)
+{
+  RelaxedStep *step = &s->model->work->relaxed;
+
+  PetscFunctionBeginUser;
+  if (!step->x) {
+    PetscCall(VecDuplicate(s->x, &step->x));
+    PetscCall(VecDuplicate(s->x, &step->y));
+  }
+  PetscCall(VecCopy(s->x, step->x));
+  PetscCall(VecCopy(s->y, step->y));
+  step->waits = PETSC_TRUE;
+  step->times = 0;
+  step->rise  = rise;
+  step->slope = slope;
+  step->turn  = turn;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes the step as far as cells may turn in it and lists reach, although the energy rises. *taken: it could be. The
+   pressures of stiff volumes change along the step as the step's linear problem says, however far it goes, and whether
+   it leads to a minimum or away from a saddle. Where the energy falls over the shortened step, the next one may still
+   be judged from its start; not so where there is no energy, and the work on the way tells less. */
+static PetscErrorCode Relax(const Search *s, PetscReal rise, PetscReal slope, PetscBool *taken)
+{
+  ModelWork     *work = s->model->work;
+  const PetscInt n    = s->model->mesh->n_nodes * s->model->mesh->dim;
+  PetscReal     *u, turn, lambda;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &u));
+  PetscCall(ProblemDisplacements(s->model->problem, s->x, s->model->t, u));
+  PetscCall(VecWAXPY(s->w, -1, s->y, s->x));
+  PetscCall(ProblemSetTrial(s->model->problem, s->w, s->model->t));
+  PetscCall(ModelLargestTurn(s->model, u, s->model->problem->trial, &turn));
+  PetscCall(PetscFree(u));
+  lambda = PetscMin(1, work->relaxed.farthest / turn);
+  *taken = PETSC_FALSE;
+  for (int i = 0; i <= SEARCH_HALVINGS && !*taken; i++, lambda /= *taken ? 1 : 2) {
+    if (lambda < 1) PetscCall(Rise(s, lambda, &rise));
+    if (rise < PETSC_MAX_REAL) PetscCall(Try(s, lambda, taken));
+  }
+  if (!*taken) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ProblemConservative(s->model->problem) || rise > -SEARCH_FALL * lambda * slope)
+    PetscCall(Keep(s, rise, slope, lambda * turn));
+  work->relaxed.linear = PETSC_TRUE;
+  work->uphill         = PETSC_FALSE;
+  PetscCall(Take(s, lambda));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Returns to the start of the step that waits, and shortens it. */
+static PetscErrorCode Return(const Search *s)
+{
+  ModelWork   *work = s->model->work;
+  RelaxedStep *step = &work->relaxed;
+
+  PetscFunctionBeginUser;
+  step->waits    = PETSC_FALSE;
+  step->farthest = SEARCH_SHRINK * step->turn;
+  PetscCall(VecCopy(step->x, s->x));
+  PetscCall(VecCopy(step->y, s->y));
+  PetscCall(VecCopy(step->y, work->step));
+  PetscCall(SNESComputeFunction(s->snes, s->x, s->F));
+  work->objective = OBJECTIVE_ENERGY;
+  PetscCall(Shorten(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Judges the step that waits at the end of one more step, over which the energy changes by `rise`. */
+static PetscErrorCode Judge(const Search *s, PetscReal rise)
+{
+  RelaxedStep *step  = &s->model->work->relaxed;
+  PetscReal    since = step->rise;
+  PetscBool    paid, reached = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (ProblemConservative(s->model->problem)) /* multipliers have changed since, and the energy with them */
+    PetscCall(EnergyRise(s, step->x, s->x, &since));
+  paid = (PetscBool)(rise < PETSC_MAX_REAL && since + rise <= -SEARCH_FALL * step->slope);
+  if (!paid && rise < PETSC_MAX_REAL && ++step->times < SEARCH_PATIENCE) PetscCall(Try(s, 1, &reached));
+  if (!paid && !reached) {
+    PetscCall(Return(s));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (paid) {
+    step->waits    = PETSC_FALSE;
+    step->farthest = PetscMin(MODEL_FARTHEST, PetscMax(step->farthest, SEARCH_GROW * step->turn));
+  }
+  step->rise = since + rise;
+  PetscCall(Take(s, 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelSearchRelaxed - the line search of Newton's method without friction.
+
+  Collective
+
+  Input Parameters:
++ search  - a shell, whose SNES has its objective where there is an energy
+- context - the model
+
+  Notes:
+  A soft motion along a bent way, as of rubber that rolls in its groove, is stiff to either side. Over a step along the
+  tangent of the way the energy rises, however right the step is, and the next step, which corrects the stiff part, is
+  small. A search that asks for less energy at once cuts the first of each such pair to a small part. This one takes it
+  and keeps its start. It returns there if the energy has not fallen below that at the start after SEARCH_PATIENCE more
+  steps, and does what it would have done at once: it shortens the step. How far cells turn in such a step is bounded,
+  and the bound follows whether the last ones have paid.
+
+  Where residuals are compared, at iterates close to equilibrium, and where the contact set repeats itself, steps are
+  shortened as before.
+
+  Source: Chamberlain, Powell, Lemarechal and Pedersen, The watchdog technique for forcing convergence in algorithms for
+  constrained optimization, Math. Programming Study 16 (1982) 1-17.
+@*/
+PetscErrorCode ModelSearchRelaxed(SNESLineSearch search, void *context)
+{
+  Search     s    = {.model = context, .search = search};
+  ModelWork *work = s.model->work;
+  PetscReal  lambda, slope, rise;
+  PetscBool  changed, taken = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESLineSearchGetSNES(search, &s.snes));
+  PetscCall(SNESLineSearchGetVecs(search, &s.x, &s.F, &s.y, &s.w, &s.G));
+  PetscCall(SNESLineSearchGetDamping(search, &lambda));
+  PetscCall(SNESLineSearchPreCheck(search, s.x, s.y, &changed));
+  work->relaxed.linear = PETSC_FALSE;
+  if (lambda < 1) work->relaxed.waits = PETSC_FALSE;
+  if (!work->relaxed.waits && (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL)) {
+    PetscCall(Backtrack(&s));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecDotRealPart(s.F, s.y, &slope));
+  PetscCall(Rise(&s, 1, &rise));
+  if (work->relaxed.waits)
+    PetscCall(Judge(&s, rise));
+  else if (rise <= -SEARCH_FALL * slope)
+    PetscCall(Take(&s, 1));
+  else {
+    PetscCall(Relax(&s, rise, slope, &taken));
+    if (!taken) PetscCall(Shorten(&s));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
