@@ -245,6 +245,26 @@ static PetscErrorCode SceneReadSupportValue(Scene scene, SceneSupport *support, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads the springs of a support. Returns in *any whether there are some. */
+static PetscErrorCode SceneReadSprings(Scene scene, SceneSupport *support, int *any)
+{
+  PetscFunctionBeginUser;
+  *any = 0;
+  if (!SceneReals(scene, support->path, "spring", support->spring)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < scene->dim; k++) {
+    if (support->spring[k] > 0 && SceneHas(scene, support->path, Displacements[k]))
+      PetscCall(SceneRefuse(scene, support->path, "spring",
+                            "acts along a component that the support prescribes too; allowed: one of the two for each "
+                            "component",
+                            Displacements[k]));
+    *any = *any || support->spring[k] > 0;
+  }
+  if (!*any)
+    PetscCall(
+      SceneRefuse(scene, support->path, "spring", "holds nothing; allowed: at least one stiffness above 0", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Reads the supports, and makes room for the loads, because supports with an expression are among them. */
 static PetscErrorCode SceneReadSupports(Scene scene)
 {
@@ -260,6 +280,7 @@ static PetscErrorCode SceneReadSupports(Scene scene)
     PetscCall(ScenePath(&support->path, "supports", i));
     PetscCall(SceneReadText(scene, support->path, "surface", &support->surface));
     PetscCall(SceneRefuseRigid(scene, support->path, "surface", support->surface));
+    PetscCall(SceneReadSprings(scene, support, &held));
     for (int k = 0; k < 3; k++) {
       if (!SceneHas(scene, support->path, Displacements[k])) continue;
       PetscCall(SceneReadSupportValue(scene, support, k));
@@ -267,7 +288,7 @@ static PetscErrorCode SceneReadSupports(Scene scene)
     }
     if (!held)
       PetscCall(SceneRefuse(scene, support->path, "",
-                            "holds nothing; allowed: at least one of ux: 0, uy: 0, uz: 0 (3D)", NULL));
+                            "holds nothing; allowed: at least one of ux: 0, uy: 0, uz: 0 (3D), spring", NULL));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -33,8 +33,9 @@ typedef struct {
 } SceneBody;
 
 typedef struct {
-  char *path, *surface;
-  int   fixed[3]; /* whether a component of the displacement is held at 0 */
+  char  *path, *surface;
+  int    fixed[3];  /* whether a component of the displacement is held at 0 */
+  double spring[3]; /* stiffness of springs to the ground (force per length and area); 0: there are none */
 } SceneSupport;
 
 /* An end of a surface: another surface that has nodes in common with it, or a point; neither: the scene does not say.

@@ -86,13 +86,16 @@ const SchemaKey SchemaKeys[] = {
   {"bodies.*.rigid.point", POINT, .unit = "length",
    .help = "point about which the tool rotates; the default is the origin"},
   MOTION_KEYS("bodies.*.rigid"),
-  {"supports", LIST, .help = "surfaces whose displacement is held at 0 or imposed by an expression"},
-  {"supports.*", MAP, .help = "a surface with at least one component"},
+  {"supports", LIST, .help = "surfaces whose displacement is held at 0, held by springs or imposed by an expression"},
+  {"supports.*", MAP, .help = "a surface with at least one component or springs"},
   {"supports.*.surface", TEXT, REQUIRED, .help = "physical surface"},
   {"supports.*.ux|uy", REAL | FORMULA, .unit = "length",
    .help = "0 holds this component of the displacement; an expression imposes it, as in loads"},
   {"supports.*.uz", REAL | FORMULA, SOLID, .unit = "length",
    .help = "0 holds this component of the displacement; an expression imposes it, as in loads"},
+  {"supports.*.spring", POINT, .range = "[0, inf)", .unit = "force per length and area",
+   .help = "stiffness of springs from the surface to the ground, along each axis; an axisymmetric scene has the radius "
+           "as x. They act on the reference area along the axes, however the body moves"},
   {"loads", LIST,
    .help = "loads, each of one kind and equal to its value multiplied by its history. A value may be an expression "
            "such as \"1e7 + 1e6*cos(2*theta)\", in x, y, z (reference coordinates), r = sqrt(x^2 + y^2), theta = "

@@ -95,6 +95,7 @@ CASES["point contact about the axis, surface to surface, order 1, slips"] = (RUN
 CASES["belt on a turning analytic drum"] = (SCENES / "belt.yaml", [
     "mesh.parameters.n=12", "stepping.initial=0.1", "contact.0.penalty={initial: 100, scale: 1}"
 ])
+CASES["follower pressure, springs"] = (SCENES / "lame.yaml", [*FOLLOWER, "supports.2={surface: outer, spring: [80, 300]}"])
 
 args = arguments()
 check = Check()
