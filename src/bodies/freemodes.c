@@ -265,7 +265,7 @@ static PetscErrorCode MeasurePair(FreeModes modes, const SceneContact *contact, 
   Mesh             mesh  = modes->mesh;
   const int        n     = RIGID_MODES * (int)modes->n_pieces;
   const MeshGroup *slave = &mesh->groups[MeshFindGroup(mesh, mesh->dim - 1, contact->slave)];
-  const PetscBool  rubs  = (PetscBool)(contact->mu > 0 || contact->mu_expression);
+  const PetscBool  rubs  = (PetscBool)contact->friction;
   double          *row, area = 0;
   int             *on_slave, *on_master, deformable = 0;
 

@@ -110,7 +110,7 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
 {
   /* With friction too: half as many points leave twice the noise in tractions that stick. */
   const int finer =
-    pair->master && (scene->geometry == GEOMETRY_AXISYMMETRIC || pair->scene->mu > 0 || pair->scene->mu_expression ||
+    pair->master && (scene->geometry == GEOMETRY_AXISYMMETRIC || pair->scene->friction ||
                      pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size);
 
   PetscFunctionBeginUser;
@@ -237,7 +237,7 @@ static PetscErrorCode PairTurnMaster(Scene scene, Loads loads, const ContactPair
 PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads,
                                  const SceneContact *contact, ContactPair *pair)
 {
-  const PetscBool friction = (PetscBool)(contact->mu > 0 || contact->mu_expression);
+  const PetscBool friction = (PetscBool)contact->friction;
   PetscReal       penalty;
 
   PetscFunctionBeginUser;

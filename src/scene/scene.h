@@ -86,8 +86,12 @@ typedef struct {
   Expression     overlap_expression; /* in its place, where it is not NULL; one with t is the overlap at t */
   Stabilise      stabilise;          /* which of the pair's bodies are moved into contact and held by springs */
   ContactLawKind law;
-  double         mu;            /* coefficient of friction; 0: there is none */
+  int            friction;      /* 1 if the pair has friction */
+  double         mu;            /* coefficient of friction */
   Expression     mu_expression; /* in its place, where it is not NULL */
+  /* Factors on mu over the load parameter and over the pressure; with n = 0 there is none. */
+  History mu_history, mu_pressure;
+  double  cohesion, tau_max; /* traction that sticks without pressure, and the largest one (force per area); 0: none */
   double         stick_penalty; /* force per length and area; 0: automatic */
   int            penalty_auto;  /* 1 if the penalty is the automatic one */
   /* Penalty (force per length and area), 0 if it is automatic, and the factor on the automatic penalty. */
