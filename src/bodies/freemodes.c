@@ -136,7 +136,7 @@ static void PlaceInPiece(const FreePiece *piece, int dim, const PetscReal *X, do
   for (int d = 0; d < 3; d++) x[d] = d < dim ? (X[d] - piece->centre[d]) / piece->size : 0;
 }
 
-/* Finds the motions that supports and imposed displacements leave to each piece. */
+/* Finds the motions that supports, their springs and imposed displacements leave to each piece. */
 static PetscErrorCode FindSupported(FreeModes modes, Loads loads)
 {
   Mesh        mesh = modes->mesh;
@@ -155,7 +155,7 @@ static PetscErrorCode FindSupported(FreeModes modes, Loads loads)
     if (mesh->node_owner[n] != rank) continue;
     PlaceInPiece(&modes->pieces[p], dim, &mesh->coords[n * dim], x);
     for (int d = 0; d < dim; d++) {
-      if (!LoadsPrescribed(loads, n * dim + d)) continue;
+      if (!LoadsHeld(loads, n * dim + d)) continue;
       RigidRow(x, (const double[3]){d == 0, d == 1, d == 2}, row);
       RigidAddRow(RIGID_MODES, row, 1, &gram[p * square]);
     }
@@ -265,7 +265,7 @@ static PetscErrorCode MeasurePair(FreeModes modes, const SceneContact *contact, 
   Mesh             mesh  = modes->mesh;
   const int        n     = RIGID_MODES * (int)modes->n_pieces;
   const MeshGroup *slave = &mesh->groups[MeshFindGroup(mesh, mesh->dim - 1, contact->slave)];
-  const PetscBool  rubs  = (PetscBool)(contact->mu > 0 || contact->mu_expression);
+  const PetscBool  rubs  = (PetscBool)contact->friction;
   double          *row, area = 0;
   int             *on_slave, *on_master, deformable = 0;
 
@@ -658,7 +658,7 @@ void FreeModesMotionText(FreeModes modes, PetscInt piece, const double motion[RI
 }
 
 /*@
-  FreeModesUnheld - names the deformable bodies none of whose displacements is prescribed.
+  FreeModesUnheld - names the deformable bodies none of whose displacements is prescribed or on a spring.
 
   Collective
 
@@ -686,7 +686,7 @@ PetscErrorCode FreeModesUnheld(Mesh mesh, Scene scene, Loads loads, size_t size,
   for (PetscInt c = 0; c < mesh->n_cells; c++)
     for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
       for (int d = 0; d < mesh->dim; d++)
-        held[mesh->cell_body[c]] += LoadsPrescribed(loads, mesh->cell_nodes[k] * mesh->dim + d) ? 1 : 0;
+        held[mesh->cell_body[c]] += LoadsHeld(loads, mesh->cell_nodes[k] * mesh->dim + d) ? 1 : 0;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, held, scene->n_bodies, MPIU_INT, MPI_SUM, mesh->comm));
   for (int b = 0; b < scene->n_bodies; b++) {
     if (held[b] || scene->bodies[b].rigid) continue;

@@ -1,6 +1,7 @@
 /* Loads, supports and imposed displacements, see loads.h. */
 #include <math.h>
 #include "kernels/elementkernel.h"
+#include "bodies/foundation.h"
 #include "bodies/loads.h"
 #include "bodies/loadvalues.h"
 #include "base/refusal.h"
@@ -58,6 +59,7 @@ struct _n_Loads {
   PetscInt      n_prescribed;
   Prescribed   *prescribed;
   PetscInt      n_dead, n_follower;
+  Foundation    foundation; /* NULL: no support has springs */
   DeadLoad     *dead;
   FollowerLoad *follower;
   PetscLogEvent event_follower; /* where there is a follower load */
@@ -420,6 +422,7 @@ PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, Loads *out)
   for (int l = 0; l < scene->n_loads; l++) loads->varies = (PetscBool)(loads->varies || LoadVaries(&scene->loads[l]));
   for (int l = 0; l < scene->n_loads; l++) loads->shared = (PetscBool)(loads->shared || scene->loads[l].open);
   PetscCall(LoadsCreatePrescribed(loads));
+  PetscCall(FoundationCreate(mesh, scene, &loads->foundation));
   PetscCall(LoadsCreateForces(loads));
   for (int k = LOADS_SAMPLES; k >= 0; k--) PetscCall(LoadsMove(loads, (PetscReal)k / LOADS_SAMPLES));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -439,6 +442,7 @@ PetscErrorCode LoadsDestroy(Loads *loads)
   if (!*loads) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt l = 0; l < (*loads)->n_follower; l++) PetscCall(PetscFree((*loads)->follower[l].value));
   for (PetscInt l = 0; l < (*loads)->n_dead; l++) PetscCall(PetscFree2((*loads)->dead[l].dof, (*loads)->dead[l].force));
+  PetscCall(FoundationDestroy(&(*loads)->foundation));
   PetscCall(PetscFree2((*loads)->dead, (*loads)->follower));
   PetscCall(PetscFree2((*loads)->constrained, (*loads)->prescribed));
   PetscCall(PetscFree((*loads)->owner));
@@ -497,7 +501,7 @@ static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscI
 }
 
 /*@
-  LoadsResidual - subtracts the external forces from the residual.
+  LoadsResidual - subtracts the external forces, those of springs included, from the residual.
 
   Collective
 
@@ -508,7 +512,7 @@ static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscI
 
   Output Parameters:
 + f      - [n_nodes*dim], from which the external forces are subtracted
-. energy - the potential of the dead loads is added
+. energy - the potential of the dead loads and the energy of the springs are added
 - force2 - the squares of the unassembled forces are added
 
   Note:
@@ -534,6 +538,7 @@ PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, Petsc
     }
     if (force2) *force2 += PetscSqr(factor) * dead->force2;
   }
+  PetscCall(FoundationResidual(loads->foundation, u, f, energy, force2));
   if (!loads->n_follower || !(f || force2)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(loads->event_follower, 0, 0, 0, 0));
   for (PetscInt l = 0; l < loads->n_follower; l++) {
@@ -550,7 +555,8 @@ PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, Petsc
 }
 
 /*@
-  LoadsTangent - adds the follower loads' part of the tangent to the local block CSR of the elasticity.
+  LoadsTangent - adds what springs and follower loads contribute to the tangent to the local block CSR of the
+  elasticity.
 
   Collective
 
@@ -567,6 +573,7 @@ PetscErrorCode LoadsTangent(Loads loads, PetscReal t, const PetscReal *u, Elasti
   int      n;
 
   PetscFunctionBeginUser;
+  PetscCall(FoundationTangent(loads->foundation, elasticity));
   if (!loads->n_follower) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LoadsMove(loads, t));
   PetscCall(PetscLogEventBegin(loads->event_follower, 0, 0, 0, 0));
@@ -680,6 +687,33 @@ const PetscBool *LoadsConstrained(Loads loads)
 PetscBool LoadsPrescribed(Loads loads, PetscInt local_dof)
 {
   return loads->constrained[local_dof];
+}
+
+/*@
+  LoadsHeld - tells whether a local dof is supported, imposed or on a spring.
+
+  Not collective
+
+  Input Parameters:
++ loads     - the loads
+- local_dof - number of the dof, local node times dim plus component
+@*/
+PetscBool LoadsHeld(Loads loads, PetscInt local_dof)
+{
+  return (PetscBool)(loads->constrained[local_dof] || FoundationHolds(loads->foundation, local_dof));
+}
+
+/*@
+  LoadsSpringForce - returns the forces of springs at the last residual.
+
+  Not collective
+
+  Input Parameter:
+. loads - they own the array [n_nodes*dim], which has this rank's part; without springs the result is NULL
+@*/
+const PetscReal *LoadsSpringForce(Loads loads)
+{
+  return FoundationForce(loads->foundation);
 }
 
 /*@

@@ -1,9 +1,11 @@
-/* Loads, supports, imposed displacements and rigid motions at any load parameter t. Knows no stepping.
+/* Loads, supports and their springs, imposed displacements and rigid motions at any load parameter t. Knows no
+   stepping.
 
    LoadsCreate() marks the prescribed dofs in the mesh and must come before any matrix or vector is made.
-   LoadsPrescribe() writes the prescribed displacements; LoadsResidual() and LoadsTangent() add what the forces
-   contribute. LoadsRigidMotion() moves the points of rigid tools. LoadsSetShares() lets a pressure act on a part of its
-   surface, LoadsPressure() tells how large it is. */
+   LoadsPrescribe() writes the prescribed displacements; LoadsResidual() and LoadsTangent() add what forces and springs
+   contribute. LoadsPrescribed() asks for imposed dofs alone, LoadsHeld() for springs too. LoadsRigidMotion() moves the
+   points of rigid tools. LoadsSetShares() lets a pressure act on a part of its surface, LoadsPressure() tells how large
+   it is. */
 #pragma once
 #include "bodies/elasticity.h"
 
@@ -20,5 +22,7 @@ PetscErrorCode   LoadsPressure(Loads, int load, PetscReal t, PetscReal *pressure
 PetscBool        LoadsConservative(Loads);
 const PetscBool *LoadsConstrained(Loads);
 PetscBool        LoadsPrescribed(Loads, PetscInt local_dof);
+PetscBool        LoadsHeld(Loads, PetscInt local_dof);
+const PetscReal *LoadsSpringForce(Loads);
 void             LoadsRigidMotion(Loads, int body, PetscReal t, const PetscReal X[3], PetscReal x[3]);
 PetscReal        LoadsRigidTravel(Loads, int body, PetscReal t0, PetscReal t1);

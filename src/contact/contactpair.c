@@ -189,7 +189,7 @@ static int PairRule(Scene scene, const ContactPair *pair)
   for (int i = 0; i < pair->n_images; i++) at_axis = (PetscBool)(at_axis || SurfaceImageBeyondAxis(&pair->images[i]));
   if (scene->geometry == GEOMETRY_AXISYMMETRIC) return at_axis ? FACE_RULE_HALVES : FACE_RULE_FINER;
   /* With friction too: half as many points leave twice the noise in tractions that stick. */
-  return pair->scene->mu > 0 || pair->scene->mu_expression ||
+  return pair->scene->friction ||
              pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size
            ? FACE_RULE_FINER
            : FACE_RULE_PLAIN;
@@ -325,7 +325,7 @@ static PetscErrorCode PairTurnMaster(Scene scene, Loads loads, const ContactPair
 PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads,
                                  const SceneContact *contact, ContactPair *pair)
 {
-  const PetscBool friction = (PetscBool)(contact->mu > 0 || contact->mu_expression);
+  const PetscBool friction = (PetscBool)contact->friction;
   PetscReal       penalty;
 
   PetscFunctionBeginUser;

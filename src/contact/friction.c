@@ -358,14 +358,19 @@ PetscErrorCode FrictionBegin(ContactPair *pair, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Coefficient of friction at a term. */
-static PetscReal TermCoefficient(const ContactPair *pair, PetscInt c, PetscReal t)
+/* Coefficient of friction at a term, and its slope over the pressure. */
+static PetscReal TermCoefficient(const ContactPair *pair, PetscInt c, PetscReal t, PetscReal pressure, PetscReal *slope)
 {
-  PetscReal X[3];
+  const SceneContact *scene = pair->scene;
+  PetscReal           X[3], mu = scene->mu;
 
-  if (!pair->scene->mu_expression) return pair->scene->mu;
-  MeshNodePlace(pair->mesh, pair->node[c], X);
-  return PetscMax(0, ExpressionValue(pair->scene->mu_expression, X, t));
+  if (scene->mu_expression) {
+    MeshNodePlace(pair->mesh, pair->node[c], X);
+    mu = PetscMax(0, ExpressionValue(scene->mu_expression, X, t));
+  }
+  if (scene->mu_history.n) mu *= HistoryValue(&scene->mu_history, t);
+  *slope = scene->mu_pressure.n ? mu * HistorySlope(&scene->mu_pressure, pressure) : 0;
+  return scene->mu_pressure.n ? mu * HistoryValue(&scene->mu_pressure, pressure) : mu;
 }
 
 /* Evaluates the law of a term. In a linear step what sticks goes on sticking and what slips goes on slipping, as what
@@ -401,13 +406,17 @@ PetscErrorCode FrictionTerm(const ContactPair *pair, PetscInt c, PetscReal t, Fr
   const Friction f     = pair->friction;
   const LawState state = ContactTermState(pair, c, t, pair->most);
   LawValue       value;
-  PetscReal      gap, area;
+  PetscReal      gap, area, mu, slope;
 
   PetscFunctionBeginUser;
   ContactTermLaw(pair, c, t, &value, &gap, &area);
   *acts = (PetscBool)(value.stiffness > 0 && f->anchored[c]);
   if (!*acts) PetscFunctionReturn(PETSC_SUCCESS);
-  *in = (FrictionInput){.coefficient = TermCoefficient(pair, c, t),
+  mu  = TermCoefficient(pair, c, t, value.pressure, &slope);
+  *in = (FrictionInput){.coefficient = mu,
+                        .steepness   = slope,
+                        .cohesion    = pair->scene->cohesion,
+                        .limit       = pair->scene->tau_max,
                         .stiffness   = f->stiffness,
                         .kept        = {f->kept[2 * c], f->kept[2 * c + 1]},
                         .pressure    = value.pressure,

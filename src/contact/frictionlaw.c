@@ -147,6 +147,18 @@ static void ApplyMatrix(Matrix m, FrictionTraction *by)
   for (int i = 0; i < 3; i++) by->by_gap[i] = Dot(m[i], e.by_gap);
 }
 
+/* The largest traction that sticks, and its slope over the pressure. */
+static double Bound(const FrictionInput *in, double *slope)
+{
+  const double bound = in->cohesion + in->coefficient * in->pressure;
+
+  *slope = 0;
+  if (!(in->pressure > 0)) return 0;
+  if (in->limit > 0 && bound >= in->limit) return in->limit;
+  *slope = in->coefficient + in->steepness * in->pressure;
+  return bound;
+}
+
 /*@
   FrictionEvaluate - evaluates Coulomb's law at a node.
 
@@ -163,9 +175,7 @@ static void ApplyMatrix(Matrix m, FrictionTraction *by)
 @*/
 void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
 {
-  const double pressure = in->pressure > 0 ? in->pressure : 0, rate = in->pressure > 0 ? in->rate : 0,
-               bound = in->coefficient * pressure;
-  double e[3], length;
+  double slope, e[3], length, bound = Bound(in, &slope);
   Matrix m;
 
   ElasticSlip(in, e, out);
@@ -187,7 +197,7 @@ void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
   ApplyMatrix(m, out);
   for (int i = 0; i < 3; i++) {
     out->traction[i] = bound * e[i];
-    out->by_gap[i] -= in->coefficient * rate * e[i];
+    out->by_gap[i] -= slope * in->rate * e[i];
   }
   out->elastic = bound / in->stiffness;
   out->slipped = length - out->elastic;

@@ -7,7 +7,8 @@
    ElementStates() the numbers of each, and ElementStateVolumes() gives their volumes. ElementKernelExists() tells whether there is
    a kernel for a case. The other functions treat one cell or one face: ElementPointState(), ElementPointStress(),
    ElementStress() and ElementVolumeEnergy() evaluate a state, ElementQuality() and CellVolume() a shape,
-   FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes.
+   FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes, FaceMassKernel() what
+   springs on a face need.
 
    K may extrapolate the stress of its geometric part from an earlier state (stressreference.h), where
    ElementExtrapolates().
@@ -91,5 +92,6 @@ void   FaceLoadKernel(ElementType face, int dim, Geometry, FaceLoad, const doubl
                       const double *value, int stride, double *f, double *K, double *energy);
 void   BodyForceKernel(ElementType, int dim, Geometry, const double *X, const double *value, int stride, double *f);
 void   FaceAreaKernel(ElementType face, int dim, Geometry, const double *X, double *area, double *normal);
+void   FaceMassKernel(ElementType face, int dim, Geometry, const double *X, double *matrix);
 double CellVolume(ElementType, int dim, Geometry, const double *X);
 void   CellVolumeGradient(ElementType, int dim, Geometry, const double *X, double *gradient);

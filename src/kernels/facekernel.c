@@ -1,8 +1,9 @@
 /* Integrals over one face at a time: tractions, dead and follower pressure with their tangent, tributary areas and
-   normals. */
+   normals, products of shape functions. */
 #include "kernels/elementkernel.h"
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 static const double two_pi = 6.28318530717958647693;
 
@@ -34,6 +35,13 @@ static void FacePointAt(const Element *e, int p, int dim, const double *X, const
       point->normal[m] = point->tangent[0][m1] * point->tangent[1][m2] - point->tangent[0][m2] * point->tangent[1][m1];
     }
   }
+}
+
+/* Area of a point without weight and radius. */
+static double PointArea(const FacePoint *point)
+{
+  return sqrt(point->normal[0] * point->normal[0] + point->normal[1] * point->normal[1] +
+              point->normal[2] * point->normal[2]);
 }
 
 /* Derivative of the normal by displacement j of node b */
@@ -117,9 +125,7 @@ void FaceLoadKernel(ElementType type, int dim, Geometry geometry, FaceLoad load,
     if (axisymmetric) scale *= two_pi * point.radius;
     for (int i = 0; i < dim; i++) {
       if (load == FACE_TRACTION)
-        force[i] = scale * at[i] *
-                   sqrt(point.normal[0] * point.normal[0] + point.normal[1] * point.normal[1] +
-                        point.normal[2] * point.normal[2]);
+        force[i] = scale * at[i] * PointArea(&point);
       else
         force[i] = -scale * at[0] * point.normal[i];
     }
@@ -159,10 +165,38 @@ void FaceAreaKernel(ElementType type, int dim, Geometry geometry, const double *
     FacePointAt(e, p, dim, X, NULL, &point);
     if (geometry == GEOMETRY_AXISYMMETRIC) scale *= two_pi * point.radius;
     for (int a = 0; a < e->nodes; a++) {
-      area[a] +=
-        scale * e->N[p][a] *
-        sqrt(point.normal[0] * point.normal[0] + point.normal[1] * point.normal[1] + point.normal[2] * point.normal[2]);
+      area[a] += scale * e->N[p][a] * PointArea(&point);
       for (int i = 0; i < dim && normal; i++) normal[a * dim + i] += scale * e->N[p][a] * point.normal[i];
     }
+  }
+}
+
+/*@
+  FaceMassKernel - computes the integrals of the products of a face's shape functions.
+
+  Not collective
+
+  Input Parameters:
++ type     - element type of the face
+. dim      - dimension of the space, 2 or 3
+. geometry - axisymmetric: areas over 360 degrees, X[.][0] is the radius
+- X        - reference coordinates (length) [nodes][dim]
+
+  Output Parameter:
+. matrix - int N_a N_b dA [nodes][nodes] (area)
+@*/
+void FaceMassKernel(ElementType type, int dim, Geometry geometry, const double *X, double *matrix)
+{
+  const Element *e = ElementGetFace(type);
+
+  memset(matrix, 0, sizeof(*matrix) * (size_t)(e->nodes * e->nodes));
+  for (int p = 0; p < e->points; p++) {
+    FacePoint point;
+    double    area;
+
+    FacePointAt(e, p, dim, X, NULL, &point);
+    area = e->weight[p] * PointArea(&point) * (geometry == GEOMETRY_AXISYMMETRIC ? two_pi * point.radius : 1);
+    for (int a = 0; a < e->nodes; a++)
+      for (int b = 0; b < e->nodes; b++) matrix[a * e->nodes + b] += area * e->N[p][a] * e->N[p][b];
   }
 }

@@ -80,7 +80,7 @@ static void PrintFriction(const PairFigures *pair, FILE *stream)
 {
   const ContactFriction *friction = &pair->friction;
 
-  if (!(pair->scene->mu > 0 || pair->scene->mu_expression)) return;
+  if (!pair->scene->friction) return;
   fprintf(stream,
           "friction %s: %lld nodes stick, %lld slip; elastic slip up to %.3g, slip so far up to %.3g; energy taken "
           "%.4g\n",

@@ -266,7 +266,7 @@ static void AddContact(cJSON *json, const RunFigures *figures)
     cJSON_AddNumberToObject(penalty, "missed", (double)window->missed);
     cJSON_AddNumberToObject(penalty, "outside_window", (double)window->outside);
     cJSON_AddNumberToObject(penalty, "largest_excess", (double)window->excess);
-    if (figure->scene->mu > 0 || figure->scene->mu_expression) AddFriction(pair, &figure->friction);
+    if (figure->scene->friction) AddFriction(pair, &figure->friction);
   }
 }
 

@@ -48,8 +48,27 @@ double HistoryValue(const History *history, double t)
 
   if (i < 0) return history->v[0];
   if (i == history->n - 1) return history->v[i];
-  return history->v[i] +
-         (history->v[i + 1] - history->v[i]) / (history->t[i + 1] - history->t[i]) * (t - history->t[i]);
+  return history->v[i] + HistorySlope(history, t) * (t - history->t[i]);
+}
+
+/*@
+  HistorySlope - returns the slope of a history at t, to the right of it (1 over the unit of t).
+
+  Not collective
+
+  Input Parameters:
++ history - the factor
+- t       - load parameter, or what else it is over
+
+  Note:
+  Plain C. It is 0 beyond the breakpoints.
+@*/
+double HistorySlope(const History *history, double t)
+{
+  const int i = HistoryInterval(history, t);
+
+  if (i < 0 || i == history->n - 1) return 0;
+  return (history->v[i + 1] - history->v[i]) / (history->t[i + 1] - history->t[i]);
 }
 
 /* Gives the translation (length) and the rotation vector (radians) at t. */

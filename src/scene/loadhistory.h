@@ -1,6 +1,6 @@
 /* Factors over the load parameter t, and the prescribed motions of rigid bodies that are built from them. Plain C.
 
-   A History is a piecewise linear factor. HistoryValue() gives its value at t; HistoryBreaks() tells where its slope
+   A History is a piecewise linear factor. HistoryValue() gives its value at t, HistorySlope() its slope; HistoryBreaks() tells where its slope
    may change. A Motion is a translation of the point and a rotation about it by the vector (rx, ry, rz); each of its
    components is a value times a history. MotionPlace() moves a point with the body, MotionTurn() a direction. */
 #pragma once
@@ -23,6 +23,7 @@ typedef struct {
 } Motion;
 
 double HistoryValue(const History *, double t);
+double HistorySlope(const History *, double t);
 int    HistoryBreaks(const History *, double t);
 void   MotionPlace(const Motion *, double t, const double X[3], double x[3]);
 void   MotionTurn(const Motion *, double t, const double V[3], double v[3]);

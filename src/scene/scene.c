@@ -10,19 +10,31 @@
 
 static const char *const Displacements[] = {"ux", "uy", "uz"}, *const Rotations[] = {"rx", "ry", "rz"};
 
-/* Reads the history below a path. Without one, the factor is the load parameter itself. */
-static PetscErrorCode SceneReadHistory(Scene scene, const char *path, History *history)
+/* Reads a list of breakpoints and factors; n is 0 where the scene has none. */
+static PetscErrorCode SceneReadFactors(Scene scene, const char *path, const char *key, History *history)
 {
-  Node list = SceneNode(scene, path, "history");
+  Node list = SceneNode(scene, path, key);
 
   PetscFunctionBeginUser;
-  history->n = list ? list->n : 2;
+  history->n = list ? list->n : 0;
+  if (!list) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc2(history->n, &history->t, history->n, &history->v));
-  if (!list) history->t[1] = history->v[1] = 1;
-  for (int i = 0; list && i < list->n; i++) {
+  for (int i = 0; i < list->n; i++) {
     (void)NodeReal(list->child[i]->child[0], &history->t[i]);
     (void)NodeReal(list->child[i]->child[1], &history->v[i]);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads the history below a path. Without one, the factor is the load parameter itself. */
+static PetscErrorCode SceneReadHistory(Scene scene, const char *path, History *history)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SceneReadFactors(scene, path, "history", history));
+  if (history->n) PetscFunctionReturn(PETSC_SUCCESS);
+  history->n = 2;
+  PetscCall(PetscCalloc2(history->n, &history->t, history->n, &history->v));
+  history->t[1] = history->v[1] = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -251,6 +263,26 @@ static PetscErrorCode SceneReadSupportValue(Scene scene, SceneSupport *support, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads the springs of a support. Returns in *any whether there are some. */
+static PetscErrorCode SceneReadSprings(Scene scene, SceneSupport *support, int *any)
+{
+  PetscFunctionBeginUser;
+  *any = 0;
+  if (!SceneReals(scene, support->path, "spring", support->spring)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < scene->dim; k++) {
+    if (support->spring[k] > 0 && SceneHas(scene, support->path, Displacements[k]))
+      PetscCall(SceneRefuse(scene, support->path, "spring",
+                            "acts along a component that the support prescribes too; allowed: one of the two for each "
+                            "component",
+                            Displacements[k]));
+    *any = *any || support->spring[k] > 0;
+  }
+  if (!*any)
+    PetscCall(
+      SceneRefuse(scene, support->path, "spring", "holds nothing; allowed: at least one stiffness above 0", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Reads the supports, and makes room for the loads, because supports with an expression are among them. */
 static PetscErrorCode SceneReadSupports(Scene scene)
 {
@@ -266,6 +298,7 @@ static PetscErrorCode SceneReadSupports(Scene scene)
     PetscCall(ScenePath(&support->path, "supports", i));
     PetscCall(SceneReadText(scene, support->path, "surface", &support->surface));
     PetscCall(SceneRefuseRigid(scene, support->path, "surface", support->surface));
+    PetscCall(SceneReadSprings(scene, support, &held));
     for (int k = 0; k < 3; k++) {
       if (!SceneHas(scene, support->path, Displacements[k])) continue;
       PetscCall(SceneReadSupportValue(scene, support, k));
@@ -273,7 +306,7 @@ static PetscErrorCode SceneReadSupports(Scene scene)
     }
     if (!held)
       PetscCall(SceneRefuse(scene, support->path, "",
-                            "holds nothing; allowed: at least one of ux: 0, uy: 0, uz: 0 (3D)", NULL));
+                            "holds nothing; allowed: at least one of ux: 0, uy: 0, uz: 0 (3D), spring", NULL));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -547,6 +580,16 @@ static PetscErrorCode SceneReadOverlap(Scene scene, SceneContact *contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Refuses factors on the coefficient of friction below 0. */
+static PetscErrorCode SceneCheckFactors(Scene scene, const SceneContact *contact, const char *key, const History *factors)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < factors->n; i++)
+    if (factors->v[i] < 0)
+      PetscCall(SceneRefuse(scene, contact->path, key, "has a factor below 0; allowed: 0 and above", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Reads the friction of a pair. */
 static PetscErrorCode SceneReadFriction(Scene scene, SceneContact *contact)
 {
@@ -555,8 +598,19 @@ static PetscErrorCode SceneReadFriction(Scene scene, SceneContact *contact)
   PetscFunctionBeginUser;
   if (!SceneHas(scene, contact->path, "friction")) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SceneReadValue(scene, contact->path, "friction.mu", &contact->mu, &contact->mu_expression));
-  if (contact->penalty_may_stiffen && (contact->mu > 0 || contact->mu_expression))
-    contact->penalty_scale = SCENE_FRICTION_SCALE;
+  PetscCall(SceneReadFactors(scene, contact->path, "friction.history", &contact->mu_history));
+  PetscCall(SceneReadFactors(scene, contact->path, "friction.over_pressure", &contact->mu_pressure));
+  PetscCall(SceneCheckFactors(scene, contact, "friction.history", &contact->mu_history));
+  PetscCall(SceneCheckFactors(scene, contact, "friction.over_pressure", &contact->mu_pressure));
+  contact->cohesion = SchemaReal(document, "%s.friction.cohesion", contact->path);
+  if (SceneHas(scene, contact->path, "friction.tau_max"))
+    contact->tau_max = SchemaReal(document, "%s.friction.tau_max", contact->path);
+  contact->friction = contact->mu > 0 || contact->mu_expression || contact->cohesion > 0;
+  if (contact->mu_history.n && contact->mu_expression && ExpressionUses(contact->mu_expression, EXPRESSION_T))
+    PetscCall(SceneRefuse(scene, contact->path, "friction.history",
+                          "stands beside an expression with t, which is the value at t itself; allowed: one of them",
+                          NULL));
+  if (contact->penalty_may_stiffen && contact->friction) contact->penalty_scale = SCENE_FRICTION_SCALE;
   if (contact->mu < 0)
     PetscCall(SceneRefuse(scene, contact->path, "friction.mu", "is below 0; allowed: 0 and above", NULL));
   if (SchemaChoice(document, "%s.friction.stick.penalty", contact->path) != 0)
@@ -925,6 +979,8 @@ static PetscErrorCode SceneDestroyContacts(Scene scene)
     for (int k = 0; k < contact->n_symmetry; k++) PetscCall(PetscFree(contact->symmetry[k]));
     PetscCall(ExpressionDestroy(&contact->overlap_expression));
     PetscCall(ExpressionDestroy(&contact->mu_expression));
+    PetscCall(PetscFree2(contact->mu_history.t, contact->mu_history.v));
+    PetscCall(PetscFree2(contact->mu_pressure.t, contact->mu_pressure.v));
     PetscCall(PetscFree(contact->symmetry));
     PetscCall(PetscFree(contact->path));
     PetscCall(PetscFree(contact->name));

@@ -33,8 +33,9 @@ typedef struct {
 } SceneBody;
 
 typedef struct {
-  char *path, *surface;
-  int   fixed[3]; /* whether a component of the displacement is held at 0 */
+  char  *path, *surface;
+  int    fixed[3];  /* whether a component of the displacement is held at 0 */
+  double spring[3]; /* stiffness of springs to the ground (force per length and area); 0: there are none */
 } SceneSupport;
 
 /* An end of a surface: another surface that has nodes in common with it, or a point; neither: the scene does not say.
@@ -89,8 +90,12 @@ typedef struct {
   Expression     overlap_expression; /* in its place, where it is not NULL; one with t is the overlap at t */
   Stabilise      stabilise;          /* which of the pair's bodies are moved into contact and held by springs */
   ContactLawKind law;
-  double         mu;            /* coefficient of friction; 0: there is none */
+  int            friction;      /* 1 if the pair has friction */
+  double         mu;            /* coefficient of friction */
   Expression     mu_expression; /* in its place, where it is not NULL */
+  /* Factors on mu over the load parameter and over the pressure; with n = 0 there is none. */
+  History mu_history, mu_pressure;
+  double  cohesion, tau_max; /* traction that sticks without pressure, and the largest one (force per area); 0: none */
   double         stick_penalty; /* force per length and area; 0: automatic */
   int            penalty_auto;  /* 1 if the penalty is the automatic one */
   /* Penalty (force per length and area), 0 if it is automatic, and the factor on the automatic penalty. */

@@ -407,7 +407,7 @@ static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
                     "%s: the penalty of contact '%s' on '%s' is adjusted or augmented; allowed with where: open: "
                     "a penalty without adjust and augment",
                     SceneWhere(fluids->scene, fluid->load->path, "where"), scene->name, fluid->load->region));
-    if (scene->mu > 0 || scene->mu_expression)
+    if (scene->friction)
       PetscCall(RefuseInput(fluids->mesh->comm,
                             "%s: contact '%s' on '%s' has friction; allowed with where: open: a pair without friction",
                             SceneWhere(fluids->scene, fluid->load->path, "where"), scene->name, fluid->load->region));

@@ -518,7 +518,8 @@ PetscErrorCode ProblemRenewLists(Problem problem, const PetscReal *u_0, PetscRea
 }
 
 /*@
-  ProblemReaction - computes the force that supports and imposed displacements exert on the nodes of a group.
+  ProblemReaction - computes the force that supports, their springs and imposed displacements exert on the nodes of a
+  group.
 
   Collective
 
@@ -530,19 +531,22 @@ PetscErrorCode ProblemRenewLists(Problem problem, const PetscReal *u_0, PetscRea
 . force - the same on all ranks; force[dim..2] are 0; axisymmetric: over 360 degrees
 
   Note:
-  The residual is summed over the prescribed dofs of the group. These include dofs on the edges that the group shares
-  with other prescribed surfaces.
+  The residual is summed over the prescribed dofs of the group, and the forces of springs over all of its dofs. These
+  include dofs on the edges that the group shares with other supported surfaces.
 @*/
 PetscErrorCode ProblemReaction(Problem problem, const MeshGroup *group, PetscReal force[3])
 {
-  const int dim = problem->mesh->dim;
+  const int        dim    = problem->mesh->dim;
+  const PetscReal *spring = LoadsSpringForce(problem->loads);
 
   PetscFunctionBeginUser;
   force[0] = force[1] = force[2] = 0;
   for (PetscInt i = 0; i < group->n_nodes; i++) {
     for (int d = 0; d < dim; d++) {
       const PetscInt dof = group->nodes[i] * dim + d;
+
       if (LoadsPrescribed(problem->loads, dof)) force[d] += problem->f[dof];
+      if (spring) force[d] += spring[dof];
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 3, MPIU_REAL, MPI_SUM, problem->mesh->comm));

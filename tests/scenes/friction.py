@@ -9,7 +9,7 @@ from harness import Check, arguments, run, SCENES
 RUNS = SCENES.parent.parent / "runs"
 MU = 0.3
 
-args = arguments(("part", "what is shown", ("flat", "shear", "belt", "turn", "bar", "rings")))
+args = arguments(("part", "what is shown", ("flat", "bounds", "shear", "belt", "turn", "bar", "rings")))
 check = Check()
 
 
@@ -36,6 +36,32 @@ def flat():
             check.near(f"{name}: traction over pressure", traction / fields["pressure"].ravel()[closed], MU, 1e-6)
             check.holds(f"{name}: all slip", friction["sticking"] == 0 and friction["slipping"] > 0)
             check.near(f"{name}: energy taken", friction["dissipated"], MU * 160 * 20, 0.005 * MU * 160 * 20)
+
+
+def bounds():
+    """Exact: in full slip the force is the bound over the area in contact, and node by node the traction is the bound, at
+    the pressure of the penalty, which is over the reference area."""
+    table = "[[0, 1], [15, 0.9], [40, 0.4]]"
+    for name, own, force in (("cohesion", ["cohesion=2"], MU * 160), ("cohesion alone", ["mu=0", "cohesion=2"],
+                                                                              0), ("limit", ["tau_max=0.5"], 0.5 * 8),
+                             ("factor over t", ["history=[[0, 1], [1, 0.5]]"], MU * 160 / 2), ("factor over the pressure",
+                                                                                               [f"over_pressure={table}"],
+                                                                                               None)):
+        finished = run(args, RUNS / "slide_flat.yaml", out=name.replace(" ", "_"), overrides=[
+            "stepping.initial=0.1", f"contact.0.friction.mu={MU}", *(f"contact.0.friction.{key}" for key in own)
+        ])
+        fields, friction = contact(finished)
+        check.holds(f"{name}: all slip", friction["sticking"] == 0 and friction["slipping"] > 0)
+        if force is not None:
+            force += 2 * friction["slipping_area"] if "cohesion" in name else 0
+            check.near(f"{name}: friction", finished.summary()["probes"]["force_x"], force, 1e-5 * force)
+            continue
+        pressure, traction = fields["pressure"].ravel(), numpy.linalg.norm(fields["traction"], axis=1)
+        closed = pressure > 0
+        factor = traction[closed] / pressure[closed] / MU
+        law = (fields["penalty"].ravel() * fields["penetration"].ravel())[closed]
+        check.near(f"{name}: traction", factor, numpy.interp(law, [0, 15, 40], [1, 0.9, 0.4]), 1e-6)
+        check.holds(f"{name}: pressures differ", numpy.ptp(factor) > 0.01)
 
 
 def shear():

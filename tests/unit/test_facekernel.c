@@ -167,6 +167,29 @@ static void PressureActsInward(void **state)
   assert_near(f[0], 0, 1e-15);
 }
 
+/* The rows of the products of shape functions sum to the tributary areas */
+static void MassHasTheAreas(void **state)
+{
+  (void)state;
+  for (int k = 0; k < CASES; k++) {
+    const int n = ElementGet(cases[k].type)->nodes;
+    double    X[MAX_DOFS], u[MAX_DOFS], area[FACE_MAX_NODES] = {0}, matrix[FACE_MAX_NODES * FACE_MAX_NODES];
+
+    MakeFace(&cases[k], X, u);
+    FaceAreaKernel(cases[k].type, cases[k].dim, cases[k].geometry, X, area, NULL);
+    FaceMassKernel(cases[k].type, cases[k].dim, cases[k].geometry, X, matrix);
+    for (int a = 0; a < n; a++) {
+      double sum = 0;
+
+      for (int b = 0; b < n; b++) {
+        sum += matrix[a * n + b];
+        assert_near(matrix[a * n + b], matrix[b * n + a], 1e-15);
+      }
+      assert_near(sum, area[a], 1e-13);
+    }
+  }
+}
+
 static void TractionHasItsResultant(void **state)
 {
   const double value[3] = {1.5, -0.7, 0.4};
@@ -238,6 +261,7 @@ int main(void)
     cmocka_unit_test(DeadLoadsHaveAPotential),
     cmocka_unit_test(PressureOnAClosedSurfaceHasNoResultant),
     cmocka_unit_test(PressureActsInward),
+    cmocka_unit_test(MassHasTheAreas),
     cmocka_unit_test(TractionHasItsResultant),
     cmocka_unit_test(TributaryAreasAreKnownOnes),
     cmocka_unit_test(AxisymmetricAreaIsThatOfACone),

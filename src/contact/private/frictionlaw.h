@@ -5,8 +5,9 @@
    the step began. Only its part in the tangent plane counts, with P = I - n n^T and n the unit vector along `normal`.
    What the traction was when the step began is kept as two components of a length, along two tangents that turn with
    the master's material: t_1 along P along, t_2 = n x t_1. So a rigid motion of both bodies together changes nothing.
-       e = beta (kept_1 t_1 + kept_2 t_2 + P v),   t = stiffness e      as long as |t| <= mu p: the node sticks
-                                                   t = mu p e/|e|       else: it slips
+       e = beta (kept_1 t_1 + kept_2 t_2 + P v),   t = stiffness e      as long as |t| <= b(p): the node sticks
+                                                   t = b(p) e/|e|       else: it slips
+   with the bound b = cohesion + mu p, or the limit where that is less. mu may depend on p. Without pressure b is 0.
    beta is 1 where the node was in contact when the step began. Else slip counts from the touch only: beta =
    opening/(opening - began), between 0 and 1. In two dimensions all third components are 0.
 
@@ -19,6 +20,9 @@ typedef enum { FRICTION_DECIDES, FRICTION_STICKS, FRICTION_SLIPS } FrictionState
 
 typedef struct {
   double        coefficient; /* mu */
+  double        steepness;   /* dmu/dp (1 over a stress) */
+  double        cohesion;    /* force per area */
+  double        limit;       /* force per area; 0: there is none */
   double        stiffness;   /* force per length of elastic slip and area */
   double        normal[3];   /* of any length but 0 */
   double        slip[3];     /* v (length) */
@@ -34,7 +38,7 @@ typedef struct {
 typedef struct {
   double        traction[3]; /* t, along the slip; the force on the slave is its negative (force per area) */
   FrictionState state;       /* FRICTION_STICKS or FRICTION_SLIPS */
-  double        elastic;     /* elastic slip: the length of e where the node sticks, mu p / stiffness where it slips */
+  double        elastic;     /* elastic slip: the length of e where the node sticks, b / stiffness where it slips */
   double        slipped;     /* what is left of the length of e: slip that stays (length) */
   double        by_normal[3][3], by_slip[3][3], by_along[3][3], by_gap[3]; /* derivatives of the traction */
 } FrictionTraction;

@@ -1,0 +1,306 @@
+"""Benchmarks of friction against closed forms and published figures: node to surface and surface to surface, the smooth
+master and its facets. Runs the scenes, leaves one record per figure and prints the table; --print tables an existing
+record.
+    python scripts/friction_table.py [--burnish BINARY] [--record FILE] [--jobs N] [--ranks N] [--print] [CASE ...]
+A case that is named replaces its rows in the record. Deviations are in per cent of the reference, those of tractions in
+per cent of what BENCHMARKS says. Nodal tractions are forces over tributary areas. So they are compared with means of
+the closed form over the nodes' hat functions."""
+import json
+import math
+import re
+import shutil
+import subprocess
+
+import h5py
+import numpy
+
+from launch import ROOT, command, environment, read_records, read_steps, read_summary, replace_records, table_parser
+
+COLUMNS = ("case", "mesh", "formulation", "smoother", "figure", "value", "reference", "deviation", "allowed", "status",
+           "iterations", "failed")
+RUNS, SCENES = ROOT / "runs/friction", ROOT / "tests/scenes"
+PLAIN = (("surface_to_surface", "diffuse"),)
+BOTH = (("surface_to_surface", "diffuse"), ("node_to_surface", "diffuse"))
+ALL = BOTH + (("surface_to_surface", "facet"), ("node_to_surface", "facet"))
+ANALYTIC = (("surface_to_surface", "diffuse"), ("node_to_surface", "diffuse"))
+
+
+class Result:
+    """A finished run: probes, friction of the only pair, steps, and fields of its slave nodes in the last state."""
+
+    def __init__(self, directory):
+        self.summary, self.steps = read_summary(directory), read_steps(directory)
+        self.probes, self.friction = self.summary["probes"], self.summary["contact"][0].get("friction")
+        with h5py.File(directory / "results.h5", "r") as file:
+            last = file["steps"][sorted(file["steps"])[-1]]
+            pair = list(file["contact"])[0]
+            self.pair = {name: item[()] for name, item in last["contact"][pair].items()}
+            self.nodes, self.slaves = file["mesh/nodes"][()], file["contact"][pair]["nodes"][()]
+            self.displacement = last["displacement"][()]
+            self.stress = last["stress"][()] if "stress" in last else None
+
+    def traction(self):
+        return numpy.linalg.norm(self.pair["traction"], axis=1)
+
+    def pressure(self):
+        return self.pair["pressure"].ravel()
+
+
+def deviation(name, value, reference, allowed):
+    return name, value, reference, 100 * (value / reference - 1), allowed
+
+
+def scatter(name, field, allowed):
+    """Largest deviation of a field from its mean."""
+    mean = field.mean()
+    return name, mean, mean, 100 * abs(field / mean - 1).max(), allowed
+
+
+def wedge(result, mu):
+    return [deviation("force over weight", result.probes["F"] / 7.2, (0.1 + mu) / (1 - 0.1 * mu), 1e-4)]
+
+
+def pad(result, angle):
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    along, across = (lambda x, y: x * c + y * s), (lambda x, y: y * c - x * s)
+    spring = (result.probes["spring_x"], result.probes["spring_y"])
+    plane = (result.probes["plane_x"], result.probes["plane_y"])
+    held = numpy.interp(0.5, result.steps["t"], along(result.steps["plane_x"], result.steps["plane_y"]))
+    held -= along(*(numpy.interp(0.5, result.steps["t"], result.steps[name]) for name in ("spring_x", "spring_y")))
+    return [
+        deviation("tangential force while it sticks, and in the springs", held, 3564, 1e-4),
+        deviation("tangential force while it slips", along(*plane), -0.3 * across(*plane), 1e-4),
+        deviation("mean slip over the springs", -along(*spring) / 4, (3636 + 0.3 * across(*plane)) / 4, 0.01)
+    ]
+
+
+def bar(result, _):
+    exact = 2**2 / (2 * 1000 * 0.3)
+    # Between half and the whole of the slipped length the slip of the release adds nothing, and the slip falls to its
+    # end as the square of the distance.
+    x, slid = 16 - result.nodes[result.slaves, 0], result.pair["slip"].ravel()
+    slope, start = numpy.polyfit(x[(x > 4) & (x < 6)], numpy.sqrt(slid[(x > 4) & (x < 6)]), 1)
+    pulled = result.steps["end"][numpy.argmin(abs(result.steps["t"] - 0.6))]
+    return [
+        deviation("end when pulled", pulled, exact, 1),
+        deviation("end after release", result.probes["end"], exact / 2, 1),
+        deviation("slipped length", -start / slope, 2 / 0.3, 1)
+    ]
+
+
+def shear(result, _):
+    return [scatter("traction in stick", result.traction(), 4)]
+
+
+def rings(result, state):
+    found = [scatter("traction", result.traction(), {"stick": 1.5, "jitter": 4, "slip": 1}[state])]
+    if state == "slip":
+        closed = result.pressure() > 0
+        ratio = result.traction()[closed] / result.pressure()[closed] / 0.2 - 1
+        found.append(("traction over 0.2 times the pressure", 1 + ratio.mean(), 1, 100 * abs(ratio).max(), 1))
+        work = numpy.diff(result.steps["dissipated"])[4:]
+        found.append(("torque, swing", work.mean(), work.mean(), 100 * (work.max() - work.min()) / work.mean(), 0.5))
+    return found
+
+
+def belt(result, _):
+    ratio = result.probes["high"] / result.probes["low"]
+    return [
+        deviation("ratio of the forces", max(ratio, 1 / ratio), math.exp(0.3 * math.pi * 10 / 10.05),
+                  1.5 if len(result.slaves) < 90 else 0.6)
+    ]
+
+
+def hat_means(x, function):
+    """Means of a function over the hat functions of nodes at ascending x."""
+    share = (numpy.arange(200) + 0.5) / 200
+    total, area = numpy.zeros_like(x), numpy.zeros_like(x)
+    for i in range(len(x)):
+        for j in (i - 1, i + 1):
+            if not 0 <= j < len(x):
+                continue
+            weight = (1 - share) * abs(x[j] - x[i])
+            total[i] += (weight * function(x[i] + (x[j] - x[i]) * share)).sum()
+            area[i] += weight.sum()
+    return total / area
+
+
+def part(x, a):
+    return numpy.sqrt(numpy.maximum(0, 1 - (x / a)**2))
+
+
+def stick_edge(x, traction, bound, sticks):
+    """Where sticking ends along x >= 0: near it, the square of 1 - traction / bound falls linearly."""
+    at = numpy.argsort(x)
+    at = at[sticks[at]][-2:]
+    near, far = ((1 - traction[k] / bound[k])**2 for k in at)
+    return x[at[1]] + (x[at[1]] - x[at[0]]) * far / (near - far)
+
+
+def mindlin_line(result, _):
+    force, push, modulus = result.probes["P"], result.probes["Q"], 210000 / (2 * (1 - 0.3**2))
+    a = math.sqrt(4 * force * 50 / (math.pi * modulus))
+    c, peak = a * math.sqrt(1 - push / (0.3 * force)), 2 * force / (math.pi * a)
+    order = numpy.argsort(result.nodes[result.slaves, 0])
+    x = result.nodes[result.slaves, 0][order]
+    pressure, traction, status = (field[order] for field in (result.pressure(), result.traction(),
+                                                             result.pair["friction"].ravel()))
+    error = traction / (0.3 * peak) - hat_means(x, lambda s: part(s, a) - c / a * part(s, c))
+    noise = pressure / peak - hat_means(x, lambda s: part(s, a))
+    face = numpy.diff(x[abs(x) < 1]).max()
+    zone = abs(x) < a + face
+    inner = zone & (abs(abs(x) - a) > 2 * face) & (abs(abs(x) - c) > 2 * face)
+    edge = numpy.mean([stick_edge(side * x, traction, 0.3 * pressure, (status == 1) & (side * x > 0)) for side in (1, -1)])
+    return [
+        ("traction, rms", peak, peak, 100 * math.sqrt((error[zone]**2).mean()), 2),
+        ("traction, largest beyond two faces from the edges", peak, peak, 100 * abs(error[inner]).max(), 2),
+        ("pressure, largest beyond two faces from the edges", peak, peak, 100 * abs(noise[inner]).max(), 2),
+        deviation("half-width that sticks", edge, c, 2)
+    ]
+
+
+def mindlin_sphere(result, _):
+    force, push = 2 * result.probes["P"], 2 * result.probes["Q"]
+    a = (3 * force * 50 / (4 * 210000 / (2 * (1 - 0.3**2))))**(1 / 3)
+    c, peak = a * (1 - push / (0.3 * force))**(1 / 3), 1.5 * force / (math.pi * a**2)
+    place = result.nodes[result.slaves]
+    r = numpy.hypot(place[:, 0], place[:, 2])
+    pressure, traction, status = result.pressure(), result.traction(), result.pair["friction"].ravel()
+    face = numpy.diff(numpy.unique(numpy.round(place[place[:, 2] < 1e-9, 0], 9)))
+    face = face[len(face) // 2]
+    zone = r < a
+    error = traction / (0.3 * peak) - part(r, a) + c / a * part(r, c)
+    inner = zone & (abs(r - a) > 2 * face) & (abs(r - c) > 2 * face)
+    edges = [
+        stick_edge(r[line], traction[line], 0.3 * pressure[line], status[line] == 1)
+        for line in (abs(place[:, 0]) < 1e-9, (place[:, 2] < 1e-9) & (place[:, 0] > 0), (place[:, 2] < 1e-9) &
+                     (place[:, 0] < 0)) if (status[line] == 1).sum() > 1
+    ]
+    # The cut's motion is the shift and what the bodies give beside the contact, in proportion to the force. The first
+    # step along, in which next to nothing slips, tells that part.
+    motion = 0.0073 * 2 * (result.steps["t"] - 0.5)
+    along, pushes = motion > 1e-9, 2 * abs(result.steps["Q"])
+    shear = 210000 / 2.6
+    law = lambda q: 3 * 0.3 * force / (8 * a) * 1.7 / shear * (1 - (1 - q / (0.3 * force))**(2 / 3))
+    first, last = motion[along][0], motion[along][-1]
+    bulk = (first - law(pushes[along][0])) / pushes[along][0]
+    found = [
+        ("traction, rms", peak, peak, 100 * math.sqrt((error[zone]**2).mean()), 2),
+        ("traction, largest beyond two faces from the edges", peak, peak, 100 * abs(error[inner]).max(initial=0), 2),
+        deviation("shift", last - bulk * pushes[along][-1], law(pushes[along][-1]), 1)
+    ]
+    return found + ([deviation("radius that sticks", numpy.mean(edges), c, 2)] if edges else [])
+
+
+def plate_greco(result, _):
+    reference = {"u_0": 2.86e-2, "u_1": 2.72e-2, "u_5": 2.28e-2, "u_7": 1.98e-2, "u_11": 1.50e-2}
+    return [deviation(f"displacement {name}", result.probes[name], value, 5) for name, value in reference.items()]
+
+
+def punch_rounded(result, mu):
+    node = numpy.flatnonzero(numpy.linalg.norm(result.nodes, axis=1) < 1e-9)
+    node = node[numpy.argmin(abs(result.displacement[node, 1] - result.probes["u"]))]
+    return [
+        deviation("displacement under the axis", result.probes["u"], {0: -0.132941, 0.1: -0.130794}[mu], 1),
+        deviation("stress under the axis", result.stress[node, 1], {0: -94.12, 0.1: -95.47}[mu], None)
+    ]
+
+
+# name -> scene, what measures a run, and its meshes: (name, argument of the measure, overrides, formulations)
+BENCHMARKS = {
+    "wedge": (RUNS / "wedge.yaml", wedge, [(f"mu {mu}", mu, [f"contact.0.friction.mu={mu}"], ALL) for mu in (0.1, 0.3)] + [
+        ("mu 0.3, analytic slope", 0.3, [
+            "mesh.parameters.base=0", "bodies=[{volume: wedge, material: {law: svk, E: 1000000, nu: 0.3}}]",
+            "supports=[]", "contact.0.master={plane: {point: [0, 0], normal: [-0.1, 1]}}"
+        ], ANALYTIC)
+    ]),
+    "pad": (RUNS / "pad.yaml", pad, [("flat", 0, [], ANALYTIC),
+                                     ("inclined by 30 degrees", 30, [
+                                         "mesh.parameters.angle=30", "supports.0.spring=[0.2, 0.2]",
+                                         "contact.0.master.plane.normal=[-0.5, 0.866025403784439]"
+                                     ], ANALYTIC)]),
+    "bar": (SCENES / "bar.yaml", bar, [("160 elements", None, [], BOTH)]),
+    "shear": (SCENES / "shear.yaml", shear,
+              [(f"3D, jitter {jitter}", None, [f"mesh.parameters.jitter={jitter}", "solver.tolerance=1e-8"], ALL) for jitter in (0, 0.25)]),
+    "rings": (SCENES / "rings_turned.yaml", rings, [
+        (name, state, [f"mesh.parameters.jitter={jitter}", f"stepping.initial={step}"] +
+         [f"loads.0.ux='x*(cos({angle}*t)-1)-y*sin({angle}*t)'", f"loads.0.uy='x*sin({angle}*t)+y*(cos({angle}*t)-1)'"],
+         ALL) for name, state, jitter, angle, step in (("stick", "stick", 0, 0.0001, 0.5),
+                                                       ("stick, jitter 0.25", "jitter", 0.25, 0.0001, 0.5),
+                                                       ("slip over five faces", "slip", 0, 0.26, 0.04))
+    ]),
+    "belt": (SCENES / "belt.yaml", belt, [(f"{n} elements", None, [f"mesh.parameters.n={n}"], ANALYTIC)
+                                          for n in (12, 24, 48, 96)]),
+    "mindlin_line": (RUNS / "mindlin_line.yaml", mindlin_line, [(f"{n} elements", None, [f"mesh.parameters.n={n}"], ALL)
+                                                                for n in (8, 16, 32)]),
+    "mindlin_sphere": (RUNS / "mindlin_sphere.yaml", mindlin_sphere,
+                       [("4 elements", None, [], BOTH), ("8 elements", None, ["mesh.parameters.n=8"], PLAIN)]),
+    "plate_greco": (RUNS / "plate_greco.yaml", plate_greco, [(f"{n} elements", None, [
+        f"mesh.parameters.n={n}", f"mesh.parameters.m={n}"
+    ], ANALYTIC) for n in (32, 64)]),
+    "punch_rounded": (RUNS / "punch_rounded.yaml", punch_rounded,
+                      [(f"mu {mu}, elements of {h}", mu, [f"mesh.parameters.h={h}", f"contact.0.friction.mu={mu}"],
+                        ALL if mu else BOTH) for mu in (0, 0.1) for h in (1, 0.5)]),
+}
+
+
+def solve(args, case, mesh, argument, overrides, formulation, smoother):
+    """The records of one run."""
+    scene, measure, _ = BENCHMARKS[case]
+    directory = args.out / re.sub(r"\W+", "_", f"{case}_{mesh}_{formulation}_{smoother}")
+    shutil.rmtree(directory, ignore_errors=True)
+    line = command(args.burnish, args.ranks, scene, directory, [
+        *overrides, f"contact.0.formulation={formulation}", f"contact.0.smoother={smoother}"
+    ], "-quiet")
+    finished = subprocess.run(line, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True)
+    record = {"case": case, "mesh": mesh, "formulation": formulation, "smoother": smoother}
+    if finished.returncode:
+        print(" ".join(line), finished.stdout[-500:], sep="\n")
+        return [{**record, "figure": "not converged", "status": finished.returncode}]
+    result = Result(directory)
+    record.update(status=0, iterations=result.summary["newton_iterations"], failed=result.summary["steps_failed"])
+    shutil.rmtree(directory, ignore_errors=True)
+    return [{
+        **record, "figure": figure, "value": f"{value:.7g}", "reference": f"{reference:.7g}",
+        "deviation": f"{error:.3g}", "allowed": allowed
+    } for figure, value, reference, error, allowed in measure(result, argument)]
+
+
+def run(args, case):
+    records = []
+    for mesh, argument, overrides, formulations in BENCHMARKS[case][2]:
+        for formulation, smoother in formulations:
+            records += solve(args, case, mesh, argument, overrides, formulation, smoother)
+    replace_records(args.record, COLUMNS, case, records)
+
+
+def cell(record):
+    return "{:.2g}".format(abs(float(record["deviation"]))) if record and record["deviation"] else "-"
+
+
+def print_table(records):
+    print("Deviations in per cent; s2s: surface to surface, n2s: node to surface.\n")
+    print("| benchmark | mesh | figure | reference | asked | s2s | n2s | s2s, facets | n2s, facets |\n|" + " --- |" * 9)
+    for key in dict.fromkeys(tuple(r[name] for name in ("case", "mesh", "figure")) for r in records if r["deviation"]):
+        rows = [r for r in records if tuple(r[name] for name in ("case", "mesh", "figure")) == key]
+        found = {(r["formulation"], r["smoother"]): r for r in rows}
+        relative = rows[0]["value"] == rows[0]["reference"]
+        print("| {} | {} | {} | {} | {} | {} |".format(*key, "-" if relative else rows[0]["reference"],
+                                                       rows[0]["allowed"] or "-",
+                                                       " | ".join(cell(found.get(k)) for k in ALL)))
+
+
+def main():
+    parser = table_parser(__doc__, "friction")
+    parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("cases", nargs="*", metavar="CASE", choices=[[], *BENCHMARKS], default=[])
+    args = parser.parse_args()
+    args.out.mkdir(parents=True, exist_ok=True)
+    for case in [] if args.only_print else args.cases or BENCHMARKS:
+        run(args, case)
+    print_table(read_records(args.record))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,16 @@
+/* Springs on surfaces: an elastic foundation that ties a body to the ground. A reference area dA whose displacement is
+   u feels the force -k_i u_i dA along each axis i, in every kinematics; in an axisymmetric scene x is the radius.
+
+   FoundationResidual() adds force and energy, FoundationTangent() the constant tangent. FoundationHolds() tells which
+   dofs have a spring. FoundationForce() gives the forces of the last residual. */
+#pragma once
+#include "bodies/elasticity.h"
+
+typedef struct _n_Foundation *Foundation;
+
+PetscErrorCode   FoundationCreate(Mesh, Scene, Foundation *);
+PetscErrorCode   FoundationDestroy(Foundation *);
+PetscErrorCode   FoundationResidual(Foundation, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2);
+PetscErrorCode   FoundationTangent(Foundation, Elasticity);
+PetscBool        FoundationHolds(Foundation, PetscInt local_dof);
+const PetscReal *FoundationForce(Foundation);
