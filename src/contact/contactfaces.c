@@ -39,7 +39,7 @@ PetscBool ContactFacesServe(const ContactPair *pair, Scene scene, int order)
   for (int i = 0; i < scene->n_loads; i++)
     if (scene->loads[i].open) return PETSC_FALSE;
   return (PetscBool)(pair->formulation.surface && order == 1 && !contact->listed && !contact->adjust &&
-                     !contact->augment && !(contact->mu > 0) && !contact->mu_expression);
+                     !contact->augment && !contact->friction);
 }
 
 /* Number of the first slave node of a face, on the rank that owns it. */
