@@ -38,8 +38,8 @@ PetscBool ContactFacesServe(const ContactPair *pair, Scene scene, int order)
 
   for (int i = 0; i < scene->n_loads; i++)
     if (scene->loads[i].open) return PETSC_FALSE;
-  return (PetscBool)(pair->formulation.surface && order == 1 && !contact->listed && !contact->adjust &&
-                     !contact->augment && !contact->friction);
+  return (PetscBool)(pair->formulation.surface && order == 1 && !contact->adjust && !contact->augment &&
+                     !contact->friction);
 }
 
 /* Number of the first slave node of a face, on the rank that owns it. */
@@ -76,7 +76,8 @@ PetscErrorCode ContactFacesAdd(ContactPair *pair, const PetscReal turn[])
     pair->size[c]                 = slaves->size[slaves->first[f]];
     pair->turn[c]                 = turn[pair->node[c]];
     pair->area[c]                 = 0;
-    for (PetscInt q = slaves->first[f]; q < slaves->first[f + 1]; q++) pair->area[c] += slaves->weight[q];
+    for (PetscInt q = slaves->first[f]; q < slaves->first[f + 1]; q++)
+      pair->area[c] += pair->scene->share * slaves->weight[q];
     pair->n++;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -115,7 +116,7 @@ void ContactFacesPoints(ContactPair *pair)
       const PetscInt at = pair->term_ptr[c + 1]++;
 
       pair->term_point[at]  = q;
-      pair->term_weight[at] = FACE_SHARE * slaves->weight[q];
+      pair->term_weight[at] = FACE_SHARE * pair->scene->share * slaves->weight[q];
     }
   }
 }
