@@ -95,8 +95,7 @@ static BatchFn *GetBatch(const KernelCase *kernel)
 {
   const int         axisymmetric = kernel->geometry == GEOMETRY_AXISYMMETRIC;
   const ElasticLaw *law          = MaterialGetLaw(kernel->law);
-  const int         splits =
-    law->separable || (kernel->kinematics == KINEMATICS_SMALL && kernel->law != MATERIAL_UMAT);
+  const int         splits = law->separable || (kernel->kinematics == KINEMATICS_SMALL && kernel->law != MATERIAL_UMAT);
 
   switch (kernel->formulation) { /* the modes of enhanced elements are found by an energy, which a routine has not */
   case FORMULATION_ENHANCED: return kernel->law == MATERIAL_UMAT ? NULL : enhanced_batches[kernel->type][axisymmetric];

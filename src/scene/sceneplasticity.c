@@ -121,8 +121,8 @@ PetscErrorCode SceneReadPlasticity(Scene scene, SceneBody *body)
 /* Reads the list of constants of a routine. */
 static PetscErrorCode SceneReadConstants(Scene scene, const SceneBody *body, int *n, double **constants)
 {
-  const Node list = SceneHas(scene, body->path, "material.constants") ? SceneNode(scene, body->path, "material.constants")
-                                                                      : NULL;
+  const Node list =
+    SceneHas(scene, body->path, "material.constants") ? SceneNode(scene, body->path, "material.constants") : NULL;
 
   PetscFunctionBeginUser;
   *n = list ? list->n : 0;
