@@ -44,6 +44,7 @@ typedef struct {
   const double       *state;        /* of a plastic law [points][states], or NULL; its first lane */
   int                 states, part; /* part: of the batch, its first lane */
   int                 all;          /* H takes all points of the state */
+  int                *fault;        /* [LANES], set where a routine of the user fails, or NULL */
   const double       *X, *u;
   const double       *u_0;  /* displacements from which K extrapolates the stress, or NULL */
   double              rate; /* of StressReference */
@@ -253,7 +254,7 @@ LANES_INLINE void StartLeastJ(const BatchCall *call)
 LANES_INLINE void KeepLeastJ(const BatchCall *call, const Lanes *dilatation)
 {
   for (int lane = 0; lane < LANES && call->finite; lane++) {
-    if (!(1 + (*dilatation)[lane] >= call->J[lane]) && !isnan(call->J[lane]))
+    if (!(1 + (*dilatation)[lane] >= call->J[lane]))
       call->J[lane] = 1 + (*dilatation)[lane]; /* the negated comparison lets NaN through */
   }
 }
