@@ -54,6 +54,7 @@ def kill_and_restart(directory, overrides, ranks):
 for name, material in LAWS.items():
     overrides = [f"bodies.0.material={material}", "mesh.parameters={lx: 2, ly: 1, lz: 1, nx: 4, ny: 3, nz: 3, tet: 0}",
                  "bodies.0.formulation=fbar",
+                 "supports.1={surface: x_min, uy: 0}",
                  "loads.0={surface: x_max, ux: 0.1, uy: 0.05, history: [[0, 0], [0.5, 1], [1, -1]]}",
                  f"stepping={{control: fixed, initial: {1 / STEPS}}}", "output={checkpoint: 1, every: 0}"]
     whole = run(args, SCENES / "plastic_bar.yaml", "-quiet", out=f"{name}_whole", overrides=overrides)
