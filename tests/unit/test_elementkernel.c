@@ -125,6 +125,9 @@ static int NextCase(KernelCase *kernel)
   kernel->kinematics = KINEMATICS_FINITE;
   while (++kernel->law < MATERIAL_LAWS) {
     kernel->n_constants = ExampleMaterial(kernel->law, 1, 0).n_constants;
+    if (kernel->law == MATERIAL_UMAT) continue; /* a routine of the user's: scenes/umat.py */
+    if (kernel->law == MATERIAL_VON_MISES && kernel->formulation == FORMULATION_MIXED)
+      continue; /* test_plasticelement.c */
     if (ElementKernelExists(kernel)) return 1;
   }
   kernel->n_constants = 0;
@@ -166,7 +169,6 @@ static void ForceAndTangentAreDerivatives(void **state)
       ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, W_minus, f_minus, NULL, J);
       for (int lane = 0; lane < KERNEL_LANES; lane++) {
         b.u[j * KERNEL_LANES + lane] += h;
-        if (!(b.J[lane] > 0)) continue; /* turned inside out by chance, where the laws are cut off */
         assert_near(b.f[j * KERNEL_LANES + lane], (W_plus[lane] - W_minus[lane]) / (2 * h), 2e-8 * scale);
         for (int i = 0; i < b.dofs; i++)
           assert_near(b.K[(i * b.dofs + j) * KERNEL_LANES + lane],
