@@ -170,7 +170,7 @@ PetscErrorCode SceneReadRoutine(Scene scene, SceneBody *body)
   PetscCall(PetscFree(constants));
   if (failed)
     PetscCall(SceneRefuse(scene, body->path, Own[0],
-                          "cannot be loaded; allowed: a shared library with a routine umat, see scripts/build_umat.sh",
+                          "- the library cannot be loaded; allowed: one with a routine umat, see scripts/build_umat.sh",
                           message));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
