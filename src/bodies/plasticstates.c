@@ -232,7 +232,7 @@ PetscErrorCode ElasticityPlasticWork(Elasticity e, PetscReal *work, PetscReal *s
   PetscFunctionBeginUser;
   *work = *strain = 0;
   for (PetscInt c = 0; c < e->mesh->n_cells; c++) {
-    const CellGroup *g = &e->groups[e->cell_group[c]];
+    const CellGroup *g    = &e->groups[e->cell_group[c]];
     const PetscInt   slot = e->cell_slot[c];
     PetscReal        X[MAX_DOFS], volume[ELEMENT_MAX_POINTS];
 

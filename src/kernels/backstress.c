@@ -10,9 +10,9 @@
    where p = sqrt(2/3) |G_0, G| is the increment of the equivalent plastic strain. This is multiplicative flow by the
    exponential map without plastic spin. w_k = (1 - exp(-gamma p)) / (gamma p) and h_k make the term the work of the
    backstress along a straight path, on which Armstrong's and Frederick's equation has a closed solution. At the end of
-   a step the rest follows: the elastic strain a of the backstress becomes exp(-gamma p) a + (w - exp(-gamma p)) d, where
-   a is its value without recovery and d the strain of the flow. In small strains the distances are |A - B| / 2, and the
-   law is radial return with backstresses.
+   a step the rest follows: the elastic strain a of the backstress becomes exp(-gamma p) a + (w - exp(-gamma p)) d,
+   where a is its value without recovery and d the strain of the flow. In small strains the distances are |A - B| / 2,
+   and the law is radial return with backstresses.
 
    On a path that is not straight, the stress at the end lies off the yield surface by the square of the step. The
    backstress takes this part in when the state is accepted, so that an accepted state is elastic.
@@ -43,7 +43,7 @@ static const double potential_round_off = 1e-13;
 static const double short_way = 1e-3;
 
 /* Tensors in the frame have six components in an orthonormal basis: aa bb cc and sqrt(2) times ab bc ac. */
-static const double root_2 = 1.41421356237309504880;
+static const double root_2        = 1.41421356237309504880;
 static const int    pair_of[3][2] = {{0, 1}, {1, 2}, {0, 2}};
 
 /* The strain between two plastic states */
@@ -122,8 +122,7 @@ static void SetDistance(const Plastic *s, const Lanes other[6], Distance *d)
       Lanes sum = {0};
 
       for (int I = 0; I < 3; I++) {
-        for (int J = 0; J < 3; J++)
-          sum += s->inverse[a][I] * s->inverse[b][J] * other[component[I][J]];
+        for (int J = 0; J < 3; J++) sum += s->inverse[a][I] * s->inverse[b][J] * other[component[I][J]];
       }
       E[component[a][b]] = sum;
     }
@@ -131,8 +130,7 @@ static void SetDistance(const Plastic *s, const Lanes other[6], Distance *d)
   if (s->finite) {
     PrincipalAxes(E, d->value, d->axis);
     for (int a = 0; a < 3; a++) {
-      for (int lane = 0; lane < LANES; lane++)
-        d->value[a][lane] = log1p(fmax(d->value[a][lane], least_square - 1)) / 2;
+      for (int lane = 0; lane < LANES; lane++) d->value[a][lane] = log1p(fmax(d->value[a][lane], least_square - 1)) / 2;
     }
     mean = (d->value[0] + d->value[1] + d->value[2]) / 3;
     for (int a = 0; a < 3; a++) {
@@ -172,8 +170,7 @@ static void SetFrame(const Lanes H[9], const Lanes *dilatation, Plastic *s)
     for (int I = 0; I < 3; I++) {
       s->B[I][a] = s->inverse[a][I] = s->x.axis[a][I] = s->x.pulled[a][I] = (Lanes){0} + (double)(a == I);
       if (I < a) continue;
-      s->elastic[component[a][I]] =
-        (H[3 * a + I] + H[3 * I + a] + s->G[component[a][I]]) / (a == I ? 2 : root_2);
+      s->elastic[component[a][I]] = (H[3 * a + I] + H[3 * I + a] + s->G[component[a][I]]) / (a == I ? 2 : root_2);
     }
   }
   mean = (s->elastic[0] + s->elastic[1] + s->elastic[2]) / 3;
@@ -524,9 +521,8 @@ static void NextTerms(const Plastic *s, Lanes next[])
   size = Dot(beyond, beyond);
   for (int lane = 0; lane < LANES; lane++) {
     double       slope, work;
-    const double strength =
-      HardeningStress(s->hardening, s->state[PLASTIC_STRAIN][lane] + s->p[lane], &slope, &work) +
-      HardeningOverstress(s->hardening, s->p[lane], s->dt, &slope, &work);
+    const double strength = HardeningStress(s->hardening, s->state[PLASTIC_STRAIN][lane] + s->p[lane], &slope, &work) +
+                            HardeningOverstress(s->hardening, s->p[lane], s->dt, &slope, &work);
 
     if (s->p[lane] > 0 && share[lane] > 0) excess[lane] = 1 - strength / sqrt(1.5 * size[lane]);
   }
@@ -538,8 +534,8 @@ static void NextTerms(const Plastic *s, Lanes next[])
     Exponential(s, s->B, strain[k], change);
     for (int i = 0; i < 6; i++) {
       for (int lane = 0; lane < LANES; lane++)
-        rest[i][lane] = s->p[lane] > 0 ? s->G[i][lane] + change[i][lane]
-                                       : s->state[PLASTIC_BACKSTRESS + 6 * k + i][lane];
+        rest[i][lane] =
+          s->p[lane] > 0 ? s->G[i][lane] + change[i][lane] : s->state[PLASTIC_BACKSTRESS + 6 * k + i][lane];
     }
   }
 }

@@ -1,11 +1,9 @@
 /* Integrals over one cell at a time: volume, quality, body force and stress. They are called once for each step or run,
    not for each iteration, so they are not batched. */
-#include "kernels/elementkernel.h"
+#include "elementbatch.h"
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
-
-static const double two_pi = 6.28318530717958647693;
 
 /* J[k][m] = dX_m/dxi_k; returns its determinant. */
 static double Jacobian(int nodes, int dim, const double *dN, int stride, const double *X, double J[3][3])
@@ -286,6 +284,30 @@ void ElementPointVolumes(ElementType type, int dim, Geometry geometry, const dou
   double         J[3][3];
 
   for (int p = 0; p < e->points; p++) volume[p] = PointVolume(e, p, dim, geometry, X, J);
+}
+
+/*@
+  ElementStateVolumes - computes the reference volumes of the points of an element that have a plastic state.
+
+  Not collective
+
+  Input Parameters:
++ kernel - element type, geometry and formulation
+- X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+
+  Output Parameter:
+. volume - [ElementStatePoints()]; 0 of points that give results alone
+@*/
+void ElementStateVolumes(const KernelCase *kernel, const double *X, double *volume)
+{
+  const Element *e = ElementGet(kernel->type);
+
+  if (ElementStatePoints(kernel) == e->points) {
+    ElementPointVolumes(kernel->type, e->dim, kernel->geometry, X, volume);
+    return;
+  }
+  MixedPointVolumes(e, kernel->geometry, X, volume);
+  for (int p = MixedPoints(e); p < ElementStatePoints(kernel); p++) volume[p] = 0;
 }
 
 /*@

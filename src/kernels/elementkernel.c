@@ -95,8 +95,7 @@ static BatchFn *GetBatch(const KernelCase *kernel)
 {
   const int         axisymmetric = kernel->geometry == GEOMETRY_AXISYMMETRIC;
   const ElasticLaw *law          = MaterialGetLaw(kernel->law);
-  const int         splits =
-    law->separable || (kernel->kinematics == KINEMATICS_SMALL && kernel->law != MATERIAL_UMAT);
+  const int         splits = law->separable || (kernel->kinematics == KINEMATICS_SMALL && kernel->law != MATERIAL_UMAT);
 
   switch (kernel->formulation) { /* the modes of enhanced elements are found by an energy, which a routine has not */
   case FORMULATION_ENHANCED: return kernel->law == MATERIAL_UMAT ? NULL : enhanced_batches[kernel->type][axisymmetric];
@@ -144,30 +143,6 @@ int ElementStatePoints(const KernelCase *kernel)
   const int      points = kernel->formulation == FORMULATION_MIXED ? MixedPoints(e) : e->points;
 
   return points > e->points ? points + e->points : e->points;
-}
-
-/*@
-  ElementStateVolumes - computes the reference volumes of the points of an element that have a plastic state.
-
-  Not collective
-
-  Input Parameters:
-+ kernel - element type, geometry and formulation
-- X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
-
-  Output Parameter:
-. volume - [ElementStatePoints()]; 0 of points that give results alone
-@*/
-void ElementStateVolumes(const KernelCase *kernel, const double *X, double *volume)
-{
-  const Element *e = ElementGet(kernel->type);
-
-  if (ElementStatePoints(kernel) == e->points) {
-    ElementPointVolumes(kernel->type, e->dim, kernel->geometry, X, volume);
-    return;
-  }
-  MixedPointVolumes(e, kernel->geometry, X, volume);
-  for (int p = MixedPoints(e); p < ElementStatePoints(kernel); p++) volume[p] = 0;
 }
 
 /*@
@@ -290,6 +265,7 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
                    const double *constants, const double *multiplier, double *W, double *f, double *K, double *J)
 {
   const int extrapolates = reference && ElementExtrapolates(kernel);
+  int       fault[LANES] = {0};
   BatchFn  *batch        = GetBatch(kernel);
   Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
   BatchCall call = StartCall(kernel, lanes_constants);
@@ -308,34 +284,12 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
     call.f          = f ? f + part : NULL;
     call.K          = K ? K + part : NULL;
     call.J          = J + part;
+    call.fault      = fault;
     batch(&call);
-  }
-}
-
-/* Evaluates a routine of the user at point p, one lane after the other. An element whose routine fails counts as one
-   that is turned inside out, so that the step is taken back. */
-void PointUmat(const BatchCall *call, int p, const Lanes H[9], double *next, Lanes *W, Lanes P[9],
-               Lanes A[MATERIAL_TANGENT_SIZE])
-{
-  const PlasticBatch *plastic = call->plastic;
-
-  for (int lane = 0; lane < LANES; lane++) {
-    const UmatPlace place = {.finite  = call->finite,
-                             .tensor  = call->e->dim == 3 ? 6 : 4,
-                             .element = plastic->number[call->part + lane],
-                             .point   = p + 1,
-                             .t       = plastic->t,
-                             .dt      = plastic->dt};
-    const size_t    at    = (size_t)p * call->states * KERNEL_LANES + lane;
-    double          h[9], energy, stress[9], tangent[MATERIAL_TANGENT_SIZE];
-
-    for (int r = 0; r < 9; r++) h[r] = H[r][lane];
-    if (UmatPoint(plastic->umat, &place, h, &call->state[at], KERNEL_LANES, &energy, stress, A ? tangent : NULL,
-                  next ? &next[at] : NULL))
-      call->J[lane] = NAN;
-    if (W) (*W)[lane] = energy;
-    for (int r = 0; r < 9 && P; r++) P[r][lane] = stress[r];
-    for (int k = 0; k < MATERIAL_TANGENT_SIZE && A; k++) A[k][lane] = tangent[k];
+    for (int lane = 0; lane < LANES; lane++) { /* as an element that is inverted: the step is taken back */
+      if (fault[lane]) J[part + lane] = NAN;
+      fault[lane] = 0;
+    }
   }
 }
 

@@ -4,11 +4,11 @@
    ElementKernel() treats a batch of KERNEL_LANES elements of one type, law, geometry, kinematics and formulation. Its
    arrays are [node][dim][lane], so that the inner loops vectorise. A short batch repeats its last element.
    ElementAcceptState() takes the plastic state on to given displacements; ElementStatePoints() counts its points,
-   ElementStates() the numbers of each, and ElementStateVolumes() gives their volumes. ElementKernelExists() tells whether there is
-   a kernel for a case. The other functions treat one cell or one face: ElementPointState(), ElementPointStress(),
-   ElementStress() and ElementVolumeEnergy() evaluate a state, ElementQuality() and CellVolume() a shape,
-   FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes, FaceMassKernel() what
-   springs on a face need.
+   ElementStates() the numbers of each, and ElementStateVolumes() gives their volumes. ElementKernelExists() tells
+   whether there is a kernel for a case. The other functions treat one cell or one face: ElementPointState(),
+   ElementPointStress(), ElementStress() and ElementVolumeEnergy() evaluate a state, ElementQuality() and CellVolume() a
+   shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes,
+   FaceMassKernel() what springs on a face need.
 
    K may extrapolate the stress of its geometric part from an earlier state (stressreference.h), where
    ElementExtrapolates().

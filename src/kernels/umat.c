@@ -60,8 +60,9 @@ static void TakeCrash(int number)
     raise(number);
     return;
   }
-  length = snprintf(text, sizeof text, "burnish: %.120s: the routine umat crashed (signal %d) in element %d, point %d\n",
-                    crash.path, number, crash.element, crash.point);
+  length =
+    snprintf(text, sizeof text, "burnish: %.120s: the routine umat crashed (signal %d) in element %d, point %d\n",
+             crash.path, number, crash.element, crash.point);
   if (write(STDERR_FILENO, text, (size_t)length) < 0) _exit(CRASH_STATUS);
   _exit(CRASH_STATUS);
 }
@@ -197,7 +198,7 @@ static void Turn(const double Q[9], double T[9])
 
 /* What a call hands over, in Abaqus's components. The arrays are as long as with NTENS = 6. */
 typedef struct {
-  double F[2][9], H[9];         /* at begin and end; H at the end */
+  double F[2][9], H[9]; /* at begin and end; H at the end */
   double stress[6], tangent[36], strain[6], increment[6], rotation[9], energy[3], statev[UMAT_MAX_STATES];
   double shorter;
 } UmatData;
@@ -272,7 +273,7 @@ static void Call(const Umat *umat, const UmatPlace *place, UmatData *x)
 {
   double rpl = 0, ddsddt[6] = {0}, drplde[6] = {0}, drpldt = 0, time[2] = {place->t - place->dt, place->t - place->dt},
          dtime = place->dt, none[3] = {0}, length = 1, columns[3][9];
-  int  ndi = 3, nshr = place->tensor - 3, ntens = place->tensor, nstatv = umat->n_states, nprops = umat->n_constants,
+  int ndi = 3, nshr = place->tensor - 3, ntens = place->tensor, nstatv = umat->n_states, nprops = umat->n_constants,
       element = place->element, point = place->point, zero = 0, jstep[4] = {1, 0, 0, 0}, kinc = 1;
   char name[NAME_LENGTH];
 
@@ -303,7 +304,8 @@ static int Fails(Umat *umat, const UmatPlace *place, const UmatData *x)
   for (int k = 0; k < umat->n_states; k++) sum += x->statev[k];
   if (isfinite(sum)) return x->shorter < step_kept;
   if (umat->told != place->t)
-    fprintf(stderr, "burnish: %s: the routine umat gave a number that is not finite in element %d, point %d at t = %g\n",
+    fprintf(stderr,
+            "burnish: %s: the routine umat gave a number that is not finite in element %d, point %d at t = %g\n",
             umat->path, place->element, place->point, place->t);
   umat->told = place->t;
   return 1;
@@ -331,9 +333,9 @@ static void PiolaTangent(const UmatPlace *place, const UmatData *x, const double
 
     a[i][k][j][l] = J * Tangent(place, x, i, k, j, l);
     if (place->finite)
-      a[i][k][j][l] += (i == j) * T[3 * k + l] - ((i == j) * T[3 * k + l] + (i == l) * T[3 * k + j] +
-                                                  T[3 * i + j] * (k == l) + T[3 * i + l] * (k == j)) /
-                                                   2;
+      a[i][k][j][l] +=
+        (i == j) * T[3 * k + l] -
+        ((i == j) * T[3 * k + l] + (i == l) * T[3 * k + j] + T[3 * i + j] * (k == l) + T[3 * i + l] * (k == j)) / 2;
   }
   for (int r = 0, at = 0; r < 9; r++) {
     for (int s = r; s < 9; s++, at++) {

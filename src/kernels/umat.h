@@ -5,10 +5,10 @@
    and UmatPoint() returns a fault, as it does where the routine asks for a shorter step (PNEWDT below 1).
 
    The routine gets, in finite strains, DFGRD0 and DFGRD1, the increment of strain and the rotation DROT of Hughes and
-   Winget (International Journal for Numerical Methods in Engineering 15, 1980), and stress and strain turned by DROT. Its
-   stress is Cauchy's, and DDSDDE is taken as the derivative of J times the stress by the strain in Jaumann's rate over
-   J. In small strains both gradients are the unit tensor. Of DDSDDE the symmetric part is used, as in Abaqus without
-   UNSYMM. Temperature, fields, COORDS, LAYER and KSPT are 0, CELENT is 1, KSTEP is 1 and KINC is 1.
+   Winget (International Journal for Numerical Methods in Engineering 15, 1980), and stress and strain turned by DROT.
+   Its stress is Cauchy's, and DDSDDE is taken as the derivative of J times the stress by the strain in Jaumann's rate
+   over J. In small strains both gradients are the unit tensor. Of DDSDDE the symmetric part is used, as in Abaqus
+   without UNSYMM. Temperature, fields, COORDS, LAYER and KSPT are 0, CELENT is 1, KSTEP is 1 and KINC is 1.
 
    State of a point: F - 1 at 3 i + I, stress (xx yy zz xy yz xz), strain in Abaqus's components, SSE, SPD and SCD, then
    STATEV. Zero is the virgin state. */
@@ -31,9 +31,9 @@ typedef struct {
   double t, dt; /* time at the end of the increment, and its length */
 } UmatPlace;
 
-int  UmatOpen(const char *path, const char *name, int n_constants, const double *constants, int n_states,
-              Umat **, char message[UMAT_MESSAGE]);
+int  UmatOpen(const char *path, const char *name, int n_constants, const double *constants, int n_states, Umat **,
+              char message[UMAT_MESSAGE]);
 void UmatClose(Umat **);
 int  UmatStates(const Umat *);
-int  UmatPoint(Umat *, const UmatPlace *, const double H[9], const double *state, int stride, double *W,
-               double P[9], double A[], double *next);
+int  UmatPoint(Umat *, const UmatPlace *, const double H[9], const double *state, int stride, double *W, double P[9],
+               double A[], double *next);

@@ -32,7 +32,7 @@ LANES_INLINE void ReturnMap(const Hardening *hardening, double dt, const Lanes *
     }
     r->increment[lane] = x;
     r->work[lane]      = history ? state[PLASTIC_WORK][lane] + over * x : 0;
-    r->W[lane]         = mu * r->theta[lane] * r->theta[lane] * (*square)[lane] + work + r->work[lane] + viscous - over * x;
+    r->W[lane] = mu * r->theta[lane] * r->theta[lane] * (*square)[lane] + work + r->work[lane] + viscous - over * x;
   }
 }
 
@@ -83,8 +83,7 @@ static void FiniteLaw(const Lanes H[9], const Lanes *dilatation, const Lanes *bu
 }
 
 static void SmallLaw(const Lanes H[9], const Lanes *bulk, const Lanes *shear, const Hardening *hardening, double dt,
-                     const Lanes state[], Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE],
-                     Lanes next[])
+                     const Lanes state[], Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE], Lanes next[])
 {
   const Lanes trace = H[0] + H[4] + H[8];
   Lanes       deviator[9], mean, square = {0};
@@ -173,8 +172,8 @@ void PlasticStrainTensor(int finite, const double state[6], double strain[6])
 
   Note:
   W is continuous where a state is accepted, but with an overstress: the potential of the overstress is its work from no
-  rate to the present one, and the work that the state counts is that at the present rate. The output is finite for every finite H, but it is NaN where the equations
-  of a backstress are not solved.
+  rate to the present one, and the work that the state counts is that at the present rate. The output is finite for
+every finite H, but it is NaN where the equations of a backstress are not solved.
 @*/
 void VonMisesLaw(int finite, const Lanes H[9], const Lanes *dilatation, const Lanes *bulk, const Lanes *shear,
                  const Hardening *hardening, double dt, const Lanes state[], Lanes *W, Lanes P[9],

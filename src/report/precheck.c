@@ -35,7 +35,7 @@ static PetscErrorCode PrintEffects(Model model, FILE *stream)
 @*/
 PetscErrorCode PrecheckPlasticity(Model model, FILE *stream)
 {
-  const Scene scene  = model->scene;
+  const Scene scene = model->scene;
   PetscInt64  sum[2]; /* points and their bytes */
   PetscMPIInt rank;
 

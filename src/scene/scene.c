@@ -147,7 +147,7 @@ static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
   PetscFunctionBeginUser;
   body->chosen = choice == FORMULATIONS;
   if (body->chosen && plastic)
-    body->formulation = scene->order == 1                        ? FORMULATION_FBAR
+    body->formulation = scene->order == 1                          ? FORMULATION_FBAR
                         : body->material.law == MATERIAL_VON_MISES ? FORMULATION_MIXED
                                                                    : FORMULATION_FULL;
   else if (body->chosen)
@@ -162,10 +162,11 @@ static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
     PetscCall(SceneRefuse(scene, body->path, "formulation", "needs an energy; allowed with umat: full | fbar",
                           Formulations[body->formulation]));
   if (body->formulation == FORMULATION_MIXED && !SceneLawSplits(scene, body))
-    PetscCall(SceneRefuse(scene, body->path, "formulation",
-                          "needs a law whose volume part is separate; allowed with svk: full | enhanced | fbar, with umat: full | "
-                          "fbar",
-                          Formulations[body->formulation]));
+    PetscCall(SceneRefuse(
+      scene, body->path, "formulation",
+      "needs a law whose volume part is separate; allowed with svk: full | enhanced | fbar, with umat: full | "
+      "fbar",
+      Formulations[body->formulation]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -121,8 +121,8 @@ PetscErrorCode SceneReadPlasticity(Scene scene, SceneBody *body)
 /* Reads the list of constants of a routine. */
 static PetscErrorCode SceneReadConstants(Scene scene, const SceneBody *body, int *n, double **constants)
 {
-  const Node list = SceneHas(scene, body->path, "material.constants") ? SceneNode(scene, body->path, "material.constants")
-                                                                      : NULL;
+  const Node list =
+    SceneHas(scene, body->path, "material.constants") ? SceneNode(scene, body->path, "material.constants") : NULL;
 
   PetscFunctionBeginUser;
   *n = list ? list->n : 0;
@@ -170,7 +170,7 @@ PetscErrorCode SceneReadRoutine(Scene scene, SceneBody *body)
   PetscCall(PetscFree(constants));
   if (failed)
     PetscCall(SceneRefuse(scene, body->path, Own[0],
-                          "cannot be loaded; allowed: a shared library with a routine umat, see scripts/build_umat.sh",
+                          "- the library cannot be loaded; allowed: one with a routine umat, see scripts/build_umat.sh",
                           message));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

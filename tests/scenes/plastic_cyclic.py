@@ -1,7 +1,8 @@
 """A bar pulled and pressed in turn, with backstresses and an overstress: force and plastic work are those of the law in
-one dimension, for every kind of element that keeps its volume. Its rate equations are integrated here in many small steps.
-With an overstress the reference takes the steps of the run, by the backward Euler method as the run does; that the law
-itself is Perzyna's is shown by unit/test_backstress.c."""
+one dimension, for every kind of element that keeps its volume. Its rate equations are integrated here in many small
+steps.
+With an overstress the reference takes the steps of the run, by the backward Euler method as the run does; that the
+law itself is Perzyna's is shown by unit/test_backstress.c."""
 import math
 
 import numpy
@@ -27,7 +28,8 @@ LAWS = {  # material keys, yield stress over the plastic strain, backstresses, o
             "perzyna: {overstress: 100, speed: 0.4, power: 1}", lambda a: 200 + 500 * a, [(5e3, 0)], (100, 0.4, 1)),
 }
 # element -> order, simplices, formulations
-ELEMENTS = {"hex8": (1, 0, ("fbar", "enhanced", "mixed")), "hex27": (2, 0, ("full", "mixed")), "tet10": (2, 1, ("mixed",))}
+ELEMENTS = {"hex8": (1, 0, ("fbar", "enhanced", "mixed")), "hex27": (2, 0, ("full", "mixed")),
+            "tet10": (2, 1, ("mixed",))}
 
 
 def rate(excess, overstress):
@@ -51,7 +53,8 @@ def path(finite, law, times):
             excess = sign * (stress - sum(backstress)) - flow(a)
             if excess <= 0:
                 continue
-            slope = E + (flow(a + 1e-6) - flow(a)) / 1e-6 + sum(C - sign * g * x for (C, g), x in zip(terms, backstress))
+            slope = E + (flow(a + 1e-6) - flow(a)) / 1e-6
+            slope += sum(C - sign * g * x for (C, g), x in zip(terms, backstress))
             if overstress:  # implicit in the excess
                 dt, least, most = (time - before) / substeps, 0.0, excess / slope
                 for _ in range(100):
@@ -72,7 +75,8 @@ finite = args.kinematics == "finite"
 for name, law in LAWS.items():
     for formulation in formulations:
         overrides = [f"kinematics={args.kinematics}", f"mesh.order={order}", f"mesh.parameters.tet={tet}",
-                     f"bodies.0.formulation={formulation}", f"loads.0={{surface: x_max, ux: {WAY}, history: {HISTORY}}}",
+                     f"bodies.0.formulation={formulation}",
+                     f"loads.0={{surface: x_max, ux: {WAY}, history: {HISTORY}}}",
                      f"bodies.0.material={{law: von_mises, E: {E}, nu: {NU}, {law[0]}}}",
                      f"stepping={{control: fixed, initial: {0.01 if law[3] else 0.02}}}"]
         finished = run(args, SCENES / "plastic_bar.yaml", "-quiet", out=f"{name}_{formulation}", overrides=overrides)

@@ -31,8 +31,9 @@ def library(source):
 
 
 def scene(name, material, kinematics, *more, **options):
-    overrides = [f"kinematics={kinematics}", f"mesh.order={args.order}", "mesh.parameters={lx: 2, ly: 1, lz: 1, nx: 3, ny: 2, nz: 2, tet: 0}",
-                 f"bodies.0.material={material}", "bodies.0.formulation=full", "supports.1={surface: x_min, uy: 0, uz: 0}",
+    overrides = [f"kinematics={kinematics}", f"mesh.order={args.order}", f"bodies.0.material={material}",
+                 "mesh.parameters={lx: 2, ly: 1, lz: 1, nx: 3, ny: 2, nz: 2, tet: 0}",
+                 "bodies.0.formulation=full", "supports.1={surface: x_min, uy: 0, uz: 0}",
                  "loads.0={surface: x_max, ux: 0.02, uy: 0.03, history: [[0, 0], [0.5, 1], [1, 0.3]]}",
                  "supports.2={surface: z_min, uz: 0}", *more]
     if kinematics == "finite":

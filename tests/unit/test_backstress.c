@@ -22,7 +22,7 @@ static const Hardening armstrong = {.yield = 0.3, .terms = 1, .backstress = {{8,
 static void Point(int finite, const Hardening *h, double dt, const double H[9], double state[PLASTIC_MAX_STATE],
                   double P[9], double A[MATERIAL_TANGENT_SIZE])
 {
-  const int   n      = PlasticStates(h);
+  const int   n     = PlasticStates(h);
   const Lanes bulk_ = (Lanes){0} + bulk, shear_ = (Lanes){0} + shear;
   Lanes       H_[9], P_[9], A_[MATERIAL_TANGENT_SIZE], dilatation, state_[PLASTIC_MAX_STATE];
 
@@ -68,7 +68,7 @@ static void CyclicTensionHasTheClosedForm(void **unused)
 
     for (int way = 0; way < 12; way++) {
       const double sign = way % 2 ? -1 : 1, stress = Tension(finite, &chaboche, 0, 0.05 * sign, H, state);
-      const double p = sign * (0.05 * sign - stress / young - plastic);
+      const double p   = sign * (0.05 * sign - stress / young - plastic);
       double       sum = 0, slope, work;
 
       plastic += sign * p;
@@ -195,9 +195,9 @@ static void TheLawIsObjective(void **unused)
 /* With small strains both laws agree to the square of the strain. */
 static void SmallStrainsAreTheLimit(void **unused)
 {
-  const double    size  = 1e-5, ways[2][9] = {{0.1, -0.2, 0.05, 0.15, -0.12, 0.3, -0.07, 0.11, 0.2},
-                                              {0.15, 0.3, 0.02, -0.1, -0.1, -0.35, -0.1, 0.15, 0.1}};
-  const Hardening soft  = {.yield = 1e-4, .terms = 2, .backstress = {{8, 2e4}, {3, 0}}};
+  const double    size = 1e-5, ways[2][9] = {{0.1, -0.2, 0.05, 0.15, -0.12, 0.3, -0.07, 0.11, 0.2},
+                                             {0.15, 0.3, 0.02, -0.1, -0.1, -0.35, -0.1, 0.15, 0.1}};
+  const Hardening soft                        = {.yield = 1e-4, .terms = 2, .backstress = {{8, 2e4}, {3, 0}}};
   double          state[2][PLASTIC_MAX_STATE] = {{0}}, P[2][9];
 
   (void)unused;
@@ -218,8 +218,8 @@ static void OverstressIsPerzynas(void **unused)
 {
   const Hardening fast = {.yield = 0.45, .overstress = 0.2, .speed = 0.7, .power = 3},
                   held = {.yield = 0.3, .linear = 5, .overstress = 0.2, .speed = 0.01, .power = 1};
-  const double    young = 9 * bulk * shear / (3 * bulk + shear), rate = 0.05;
-  double          state[2][PLASTIC_MAX_STATE] = {{0}}, H[9] = {0}, stress = 0, over;
+  const double young = 9 * bulk * shear / (3 * bulk + shear), rate = 0.05;
+  double       state[2][PLASTIC_MAX_STATE] = {{0}}, H[9] = {0}, stress = 0, over;
 
   (void)unused;
   for (int step = 1; step <= 20; step++) stress = Tension(0, &fast, 0.02, rate * 0.02 * step, H, state[0]);

@@ -16,13 +16,7 @@ enum { MAX_DOFS = ELEMENT_MAX_NODES * 3 };
 static const double    E = 200, nu = 0.3;
 static const Hardening hardenings[] = {
   {.yield = 0.5, .linear = 3, .saturation = 0.9, .rate = 15},
-  {.yield      = 0.5,
-   .linear     = 3,
-   .terms      = 2,
-   .backstress = {{5, 30}, {2, 0}},
-   .overstress = 0.2,
-   .speed      = 0.7,
-   .power      = 3},
+  {.yield = 0.5, .linear = 3, .terms = 2, .backstress = {{5, 30}, {2, 0}}, .overstress = 0.2, .speed = 0.7, .power = 3},
   {.yield = 0.5, .linear = 3, .terms = 1, .backstress = {{5, 30}}},
 };
 enum { HARDENINGS = sizeof hardenings / sizeof *hardenings };

@@ -401,6 +401,7 @@ static void LawsOfTheTableAreTheMaterials(void **state)
     char *const       edits[] = {"kinematics=small", text, "bodies.0.material.yield=100"};
     int               n       = snprintf(text, sizeof text, "bodies.0.material={law: %s, nu: 0.3", MaterialLaws[law]);
 
+    if (law == MATERIAL_UMAT) continue; /* it needs a library */
     for (int k = 0; k < elastic->required; k++)
       n += snprintf(text + n, sizeof text - n, ", %s: %s", elastic->keys[k],
                     strcmp(elastic->keys[k], MATERIAL_TERMS) ? "2" : "[[2, 2]]");

@@ -16,14 +16,23 @@ static const Hardening
   linear = {.yield = 0.45, .linear = 2.5}, voce = {.yield = 0.45, .linear = 0.129, .saturation = 0.715, .rate = 16.93},
   swift = {.yield = 0.2, .strength = 0.5, .exponent = 0.25, .strain = 0.4 * 0.4 * 0.4 * 0.4},
   sum = {.yield = 0.45, .linear = 0.2, .saturation = 0.7, .rate = 10, .strength = 0.9, .exponent = 0.5, .strain = 0.25},
-  table = {.rows = 4, .table = {{0, 0.45}, {0.02, 0.5}, {0.1, 0.6}, {0.2, 0.62}}},
-  viscous = {.yield = 0.45, .linear = 0.3, .overstress = 0.2, .speed = 0.7, .power = 3},
-  prager = {.yield = 0.45, .terms = 1, .backstress = {{2.5, 0}}},
+  table     = {.rows = 4, .table = {{0, 0.45}, {0.02, 0.5}, {0.1, 0.6}, {0.2, 0.62}}},
+  viscous   = {.yield = 0.45, .linear = 0.3, .overstress = 0.2, .speed = 0.7, .power = 3},
+  prager    = {.yield = 0.45, .terms = 1, .backstress = {{2.5, 0}}},
   armstrong = {.yield = 0.3, .terms = 1, .backstress = {{8, 20}}},
-  chaboche = {.yield = 0.3, .linear = 0.2, .saturation = 0.5, .rate = 10, .terms = 3,
-              .backstress = {{40, 300}, {8, 20}, {0.5, 0}}},
-  all = {.rows = 3, .table = {{0, 0.3}, {0.05, 0.4}, {0.3, 0.45}}, .terms = 2, .backstress = {{5, 30}, {1, 3}},
-         .overstress = 0.2, .speed = 0.7, .power = 5};
+  chaboche  = {.yield      = 0.3,
+               .linear     = 0.2,
+               .saturation = 0.5,
+               .rate       = 10,
+               .terms      = 3,
+               .backstress = {{40, 300}, {8, 20}, {0.5, 0}}},
+  all       = {.rows       = 3,
+               .table      = {{0, 0.3}, {0.05, 0.4}, {0.3, 0.45}},
+               .terms      = 2,
+               .backstress = {{5, 30}, {1, 3}},
+               .overstress = 0.2,
+               .speed      = 0.7,
+               .power      = 5};
 /* The first ISOTROPIC ones have a closed form in tension. */
 static const Hardening *const hardenings[] = {&perfect, &linear,    &voce,     &swift, &sum,    &table,
                                               &prager,  &armstrong, &chaboche, &all,   &viscous};
@@ -34,9 +43,8 @@ static double dt = 0.4;
 static void Point(int finite, const Hardening *h, const double H[9], const double state[PLASTIC_MAX_STATE], double *W,
                   double P[9], double A[MATERIAL_TANGENT_SIZE], double next[PLASTIC_MAX_STATE])
 {
-  const int   n = PlasticStates(h);
-  Lanes       H_[9], P_[9], A_[MATERIAL_TANGENT_SIZE], W_, dilatation, state_[PLASTIC_MAX_STATE],
-    next_[PLASTIC_MAX_STATE];
+  const int n = PlasticStates(h);
+  Lanes H_[9], P_[9], A_[MATERIAL_TANGENT_SIZE], W_, dilatation, state_[PLASTIC_MAX_STATE], next_[PLASTIC_MAX_STATE];
   const Lanes bulk_ = (Lanes){0} + bulk, shear_ = (Lanes){0} + shear;
 
   for (int r = 0; r < 9; r++) H_[r] = (Lanes){0} + H[r];
@@ -108,7 +116,7 @@ static void AcceptedStatesAreElastic(void **unused)
   (void)unused;
   for (int finite = 0; finite < 2; finite++) {
     for (int h = 0; h < HARDENINGS; h++) {
-      const double zero[PLASTIC_MAX_STATE] = {0};
+      const double zero[PLASTIC_MAX_STATE]  = {0};
       double       state[PLASTIC_MAX_STATE] = {0}, again[PLASTIC_MAX_STATE] = {0}, P[9], P_again[9], W, W_again;
 
       Point(finite, hardenings[h], first, zero, &W, P, NULL, state);
@@ -212,9 +220,9 @@ static void HardeningIsConsistent(void **unused)
 /* With small strains both laws agree to the square of the strain. */
 static void SmallStrainsAreTheLimit(void **unused)
 {
-  const double    size                = 1e-5;
+  const double    size                    = 1e-5;
   const double    zero[PLASTIC_MAX_STATE] = {0};
-  const Hardening soft                = {.yield = 1e-4, .linear = 2.5};
+  const Hardening soft                    = {.yield = 1e-4, .linear = 2.5};
   double          H[9], P[2][9], state[2][PLASTIC_MAX_STATE] = {{0}};
 
   (void)unused;

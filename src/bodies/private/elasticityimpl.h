@@ -52,7 +52,7 @@ struct _n_Elasticity {
   PetscBool   symmetric;
   NodeMatrix  matrix;
   PetscReal   accepted_t; /* time of the accepted plastic state */
-  PetscBool   augments; /* a body has multipliers, perhaps on other ranks only */
+  PetscBool   augments;   /* a body has multipliers, perhaps on other ranks only */
   VolumeState state, accepted;
 };
 

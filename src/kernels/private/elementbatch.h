@@ -36,18 +36,19 @@ typedef struct {
 /* One call treats LANES elements of a batch. H[points][9] is the displacement gradient at which the law is evaluated.
    W, f, K and H may be NULL; ElementKernel() explains them. */
 typedef struct {
-  const Element    *e;
-  const ElasticLaw *law;
-  int               finite, n_constants;
-  const Lanes      *constants;
+  const Element      *e;
+  const ElasticLaw   *law;
+  int                 finite, n_constants;
+  const Lanes        *constants;
   const PlasticBatch *plastic;
-  const double       *state; /* of a plastic law [points][states], or NULL; its first lane */
+  const double       *state;        /* of a plastic law [points][states], or NULL; its first lane */
   int                 states, part; /* part: of the batch, its first lane */
-  int                 all; /* H takes all points of the state */
-  const double     *X, *u;
-  const double     *u_0;  /* displacements from which K extrapolates the stress, or NULL */
-  double            rate; /* of StressReference */
-  double           *W, *f, *K, *J, *H;
+  int                 all;          /* H takes all points of the state */
+  int                *fault;        /* [LANES], set where a routine of the user fails, or NULL */
+  const double       *X, *u;
+  const double       *u_0;  /* displacements from which K extrapolates the stress, or NULL */
+  double              rate; /* of StressReference */
+  double             *W, *f, *K, *J, *H;
   /* Of mixed elements: the part kappa of the modulus of the volume, shear modulus, multipliers or NULL, and results or
      NULL: theta [MIXED_PRESSURES], which mixedkernel.c explains, the pressure at the points of H, and the
      pressures extrapolated from u_0 [MIXED_PRESSURES]. constants[0] is then the local part of VolumeModuli. */
@@ -253,7 +254,7 @@ LANES_INLINE void StartLeastJ(const BatchCall *call)
 LANES_INLINE void KeepLeastJ(const BatchCall *call, const Lanes *dilatation)
 {
   for (int lane = 0; lane < LANES && call->finite; lane++) {
-    if (!(1 + (*dilatation)[lane] >= call->J[lane]) && !isnan(call->J[lane]))
+    if (!(1 + (*dilatation)[lane] >= call->J[lane]))
       call->J[lane] = 1 + (*dilatation)[lane]; /* the negated comparison lets NaN through */
   }
 }

@@ -144,7 +144,7 @@ LANES_INLINE void FiniteTangent(const Lanes *bulk, const Lanes *shear, const Lan
 
 /* Tangent of small strains, with the deviatoric trial strain and its square */
 LANES_INLINE void SmallTangent(const Lanes *bulk, const Lanes *shear, const Lanes *square, const Return *r,
-                         const Lanes deviator[9], Lanes A[MATERIAL_TANGENT_SIZE])
+                               const Lanes deviator[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
   const Lanes mu = *shear * r->theta, lambda = *bulk - 2 * mu / 3;
   Lanes       factor;
