@@ -69,7 +69,8 @@ static PetscErrorCode PairIsOneBody(Mesh mesh, Scene scene, const ContactPair *p
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(2 * mesh->n_nodes, &sides));
   for (int i = 0; i < 2; i++)
-    for (PetscInt k = 0; side[i]->group && k < side[i]->group->n_nodes; k++) sides[2 * side[i]->group->nodes[k] + i] = 1;
+    for (PetscInt k = 0; side[i]->group && k < side[i]->group->n_nodes; k++)
+      sides[2 * side[i]->group->nodes[k] + i] = 1;
   for (PetscInt k = 0; k < mesh->n_nodes; k++) shared = shared || (sides[2 * k] > 0 && sides[2 * k + 1] > 0);
   PetscCall(PetscFree(sides));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &shared, 1, MPI_INT, MPI_LOR, mesh->comm));
@@ -150,10 +151,10 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
       PetscInt       at;
 
       if (c < 0 || slaves->hat[k] == 0) continue;
-      at                    = pair->term_ptr[c + 1]++; /* after the loop it is the start of the next term */
-      pair->term_point[at]  = q;
-      pair->term_weight[at] = pair->formulation.surface ? pair->scene->share * slaves->weight[q] * slaves->hat[k]
-                                                             : pair->area[c];
+      at                   = pair->term_ptr[c + 1]++; /* after the loop it is the start of the next term */
+      pair->term_point[at] = q;
+      pair->term_weight[at] =
+        pair->formulation.surface ? pair->scene->share * slaves->weight[q] * slaves->hat[k] : pair->area[c];
     }
   }
   PetscCall(PetscFree(term));

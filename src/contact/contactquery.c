@@ -131,9 +131,9 @@ PetscErrorCode ContactRoundOff(Contact contact, PetscReal *force)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds to the pressures of a pair what its partner's slave points press on the same surface from the other side, as forces
-   over the areas of the shape functions. Corners of 6-node triangles have none; there the own side stands for both.
-   Where no partner is near there is no direction, and no pressure. */
+/* Adds to the pressures of a pair what its partner's slave points press on the same surface from the other side, as
+   forces over the areas of the shape functions. Corners of 6-node triangles have none; there the own side stands for
+   both. Where no partner is near there is no direction, and no pressure. */
 static PetscErrorCode AddPartner(Contact contact, ContactPair *pair, const ContactPair *partner, const PetscReal *u)
 {
   const int  dim = contact->mesh->dim;

@@ -566,8 +566,8 @@ static PetscErrorCode SceneReadSides(Scene scene, const SurfacePair *pair, int a
   contact->listed = pair->listed;
   contact->share  = pair->share;
   if (contact->listed) {
-    PetscCall(SceneNameSurfacePair(pair, alone, SchemaText(SceneDocument(scene), "%s.name", contact->path),
-                                   &contact->name));
+    PetscCall(
+      SceneNameSurfacePair(pair, alone, SchemaText(SceneDocument(scene), "%s.name", contact->path), &contact->name));
     PetscCall(PetscStrallocpy(pair->slave.group, &contact->slave));
     PetscCall(PetscStrallocpy(pair->master.group, &contact->master));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -1027,24 +1027,6 @@ static PetscBool MotionBreaks(const Motion *motion, PetscReal t)
   for (int m = 0; m < motion->n; m++)
     if (HistoryBreaks(&motion->components[m].history, t)) return PETSC_TRUE;
   return PETSC_FALSE;
-}
-
-/*@
-  SceneBodySkin - writes the name of the group of all outer faces of a deformable body, which the mesh makes where a
-  contact pair asks for it.
-
-  Not collective
-
-  Input Parameters:
-+ body - the body
-- size - characters that name holds
-
-  Output Parameter:
-. name - the name
-@*/
-void SceneBodySkin(const SceneBody *body, char *name, size_t size)
-{
-  snprintf(name, size, "skin of %s", body->name);
 }
 
 /*@
