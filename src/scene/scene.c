@@ -594,7 +594,8 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->smoother      = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
   contact->formulation   = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
   if (contact->formulation == CONTACT_FORMULATION_AUTO)
-    contact->formulation = contact->master ? CONTACT_SURFACE_TO_SURFACE : CONTACT_NODE_TO_SURFACE;
+    contact->formulation =
+      contact->master && strcmp(contact->slave, contact->master) ? CONTACT_SURFACE_TO_SURFACE : CONTACT_NODE_TO_SURFACE;
   contact->live_offset = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);
   contact->degree      = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;
   contact->support =
