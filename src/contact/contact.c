@@ -12,9 +12,9 @@ static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
       const PetscBool     meshed = (PetscBool)(a->master && b->master),
                       same       = (PetscBool)(meshed && !strcmp(a->slave, b->slave) && !strcmp(a->master, b->master));
       /* Within a list of surfaces each of two is slave of the other with half its area. */
-      const PetscBool listed  = (PetscBool)(a->listed && b->listed && !strcmp(a->path, b->path)),
-                      swapped = (PetscBool)(meshed && !listed && !strcmp(a->slave, b->master) &&
-                                            !strcmp(a->master, b->slave));
+      const PetscBool listed = (PetscBool)(a->listed && b->listed && !strcmp(a->path, b->path)),
+                      swapped =
+                        (PetscBool)(meshed && !listed && !strcmp(a->slave, b->master) && !strcmp(a->master, b->slave));
 
       if (same || swapped)
         PetscCall(RefuseInput(

@@ -209,7 +209,8 @@ static int MasterIsRigid(Scene scene, const char *master)
 
 static int MayExchange(const ChangePlace *at)
 {
-  return PairScene(at) && PairScene(at)->master && !PairScene(at)->listed && !MasterIsRigid(at->figures->scene, PairScene(at)->master);
+  return PairScene(at) && PairScene(at)->master && !PairScene(at)->listed &&
+         !MasterIsRigid(at->figures->scene, PairScene(at)->master);
 }
 
 static void WriteRoles(const ChangePlace *at, char *text, size_t size)

@@ -626,8 +626,8 @@ static PetscErrorCode SceneReadSides(Scene scene, const SurfacePair *pair, int a
   contact->listed = pair->listed;
   contact->share  = pair->share;
   if (contact->listed) {
-    PetscCall(SceneNameSurfacePair(pair, alone, SchemaText(SceneDocument(scene), "%s.name", contact->path),
-                                   &contact->name));
+    PetscCall(
+      SceneNameSurfacePair(pair, alone, SchemaText(SceneDocument(scene), "%s.name", contact->path), &contact->name));
     PetscCall(PetscStrallocpy(pair->slave.group, &contact->slave));
     PetscCall(PetscStrallocpy(pair->master.group, &contact->master));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -654,7 +654,8 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->smoother      = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
   contact->formulation   = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
   if (contact->formulation == CONTACT_FORMULATION_AUTO)
-    contact->formulation = contact->master ? CONTACT_SURFACE_TO_SURFACE : CONTACT_NODE_TO_SURFACE;
+    contact->formulation =
+      contact->master && strcmp(contact->slave, contact->master) ? CONTACT_SURFACE_TO_SURFACE : CONTACT_NODE_TO_SURFACE;
   contact->live_offset = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);
   contact->degree      = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;
   contact->support =
@@ -1090,24 +1091,6 @@ static PetscBool MotionBreaks(const Motion *motion, PetscReal t)
   for (int m = 0; m < motion->n; m++)
     if (HistoryBreaks(&motion->components[m].history, t)) return PETSC_TRUE;
   return PETSC_FALSE;
-}
-
-/*@
-  SceneBodySkin - writes the name of the group of all outer faces of a deformable body, which the mesh makes where a
-  contact pair asks for it.
-
-  Not collective
-
-  Input Parameters:
-+ body - the body
-- size - characters that name holds
-
-  Output Parameter:
-. name - the name
-@*/
-void SceneBodySkin(const SceneBody *body, char *name, size_t size)
-{
-  snprintf(name, size, "skin of %s", body->name);
 }
 
 /*@

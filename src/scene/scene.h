@@ -66,14 +66,14 @@ typedef struct {
 typedef enum { MASTER_NORMAL_AUTO, MASTER_NORMAL_FLIP, MASTER_NORMAL_KEEP } MasterNormal;
 
 typedef struct {
-  char              *path, *name, *slave, *master; /* the master is a physical surface, or NULL if it is analytic */
-  AnalyticSurface    analytic; /* motion.point is a point of the plane or of the axis, or the centre */
-  Motion             motion;   /* of an analytic master */
-  MasterNormal       master_normal;
+  char           *path, *name, *slave, *master; /* the master is a physical surface, or NULL if it is analytic */
+  AnalyticSurface analytic;                     /* motion.point is a point of the plane or of the axis, or the centre */
+  Motion          motion;                       /* of an analytic master */
+  MasterNormal    master_normal;
   /* 1 if the scene lists surfaces and names no slave: any side of the bodies may meet any other. Each entry of such a
      list becomes pairs with names of their own. */
   int                listed;
-  double             share;    /* part of the slave's area that counts: 1/2 if its master is a slave of it too, else 1 */
+  double             share; /* part of the slave's area that counts: 1/2 if its master is a slave of it too, else 1 */
   int                smoother; /* index in Smoothers[] */
   ContactFormulation formulation;
   int                live_offset;   /* of surface_to_surface: 1 if the offsets follow the nodes within a solve */

@@ -49,6 +49,24 @@ static int Excludes(Node exclude, const ListedSurface *a, const ListedSurface *b
   return 0;
 }
 
+/*@
+  SceneBodySkin - writes the name of the group of all outer faces of a deformable body, which the mesh makes where a
+  contact pair asks for it.
+
+  Not collective
+
+  Input Parameters:
++ body - the body
+- size - characters that name holds
+
+  Output Parameter:
+. name - the name
+@*/
+void SceneBodySkin(const SceneBody *body, char *name, size_t size)
+{
+  snprintf(name, size, "skin of %s", body->name);
+}
+
 /* Lists the surfaces of an entry; `all` stands for the outer faces of all bodies. */
 static PetscErrorCode ListSurfaces(Scene scene, Node surfaces, int *n, ListedSurface **list)
 {
@@ -105,7 +123,8 @@ static PetscErrorCode CheckEntry(Scene scene, const char *path, Node surfaces)
   if (surfaces && SchemaChoice(SceneDocument(scene), "%s.frame", path) != 0)
     PetscCall(SceneRefuse(scene, path, "frame", "is global; allowed with surfaces: local", NULL));
   if (!surfaces && SceneHas(scene, path, "exclude"))
-    PetscCall(SceneRefuse(scene, path, "exclude", "has no place beside slave and master; allowed: with surfaces", NULL));
+    PetscCall(
+      SceneRefuse(scene, path, "exclude", "has no place beside slave and master; allowed: with surfaces", NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

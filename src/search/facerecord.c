@@ -22,8 +22,8 @@ void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry,
   const int    dim   = mesh->dim;
   const Facet *facet = &surface->faces[f];
 
-  *record = (FaceRecord){.facet = *facet, .size = surface->face_size[f], .height = surface->face_height[f],
-                         .home_face = f};
+  *record =
+    (FaceRecord){.facet = *facet, .size = surface->face_size[f], .height = surface->face_height[f], .home_face = f};
   for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
     const PetscInt node = facet->nodes[a];
 

@@ -50,8 +50,8 @@ PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot
 }
 
 /*@
-  OwnBodyTurnsFrom - says whether a foot lies on the wrong side of the slave point's own face: behind it with a gap, or in
-  front of it with a penetration.
+  OwnBodyTurnsFrom - says whether a foot lies on the wrong side of the slave point's own face: behind it with a gap, or
+in front of it with a penetration.
 
   Not collective
 

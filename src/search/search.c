@@ -421,8 +421,8 @@ void SearchKeepFaces(ContactSearch s)
 }
 
 /*@
-  SearchAllSides - has lists leave out what lies behind a slave point beyond its own body, because any side of the bodies
-  may meet any other one.
+  SearchAllSides - has lists leave out what lies behind a slave point beyond its own body, because any side of the
+bodies may meet any other one.
 
   Not collective
 

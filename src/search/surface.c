@@ -70,8 +70,8 @@ static PetscErrorCode SurfaceFacesFromRigid(ContactSurface surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Height of the element below a face: volume over area (simplices: dim times that). */
-static PetscReal FaceHeight(ContactSurface surface, PetscInt f, PetscReal area)
+/* Area of a face times the height of the element below it: the element's volume (simplices: dim times that). */
+static PetscReal FaceLayer(ContactSurface surface, PetscInt f)
 {
   Mesh           mesh = surface->mesh;
   const PetscInt c    = surface->group->face_cell[f];
@@ -80,7 +80,7 @@ static PetscReal FaceHeight(ContactSurface surface, PetscInt f, PetscReal area)
 
   MeshCellCoordinates(mesh, c, X);
   volume = CellVolume(mesh->cell_type[c], mesh->dim, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X);
-  return volume * (e->corners == e->dim + 1 ? e->dim : 1) / area;
+  return volume * (e->corners == e->dim + 1 ? e->dim : 1);
 }
 
 /* Longest distance between two corners of a face. */
@@ -108,7 +108,7 @@ static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elastici
 
   PetscFunctionBeginUser;
   for (PetscInt f = 0; f < surface->n_faces; f++) {
-    PetscReal area;
+    PetscReal area, layer;
 
     FaceCoordinates(surface, &surface->faces[f], NULL, X);
     area                  = FaceArea(surface, &surface->faces[f], X);
@@ -119,8 +119,9 @@ static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elastici
     sum[1] += 1;
     sum[2] += surface->face_size[f];
     if (!surface->group) continue;
-    surface->face_height[f] = FaceHeight(surface, f, area);
-    sum[3] += area * ElasticityCellModulus(elasticity, surface->group->face_cell[f]) / surface->face_height[f];
+    layer                   = FaceLayer(surface, f);
+    surface->face_height[f] = layer / area;
+    sum[3] += area * (ElasticityCellModulus(elasticity, surface->group->face_cell[f]) * area / layer);
   }
   if (surface->group) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, mesh->comm));

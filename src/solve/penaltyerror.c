@@ -117,12 +117,11 @@ static PetscErrorCode ModelPresentLoads(Model model, const PetscReal *u, Contact
     const ContactLoad own = load[p];
 
     if (q <= p) continue;
-    load[p].force    = own.force + load[q].force;
-    load[p].pressure = load[p].force > 0
-                         ? (own.force * own.pressure + load[q].force * load[q].pressure) / load[p].force
-                         : 0;
-    load[p].peak     = PetscMax(own.peak, load[q].peak);
-    load[q]          = load[p];
+    load[p].force = own.force + load[q].force;
+    load[p].pressure =
+      load[p].force > 0 ? (own.force * own.pressure + load[q].force * load[q].pressure) / load[p].force : 0;
+    load[p].peak = PetscMax(own.peak, load[q].peak);
+    load[q]      = load[p];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -66,6 +66,9 @@ JOBS = [
     Job("tube_pinched", "rubber tube pinched to half of its height", [
         Answer("force", 0.28832, 0.01, "limit"),
     ], steps=12, picture=["--mirror", "x"]),
+    Job("tube_flattened", "rubber tube flattened until it touches itself", [
+        Answer("force", 12.545, 0.13, "limit"),
+    ], steps=12, pairs=3, picture=["--mirror", "x"], stiff=["contact.2.formulation=node_to_surface"]),
     Job("ball_squashed", "rubber ball squashed by 30 %", [
         Answer("force", 83.935, 0.05, "limit"),
     ], steps=12, picture=["--mirror", "x"]),

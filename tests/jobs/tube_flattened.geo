@@ -1,7 +1,7 @@
 // A rubber tube, the half of its cross-section beyond x = 0. Lengths in mm.
 DefineConstant[
-  refine = {1, Name "divides all element sizes"}, n_arc = {16, Name "elements around a quarter"},
-  n_wall = {2, Name "elements through the wall"}, r_out = {10, Name "outer radius"}, wall = {2, Name "thickness"}
+  refine = {1, Name "divides all element sizes"}, n_arc = {24, Name "elements around a quarter"},
+  n_wall = {3, Name "elements through the wall"}, r_out = {10, Name "outer radius"}, wall = {2, Name "thickness"}
 ];
 r_in = r_out - wall;
 Point(1) = {0, 0, 0};

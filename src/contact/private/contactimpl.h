@@ -100,15 +100,15 @@ typedef struct {
   Friction           friction; /* NULL: there is none */
   ContactLost        lost;     /* since the step began */
 
-  PetscReal   *stiffness, *stiffness_before; /* of the terms in the last tangent, and in the one before */
-  PetscReal   *force, *normal;               /* of the last residual: normal nodal force, direction of contact (3*n) */
-  PetscReal    total[3];                     /* force on this rank's terms in the last residual */
-  PetscReal    t;                            /* load parameter of the last residual */
-  PetscReal   *pressure;                     /* what ContactGetNodes() shows: force over area */
+  PetscReal *stiffness, *stiffness_before; /* of the terms in the last tangent, and in the one before */
+  PetscReal *force, *normal;               /* of the last residual: normal nodal force, direction of contact (3*n) */
+  PetscReal  total[3];                     /* force on this rank's terms in the last residual */
+  PetscReal  t;                            /* load parameter of the last residual */
+  PetscReal *pressure;                     /* what ContactGetNodes() shows: force over area */
   /* Of the last residual, where the master is a slave as well, else NULL: force on the master by node of the mesh. */
   PetscReal   *reaction;
-  NodeDepths   depths;                       /* NULL before the first report of depths in the slave */
-  ContactWork *work;                         /* shared by all pairs */
+  NodeDepths   depths; /* NULL before the first report of depths in the slave */
+  ContactWork *work;   /* shared by all pairs */
 } ContactPair;
 
 /* First variations of the gaps of some terms over the free dofs. Vector k has the entries ptr[k] to ptr[k + 1] - 1, in

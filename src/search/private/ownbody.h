@@ -4,7 +4,8 @@
    deeper than what can be told from a wall: then it lies inside the point's own material.
 
    OwnBodyHides() tells whether a candidate is hidden behind the point's own body. OwnBodyTurnsFrom() tells whether the
-   point's face looks away from its foot on a candidate, as the outside of a pipe does from its bore on the other side. */
+   point's face looks away from its foot on a candidate, as the outside of a pipe does from its bore on the other side.
+ */
 #pragma once
 #include "searchimpl.h"
 
