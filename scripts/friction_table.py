@@ -125,6 +125,15 @@ def hat_means(x, function):
     return total / area
 
 
+def lattice_means(x, z, face, function):
+    """Means of a function over the hat functions of the nodes of a lattice."""
+    s = numpy.linspace(-1, 1, 41)[1:-1]
+    along, across = numpy.meshgrid(s, s)
+    weight = (1 - abs(along)) * (1 - abs(across))
+    return numpy.array([(weight * function(numpy.hypot(a + face * along, b + face * across))).sum()
+                        for a, b in zip(x, z)]) / weight.sum()
+
+
 def part(x, a):
     return numpy.sqrt(numpy.maximum(0, 1 - (x / a)**2))
 
@@ -168,8 +177,10 @@ def mindlin_sphere(result, _):
     pressure, traction, status = result.pressure(), result.traction(), result.pair["friction"].ravel()
     face = numpy.diff(numpy.unique(numpy.round(place[place[:, 2] < 1e-9, 0], 9)))
     face = face[len(face) // 2]
-    zone = r < a
-    error = traction / (0.3 * peak) - part(r, a) + c / a * part(r, c)
+    zone = r < a + face
+    error = numpy.zeros_like(r)
+    error[zone] = traction[zone] / (0.3 * peak) - lattice_means(place[zone, 0], place[zone, 2], face,
+                                                                lambda s: part(s, a) - c / a * part(s, c))
     inner = zone & (abs(r - a) > 2 * face) & (abs(r - c) > 2 * face)
     edges = [
         stick_edge(r[line], traction[line], 0.3 * pressure[line], status[line] == 1)
@@ -178,7 +189,7 @@ def mindlin_sphere(result, _):
     ]
     # The cut's motion is the shift and what the bodies give beside the contact, in proportion to the force. The first
     # step along, in which next to nothing slips, tells that part.
-    motion = 0.0073 * 2 * (result.steps["t"] - 0.5)
+    motion = 0.0042 * 2 * (result.steps["t"] - 0.5)
     along, pushes = motion > 1e-9, 2 * abs(result.steps["Q"])
     shear = 210000 / 2.6
     law = lambda q: 3 * 0.3 * force / (8 * a) * 1.7 / shear * (1 - (1 - q / (0.3 * force))**(2 / 3))

@@ -26,9 +26,15 @@ def flat():
             name = f"{formulation}, {smoother}"
             finished = run(args, RUNS / "slide_flat.yaml", out=f"{formulation}_{smoother}",
                            overrides=[f"contact.0.formulation={formulation}", f"contact.0.smoother={smoother}",
-                                      f"contact.0.friction.mu={MU}", "stepping.initial=0.1"])
+                                      f"contact.0.friction.mu={MU}", "stepping.initial=0.1",
+                                      "probes.3={name: friction_x, friction_force: sole, component: x}",
+                                      "probes.4={name: slipped, slipped_area: sole}",
+                                      "probes.5={name: elastic, elastic_slip: sole}"])
             fields, friction = contact(finished)
             probes = finished.summary()["probes"]
+            check.near(f"{name}: probe of the force", abs(probes["friction_x"]), probes["force_x"], 1e-7)
+            check.near(f"{name}: probe of the area", probes["slipped"], friction["slipping_area"], 1e-12)
+            check.near(f"{name}: probe of the elastic slip", probes["elastic"], friction["elastic_slip"], 0)
             check.near(f"{name}: load", probes["force_y"], 160, 1e-5)
             check.near(f"{name}: friction", probes["force_x"], MU * 160, 1e-5)
             closed = fields["pressure"].ravel() > 0
@@ -135,7 +141,7 @@ def rings():
     for name, angle, step, allowed in (("stick", 0.0001, 0.5, 0.015), ("slip", 0.26, 0.04, 0.001)):
         finished = run(args, SCENES / "rings_turned.yaml", out=name, overrides=[
             f"loads.0.ux='x*(cos({angle}*t)-1)-y*sin({angle}*t)'", f"loads.0.uy='x*sin({angle}*t)+y*(cos({angle}*t)-1)'",
-            f"stepping.initial={step}"
+            f"stepping.initial={step}", "probes=[{name: torque, friction_torque: fit}]"
         ])
         fields, friction = contact(finished)
         traction = numpy.linalg.norm(fields["traction"], axis=1)
@@ -145,6 +151,8 @@ def rings():
         if name == "stick":
             continue
         check.near(f"{name}: traction over pressure", traction.mean() / fields["pressure"].mean(), 0.2, 0.0004)
+        check.near(f"{name}: torque over 2 pi R^2 mu p", finished.summary()["probes"]["torque"] /
+                   (2 * math.pi * 20**2 * 0.2 * pressure), 1, 0.003)
         work = numpy.diff([row["dissipated"] for row in finished.steps()])[4:]
         check.near(f"{name}: work of a step over the mean one", work / work.mean(), 1, 1e-4)
 
