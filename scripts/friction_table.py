@@ -233,7 +233,7 @@ BENCHMARKS = {
     "bar": (SCENES / "bar.yaml", bar, [("160 elements", None, [], BOTH)]),
     "shear": (SCENES / "shear.yaml", shear,
               [(f"3D, jitter {jitter}", None, [f"mesh.parameters.jitter={jitter}", "solver.tolerance=1e-8"], ALL) for jitter in (0, 0.25)]),
-    "rings": (SCENES / "rings_turned.yaml", rings, [
+    "rings": (RUNS / "press_fit.yaml", rings, [
         (name, state, [f"mesh.parameters.jitter={jitter}", f"stepping.initial={step}"] +
          [f"loads.0.ux='x*(cos({angle}*t)-1)-y*sin({angle}*t)'", f"loads.0.uy='x*sin({angle}*t)+y*(cos({angle}*t)-1)'"],
          ALL) for name, state, jitter, angle, step in (("stick", "stick", 0, 0.0001, 0.5),
