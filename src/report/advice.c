@@ -35,8 +35,8 @@
 #define ADVICE_STANDS_OVER 2
 /* Scatter of nodal pressures above which their peak is not to be trusted: it is wrong by 1.4 to 2 times as much. */
 #define ADVICE_SCATTER 0.05
-/* Part of the energy of friction that nodes may take whose slip turns by more than 10 degrees within a step. What they
-   take is wrong by a part that grows with the square of the angle, 1 % at 15 degrees. */
+/* Part of the energy of friction that nodes may take whose slip turns by more than 10 degrees within a step: the
+   direction of their forces lags by about half of the angle. */
 #define ADVICE_TURNED 0.1
 /* Penetration of a slave node (face sizes) at which contact is lost because the penalty is soft, and the one that a
    stiffer penalty is to leave. */

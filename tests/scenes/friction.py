@@ -9,7 +9,7 @@ from harness import Check, arguments, run, SCENES
 RUNS = SCENES.parent.parent / "runs"
 MU = 0.3
 
-args = arguments(("part", "what is shown", ("flat", "bounds", "shear", "belt", "turn", "bar", "rings")))
+args = arguments(("part", "what is shown", ("flat", "bounds", "circle", "shear", "belt", "turn", "bar", "rings")))
 check = Check()
 
 
@@ -68,6 +68,26 @@ def bounds():
         law = (fields["penalty"].ravel() * fields["penetration"].ravel())[closed]
         check.near(f"{name}: traction", factor, numpy.interp(law, [0, 15, 40], [1, 0.9, 0.4]), 1e-6)
         check.holds(f"{name}: pressures differ", numpy.ptp(factor) > 0.01)
+
+
+def circle():
+    """A block is drawn along a circle of radius 3. Exact: friction takes mu N times the way. Steps of 18 degrees are advised
+    against, steps of 5 degrees are not."""
+    angle = "2*pi*max(0, (t-0.2)/0.8)"
+    for degrees, turns in ((18, True), (5, False)):
+        finished = run(args, RUNS / "slide_flat.yaml", out=f"degrees_{degrees}", overrides=[
+            "bodies=[{volume: block, material: {law: svk, E: 1000, nu: 0.3}}]", "supports=[]", f"contact.0.friction.mu={MU}",
+            "contact.0.master={plane: {point: [0, 0, 0], normal: [0, 1, 0]}}", "loads.1={surface: block_top, "
+            f"ux: '3*sin({angle})', uz: '3*(1-cos({angle}))'}}", f"stepping.initial={0.8 * degrees / 360:.9g}",
+            "stepping.at=[0.2]", "output.every=0"
+        ])
+        friction = finished.summary()["contact"][0]["friction"]
+        exact = MU * 160 * 2 * math.pi * 3
+        check.near(f"{degrees} degrees a step: energy over the exact one", friction["dissipated"] / exact, 1, 0.02)
+        share = friction["dissipated_turning"] / friction["dissipated"]
+        check.holds(f"{degrees} degrees a step: part taken where slip turns", share > 0.8 if turns else share < 0.05,
+                    f"{share:.3g}")
+        check.holds(f"{degrees} degrees a step: advice", ("the slip turns by more than 10 degrees" in finished.text) == turns)
 
 
 def shear():
