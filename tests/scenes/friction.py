@@ -45,14 +45,16 @@ def flat():
 
 
 def bounds():
-    """Exact: in full slip the force is the bound over the area in contact, and node by node the traction is the bound, at
-    the pressure of the penalty, which is over the reference area."""
-    table = "[[0, 1], [15, 0.9], [40, 0.4]]"
-    for name, own, force in (("cohesion", ["cohesion=2"], MU * 160), ("cohesion alone", ["mu=0", "cohesion=2"],
-                                                                              0), ("limit", ["tau_max=0.5"], 0.5 * 8),
-                             ("factor over t", ["history=[[0, 1], [1, 0.5]]"], MU * 160 / 2), ("factor over the pressure",
-                                                                                               [f"over_pressure={table}"],
-                                                                                               None)):
+    """Exact: in full slip the force is the bound over the area in contact, and at each node the traction is the bound at the
+    pressure of the penalty, which is over the reference area."""
+    cases = (
+        ("cohesion", ["cohesion=2"], MU * 160),
+        ("cohesion alone", ["mu=0", "cohesion=2"], 0),
+        ("limit", ["tau_max=0.5"], 0.5 * 8),
+        ("factor over t", ["history=[[0, 1], [1, 0.5]]"], MU * 160 / 2),
+        ("factor over the pressure", ["over_pressure=[[0, 1], [15, 0.9], [40, 0.4]]"], None),
+    )
+    for name, own, force in cases:
         finished = run(args, RUNS / "slide_flat.yaml", out=name.replace(" ", "_"), overrides=[
             "stepping.initial=0.1", f"contact.0.friction.mu={MU}", *(f"contact.0.friction.{key}" for key in own)
         ])
@@ -71,13 +73,13 @@ def bounds():
 
 
 def circle():
-    """A block is drawn along a circle of radius 3. Exact: friction takes mu N times the way. Steps of 18 degrees are advised
-    against, steps of 5 degrees are not."""
+    """A block is drawn along a circle of radius 3. Exact: friction takes mu N times the way. The last screen advises against
+    steps of 18 degrees, not against steps of 5."""
     angle = "2*pi*max(0, (t-0.2)/0.8)"
     for degrees, turns in ((18, True), (5, False)):
         finished = run(args, RUNS / "slide_flat.yaml", out=f"degrees_{degrees}", overrides=[
-            "bodies=[{volume: block, material: {law: svk, E: 1000, nu: 0.3}}]", "supports=[]", f"contact.0.friction.mu={MU}",
-            "contact.0.master={plane: {point: [0, 0, 0], normal: [0, 1, 0]}}", "loads.1={surface: block_top, "
+            "bodies=[{volume: block, material: {law: svk, E: 1000, nu: 0.3}}]", "supports=[]",
+            f"contact.0.friction.mu={MU}", "contact.0.master={plane: {point: [0, 0, 0], normal: [0, 1, 0]}}", "loads.1={surface: block_top, "
             f"ux: '3*sin({angle})', uz: '3*(1-cos({angle}))'}}", f"stepping.initial={0.8 * degrees / 360:.9g}",
             "stepping.at=[0.2]", "output.every=0"
         ])
@@ -87,7 +89,8 @@ def circle():
         share = friction["dissipated_turning"] / friction["dissipated"]
         check.holds(f"{degrees} degrees a step: part taken where slip turns", share > 0.8 if turns else share < 0.05,
                     f"{share:.3g}")
-        check.holds(f"{degrees} degrees a step: advice", ("the slip turns by more than 10 degrees" in finished.text) == turns)
+        advised = "the slip turns by more than 10 degrees" in finished.text
+        check.holds(f"{degrees} degrees a step: advice", advised == turns)
 
 
 def shear():

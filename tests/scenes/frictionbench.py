@@ -11,6 +11,8 @@ CASES = {
     "wedge": (("mu 0.3", "mu 0.3, analytic slope"), friction_table.BOTH),
     "pad": (("flat", "inclined by 30 degrees"), friction_table.BOTH),
     "mindlin_line": (("16 elements", ), friction_table.PLAIN),
+    "shear_plane": (("jitter 0, 12 on 15 faces", "jitter 0.25, 12 on 15 faces", "jitter 0.25, 15 on 12 faces"),
+                    friction_table.PLAIN),
     "plate_greco": (("32 elements", ), friction_table.BOTH),
     "punch_rounded": (("mu 0.1, elements of 1", ), friction_table.BOTH),
 }
