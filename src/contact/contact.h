@@ -30,6 +30,7 @@ typedef struct {
   /* With friction, else NULL: n*3 the traction on the slave in the tangent plane, friction force over present tributary
      area; the length that the node has slipped so far; 0 open, 1 sticking, 2 slipping. */
   const PetscReal *traction, *slid, *friction;
+  const PetscReal *friction_force; /* with friction, else NULL: n*3, on the slave */
 } ContactNodes;
 
 /* All pairs together, in the present state. */
@@ -109,10 +110,11 @@ typedef struct {
 typedef struct {
   PetscReal force[3]; /* on the slave; axisymmetric: over 360 degrees */
   PetscInt  sticking, slipping;
-  PetscReal slipped_area; /* reference area of the slipping nodes */
-  PetscReal elastic;      /* largest elastic slip (length) */
-  PetscReal slid;         /* longest slip of a node so far, without the elastic one (length) */
-  PetscReal dissipated;   /* energy that friction has taken so far */
+  PetscReal sticking_area, slipped_area; /* reference areas of the sticking and the slipping nodes */
+  PetscReal elastic;                     /* largest elastic slip (length) */
+  PetscReal slid;                        /* longest slip of a node so far, without the elastic one (length) */
+  PetscReal dissipated;                  /* energy that friction has taken so far */
+  PetscReal turned;                      /* part of it at nodes whose slip turned much within a step */
 } ContactFriction;
 
 typedef struct _n_Contact *Contact;

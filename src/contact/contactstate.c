@@ -52,6 +52,7 @@ PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to)
     PetscCall(PetscArraycpy(to->slid, from->slid, from->n));
     PetscCall(PetscArraycpy(to->slips, from->slips, from->n));
     to->dissipated = from->dissipated;
+    to->turned     = from->turned;
   }
   to->raised    = from->raised;
   to->lowered   = from->lowered;
@@ -78,11 +79,11 @@ PetscErrorCode ContactStateDestroy(ContactState *state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Saves or loads what belongs to friction. The energy is stored as the sum over all ranks, and loaded on rank 0. */
+/* Saves or loads what belongs to friction. Energies are stored as sums over all ranks, and loaded on rank 0. */
 static PetscErrorCode ArchiveFriction(ContactState *state, Archive archive, const char *name, const Hdf5Table *nodes)
 {
   const MPI_Comm comm = PetscObjectComm((PetscObject)nodes->sf);
-  PetscReal     *slips, dissipated = state->dissipated;
+  PetscReal     *slips, energies[2] = {state->dissipated, state->turned};
   PetscMPIInt    rank;
   char           path[PETSC_MAX_PATH_LEN];
 
@@ -98,10 +99,13 @@ static PetscErrorCode ArchiveFriction(ContactState *state, Archive archive, cons
   for (PetscInt c = 0; c < state->n; c++) state->slips[c] = (PetscBool)(slips[c] != 0);
   PetscCall(PetscFree(slips));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &dissipated, 1, MPIU_REAL, MPIU_SUM, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energies, 2, MPIU_REAL, MPIU_SUM, comm));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/dissipated", name));
-  PetscCall(ArchiveReals(archive, path, 1, &dissipated));
-  if (ArchiveLoads(archive)) state->dissipated = rank ? 0 : dissipated;
+  PetscCall(ArchiveReals(archive, path, 2, energies));
+  if (ArchiveLoads(archive)) {
+    state->dissipated = rank ? 0 : energies[0];
+    state->turned     = rank ? 0 : energies[1];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

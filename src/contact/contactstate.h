@@ -18,6 +18,7 @@ typedef struct {
   PetscReal *traction, *slid;
   PetscBool *slips;
   PetscReal  dissipated; /* energy that friction has taken so far on this rank */
+  PetscReal  turned;     /* part of it that nodes took whose slip turned much within a step */
   PetscInt   augmented;  /* times that pressures became multipliers; on rank 0 */
   PetscInt   missed;     /* steps that ended beyond the bound after all updates; on rank 0 */
 } ContactState;

@@ -4,6 +4,9 @@
 
 /* A foot that is outside of its reference face by less than this is on it: rounding. */
 #define FRICTION_ON_FACE 1e-9
+/* Cosine of the angle, 10 degrees, by which the slip of a node may turn within a step: the step is straight, and its
+   end gives the direction of all of it. */
+#define FRICTION_TURN 0.984807753012208
 /* Allocates the friction of a pair, without anchors. The penalty of what sticks is the automatic one, without the
    factor that the pressure's has: on a pinched pipe Newton's method takes 90 iterations with it, and with ten times as
    much it fails where many nodes change between sticking and slipping. */
@@ -18,7 +21,7 @@ PetscErrorCode FrictionCreate(ContactPair *pair)
   f->stiffness = pair->scene->stick_penalty > 0 ? pair->scene->stick_penalty : PetscMin(pair->initial, pair->automatic);
   PetscCall(PetscCalloc5(q, &f->face, 2 * q, &f->xi, 3 * q, &f->place, q, &f->at, 3 * q, &f->force));
   PetscCall(PetscCalloc4(q, &f->foot, q, &f->facet, q, &f->known, q, &f->first));
-  PetscCall(PetscCalloc4(n, &f->anchored, 2 * n, &f->kept, n, &f->began, n, &f->axis));
+  PetscCall(PetscCalloc5(n, &f->anchored, 2 * n, &f->kept, 2 * n, &f->heading, n, &f->began, n, &f->axis));
   PetscCall(PetscCalloc4(3 * n, &f->nodal, n, &f->elastic, 3 * n, &f->traction, n, &f->status));
   for (PetscInt i = 0; i < q; i++) f->face[i] = f->facet[i] = f->at[i] = f->first[i] = -1;
   SearchKeepFaces(pair->search);
@@ -34,7 +37,7 @@ PetscErrorCode FrictionDestroy(Friction *friction)
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree5(f->face, f->xi, f->place, f->at, f->force));
   PetscCall(PetscFree4(f->foot, f->facet, f->known, f->first));
-  PetscCall(PetscFree4(f->anchored, f->kept, f->began, f->axis));
+  PetscCall(PetscFree5(f->anchored, f->kept, f->heading, f->began, f->axis));
   PetscCall(PetscFree4(f->nodal, f->elastic, f->traction, f->status));
   PetscCall(PetscFree(f->turns));
   PetscCall(PetscFree(*friction));
@@ -337,7 +340,10 @@ static PetscErrorCode BeginTerm(ContactPair *pair, PetscInt c, PetscReal t)
   f->began[c] = pair->accepted.status[c] == CONTACT_OPEN && opening > 0 ? opening : 0;
   FrictionComponents(in.normal, in.along, &pair->accepted.traction[3 * c], traction);
   FrictionComponents(in.normal, in.along, in.slip, slip);
-  for (int k = 0; k < 2; k++) f->kept[2 * c + k] = traction[k] / f->stiffness - slip[k];
+  for (int k = 0; k < 2; k++) {
+    f->kept[2 * c + k]    = traction[k] / f->stiffness - slip[k];
+    f->heading[2 * c + k] = pair->accepted.slips[c] ? traction[k] : 0;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -478,6 +484,21 @@ static PetscErrorCode NodalForces(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether a term slips in another direction than when the step began. In the plane it can only slip to and fro,
+   which a step follows. */
+static PetscBool HasTurned(const ContactPair *pair, PetscInt c, const FrictionInput *in, const FrictionTraction *out)
+{
+  const PetscReal *before = &pair->friction->heading[2 * c];
+  PetscReal        now[2], product, lengths;
+
+  if (pair->mesh->dim < 3 || out->state != FRICTION_SLIPS) return PETSC_FALSE;
+  FrictionComponents(in->normal, in->along, out->traction, now);
+  product = before[0] * now[0] + before[1] * now[1];
+  lengths =
+    PetscSqrtReal(PetscSqr(before[0]) + PetscSqr(before[1])) * PetscSqrtReal(PetscSqr(now[0]) + PetscSqr(now[1]));
+  return (PetscBool)(lengths > 0 && product < FRICTION_TURN * lengths);
+}
+
 /*@
   FrictionResidual - computes the tractions of a pair, which become its present state, and adds their forces.
 
@@ -497,6 +518,7 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(pair->friction->force, 3 * pair->lists->n_slaves));
   now->dissipated = accepted->dissipated;
+  now->turned     = accepted->turned;
   for (PetscInt c = 0; c < pair->n; c++) {
     FrictionInput    in;
     FrictionTraction out  = {.state = FRICTION_STICKS};
@@ -516,10 +538,14 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
     pair->friction->elastic[c] = acts ? out.elastic : 0;
     now->slips[c]              = (PetscBool)(acts && out.state == FRICTION_SLIPS);
     now->slid[c]               = accepted->slid[c] + (acts ? out.slipped : 0);
-    if (acts)
-      now->dissipated +=
+    if (acts) {
+      const PetscReal energy =
         area * out.slipped *
         PetscSqrtReal(PetscSqr(out.traction[0]) + PetscSqr(out.traction[1]) + PetscSqr(out.traction[2]));
+
+      now->dissipated += energy;
+      if (HasTurned(pair, c, &in, &out)) now->turned += energy;
+    }
   }
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) PetscCall(PointForces(pair, q, values));
   PetscCall(NodalForces(pair));
@@ -578,9 +604,10 @@ PetscErrorCode FrictionShow(const ContactPair *pair, const PetscReal *area, Cont
     for (int d = 0; d < 3; d++) f->traction[3 * c + d] = f->nodal[3 * c + d] / area[pair->node[c]];
     f->status[c] = pair->now.status[c] == CONTACT_OPEN ? 0 : pair->now.slips[c] ? 2 : 1;
   }
-  nodes->traction = f->traction;
-  nodes->slid     = pair->now.slid;
-  nodes->friction = f->status;
+  nodes->traction       = f->traction;
+  nodes->slid           = pair->now.slid;
+  nodes->friction       = f->status;
+  nodes->friction_force = f->nodal;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -600,26 +627,29 @@ PetscErrorCode ContactPairFriction(Contact contact, int p, ContactFriction *fric
 {
   const ContactPair *pair   = &contact->pairs[p];
   const Friction     f      = pair->friction;
-  PetscReal          sum[7] = {0}, most[2] = {0};
+  PetscReal          sum[9] = {0}, most[2] = {0};
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; f && c < pair->n; c++) {
     for (int d = 0; d < 3; d++) sum[d] += f->nodal[3 * c + d];
     if (pair->now.status[c] == CONTACT_OPEN) continue;
     sum[pair->now.slips[c] ? 4 : 3]++;
-    if (pair->now.slips[c]) sum[5] += pair->area[c];
+    sum[pair->now.slips[c] ? 5 : 7] += pair->area[c];
     most[0] = PetscMax(most[0], f->elastic[c]);
     most[1] = PetscMax(most[1], pair->now.slid[c]);
   }
   sum[6] = pair->now.dissipated;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 7, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
+  sum[8] = pair->now.turned;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 9, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
-  *friction = (ContactFriction){.force        = {sum[0], sum[1], sum[2]},
-                                .sticking     = (PetscInt)sum[3],
-                                .slipping     = (PetscInt)sum[4],
-                                .slipped_area = sum[5],
-                                .dissipated   = sum[6],
-                                .elastic      = most[0],
-                                .slid         = most[1]};
+  *friction = (ContactFriction){.force         = {sum[0], sum[1], sum[2]},
+                                .sticking      = (PetscInt)sum[3],
+                                .slipping      = (PetscInt)sum[4],
+                                .slipped_area  = sum[5],
+                                .dissipated    = sum[6],
+                                .sticking_area = sum[7],
+                                .turned        = sum[8],
+                                .elastic       = most[0],
+                                .slid          = most[1]};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -35,6 +35,9 @@
 #define ADVICE_STANDS_OVER 2
 /* Scatter of nodal pressures above which their peak is not to be trusted: it is wrong by 1.4 to 2 times as much. */
 #define ADVICE_SCATTER 0.05
+/* Part of the energy of friction that nodes may take whose slip turns by more than 10 degrees within a step: the
+   direction of their forces lags by about half of the angle. */
+#define ADVICE_TURNED 0.1
 /* Penetration of a slave node (face sizes) at which contact is lost because the penalty is soft, and the one that a
    stiffer penalty is to leave. */
 #define ADVICE_DEEP        0.5
@@ -79,6 +82,18 @@ static double PressuresScatter(const RunFigures *figures, const PairFigures *pai
   if (!(pair->scatter > ADVICE_SCATTER)) return 0;
   snprintf(text, ADVICE_TEXT, "%s: nodal pressures scatter by %.0f %% rms from node to node, their peak by more",
            pair->name, (double)(100 * pair->scatter));
+  return 1;
+}
+
+static double SlipTurns(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  const ContactFriction *friction = &pair->friction;
+
+  (void)figures;
+  if (!(friction->turned > ADVICE_TURNED * friction->dissipated)) return 0;
+  snprintf(text, ADVICE_TEXT,
+           "%s: %.2g %% of the energy of friction is taken where the slip turns by more than 10 degrees in a step",
+           pair->name, (double)(100 * friction->turned / friction->dissipated));
   return 1;
 }
 
@@ -221,6 +236,7 @@ static const Situation situations[] = {
   {.pair = PenetrationIsDeep, .changes = {CHANGE_FREE_PENALTY, CHANGE_STIFFER}},
   {.pair = MasterStandsIn, .changes = {CHANGE_FINER_SLAVE, CHANGE_ROLES}},
   {.pair = PressuresScatter, .changes = {CHANGE_SURFACE, CHANGE_FINER_SLAVE}},
+  {.pair = SlipTurns, .changes = {CHANGE_SHORTER}},
   {.pair = FacetsAreCoarse, .changes = {CHANGE_DIFFUSE, CHANGE_FINER_MASTER}},
   {.pair = FitsFallBack, .changes = {CHANGE_FINER_MASTER, CHANGE_SYMMETRY, CHANGE_DEGREE_2}},
   {.pair = WindowIsMissed, .changes = {CHANGE_WHEN_CONVERGED, CHANGE_WIDER_WINDOW, CHANGE_RANGE}},

@@ -79,13 +79,19 @@ static void PrintSides(const PairFigures *pair, FILE *stream)
 static void PrintFriction(const PairFigures *pair, FILE *stream)
 {
   const ContactFriction *friction = &pair->friction;
+  const double           area     = (double)(friction->sticking_area + friction->slipped_area),
+               total              = (double)(friction->slid + friction->elastic);
 
   if (!pair->scene->friction) return;
-  fprintf(stream,
-          "friction %s: %lld nodes stick, %lld slip; elastic slip up to %.3g, slip so far up to %.3g; energy taken "
-          "%.4g\n",
-          pair->name, (long long)friction->sticking, (long long)friction->slipping, (double)friction->elastic,
-          (double)friction->slid, (double)friction->dissipated);
+  fprintf(stream, "friction %s: ", pair->name);
+  if (area > 0)
+    fprintf(stream, "%.3g %% of the area in contact sticks (%lld nodes, %lld slip); ",
+            100 * (double)friction->sticking_area / area, (long long)friction->sticking, (long long)friction->slipping);
+  else
+    fprintf(stream, "no contact; ");
+  fprintf(stream, "slip so far up to %.3g, elastic slip up to %.3g", (double)friction->slid, (double)friction->elastic);
+  if (total > 0) fprintf(stream, " (%.2g %% of both)", 100 * (double)friction->elastic / total);
+  fprintf(stream, "; energy taken %.4g\n", (double)friction->dissipated);
 }
 
 /* Prints what penetration leaves of error, as estimated at the end of the load. */

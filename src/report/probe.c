@@ -23,7 +23,8 @@ enum {
   SLAVE_POSITION = SLAVE_REFERENCE + 3,
   SLAVE_AREA     = SLAVE_POSITION + 3,
   SLAVE_PRESSURE,
-  SLAVE_COLUMNS
+  SLAVE_FRICTION, /* friction force on the slave */
+  SLAVE_COLUMNS = SLAVE_FRICTION + 3
 };
 
 typedef struct {
@@ -268,6 +269,7 @@ static PetscErrorCode ProbesGetSlaves(Probes probes, int pair, const GatherTable
     }
     row[SLAVE_AREA]     = slaves.area[k];
     row[SLAVE_PRESSURE] = slaves.pressure[k];
+    for (int i = 0; i < 3 && slaves.friction_force; i++) row[SLAVE_FRICTION + i] = slaves.friction_force[3 * k + i];
   }
   PetscCall(GatherTableCreate(mesh->comm, SLAVE_COLUMNS, slaves.n, rows, &probes->slaves[pair]));
   PetscCall(PetscFree(rows));
@@ -482,6 +484,54 @@ static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode EvaluateFrictionForce(Probes probes, Probe *probe, PetscReal *value)
+{
+  ContactFriction friction;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactPairFriction(probes->model->contact, probe->pair, &friction));
+  *value = -friction.force[probe->scene->component];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces on the master balance those on the slave, and so do their moments. */
+static PetscErrorCode EvaluateFrictionTorque(Probes probes, Probe *probe, PetscReal *value)
+{
+  const GatherTable *slaves;
+  const int          i = (probe->scene->axis + 1) % 3, j = (probe->scene->axis + 2) % 3;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
+  *value = 0.0;
+  for (PetscInt k = 0; k < slaves->n; k++) {
+    const PetscReal *slave = &slaves->row[k * SLAVE_COLUMNS], *x = &slave[SLAVE_POSITION], *F = &slave[SLAVE_FRICTION];
+    const double    *X = probe->scene->point[0];
+
+    *value -= (x[i] - X[i]) * F[j] - (x[j] - X[j]) * F[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateSlippedArea(Probes probes, Probe *probe, PetscReal *value)
+{
+  ContactFriction friction;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactPairFriction(probes->model->contact, probe->pair, &friction));
+  *value = friction.slipped_area;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateElasticSlip(Probes probes, Probe *probe, PetscReal *value)
+{
+  ContactFriction friction;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactPairFriction(probes->model->contact, probe->pair, &friction));
+  *value = friction.elastic;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode EvaluateFluidFront(Probes probes, Probe *probe, PetscReal *value)
 {
   const Fluids     fluids = probes->model->problem->fluids;
@@ -527,6 +577,10 @@ static const ProbeType types[PROBE_KINDS] = {
   [PROBE_PRESSURE_MAX]       = {"pressure_max", NAMES_PAIR, 0, NULL, EvaluatePressureMax},
   [PROBE_PRESSURE_MEAN]      = {"pressure_mean", NAMES_PAIR, 0, NULL, EvaluatePressureMean},
   [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", NAMES_PAIR, 0, NULL, EvaluatePressureDeviation},
+  [PROBE_FRICTION_FORCE]     = {"friction_force", NAMES_PAIR, 0, NULL, EvaluateFrictionForce},
+  [PROBE_FRICTION_TORQUE]    = {"friction_torque", NAMES_PAIR, 0, NULL, EvaluateFrictionTorque},
+  [PROBE_SLIPPED_AREA]       = {"slipped_area", NAMES_PAIR, 0, NULL, EvaluateSlippedArea},
+  [PROBE_ELASTIC_SLIP]       = {"elastic_slip", NAMES_PAIR, 0, NULL, EvaluateElasticSlip},
   [PROBE_FLUID_FRONT]        = {"fluid_front", NAMES_SURFACE, 0, NULL, EvaluateFluidFront},
   [PROBE_FLUID_AREA]         = {"fluid_area", NAMES_SURFACE, 0, NULL, EvaluateFluidArea},
   [PROBE_SEAL_PRESSURE]      = {"seal_pressure", NAMES_SURFACE, 0, NULL, EvaluateSealPressure},

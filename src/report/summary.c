@@ -225,10 +225,12 @@ static void AddFriction(cJSON *pair, const ContactFriction *friction)
   cJSON_AddItemToObject(map, "force", cJSON_CreateDoubleArray(friction->force, 3));
   cJSON_AddNumberToObject(map, "sticking", (double)friction->sticking);
   cJSON_AddNumberToObject(map, "slipping", (double)friction->slipping);
+  AddReal(map, "sticking_area", friction->sticking_area);
   AddReal(map, "slipping_area", friction->slipped_area);
   AddReal(map, "elastic_slip", friction->elastic);
   AddReal(map, "slip", friction->slid);
   AddReal(map, "dissipated", friction->dissipated);
+  AddReal(map, "dissipated_turning", friction->turned);
 }
 
 static void AddContact(cJSON *json, const RunFigures *figures)

@@ -1,8 +1,9 @@
 /* Factors over the load parameter t, and the prescribed motions of rigid bodies that are built from them. Plain C.
 
-   A History is a piecewise linear factor. HistoryValue() gives its value at t, HistorySlope() its slope; HistoryBreaks() tells where its slope
-   may change. A Motion is a translation of the point and a rotation about it by the vector (rx, ry, rz); each of its
-   components is a value times a history. MotionPlace() moves a point with the body, MotionTurn() a direction. */
+   A History is a piecewise linear factor. HistoryValue() gives its value at t, HistorySlope() its slope;
+   HistoryBreaks() tells where its slope may change. A Motion is a translation of the point and a rotation about it by
+   the vector (rx, ry, rz); each of its components is a value times a history. MotionPlace() moves a point with the
+   body, MotionTurn() a direction. */
 #pragma once
 
 typedef struct {

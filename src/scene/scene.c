@@ -582,7 +582,8 @@ static PetscErrorCode SceneReadOverlap(Scene scene, SceneContact *contact)
 }
 
 /* Refuses factors on the coefficient of friction below 0. */
-static PetscErrorCode SceneCheckFactors(Scene scene, const SceneContact *contact, const char *key, const History *factors)
+static PetscErrorCode SceneCheckFactors(Scene scene, const SceneContact *contact, const char *key,
+                                        const History *factors)
 {
   PetscFunctionBeginUser;
   for (int i = 0; i < factors->n; i++)

@@ -96,8 +96,8 @@ typedef struct {
   /* Factors on mu over the load parameter and over the pressure; with n = 0 there is none. */
   History mu_history, mu_pressure;
   double  cohesion, tau_max; /* traction that sticks without pressure, and the largest one (force per area); 0: none */
-  double         stick_penalty; /* force per length and area; 0: automatic */
-  int            penalty_auto;  /* 1 if the penalty is the automatic one */
+  double  stick_penalty;     /* force per length and area; 0: automatic */
+  int     penalty_auto;      /* 1 if the penalty is the automatic one */
   /* Penalty (force per length and area), 0 if it is automatic, and the factor on the automatic penalty. */
   double penalty, penalty_scale;
   int    penalty_may_stiffen; /* 1 if the run chooses the penalty: no key of the scene sets it or lets it follow */
@@ -123,6 +123,10 @@ typedef enum {
   PROBE_PRESSURE_MAX,
   PROBE_PRESSURE_MEAN,
   PROBE_PRESSURE_DEVIATION,
+  PROBE_FRICTION_FORCE, /* from here on the target is a pair with friction */
+  PROBE_FRICTION_TORQUE,
+  PROBE_SLIPPED_AREA,
+  PROBE_ELASTIC_SLIP,
   PROBE_FLUID_FRONT, /* from here on the target is the surface of a fluid */
   PROBE_FLUID_AREA,
   PROBE_SEAL_PRESSURE,
@@ -131,12 +135,12 @@ typedef enum {
 typedef struct {
   char     *path, *name;
   ProbeKind kind;
-  char     *target;      /* surface of a reaction, pair of a contact quantity, else NULL */
-  char     *body;        /* volume, or NULL */
-  int       component;   /* 0 to 2 */
-  double    point[2][3]; /* of displacement, distance and gap: reference coordinates (length) */
-  int       axis;        /* of contact_edge: 0 to 2 */
-  int       max_side;    /* of contact_edge: 1 for max, 0 for min */
+  char     *target;    /* surface of a reaction, pair of a contact quantity, else NULL */
+  char     *body;      /* volume, or NULL */
+  int       component; /* 0 to 2 */
+  double point[2][3];  /* of displacement, distance and gap: reference coordinates; of a torque: of its axis (length) */
+  int    axis;         /* of contact_edge and of a torque: 0 to 2 */
+  int    max_side;     /* of contact_edge: 1 for max, 0 for min */
   /* Of contact_edge and pressure_max: 1 if only nodes count whose reference coordinate at_axis equals at_value. */
   int    has_at;
   int    at_axis;

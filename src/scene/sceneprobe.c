@@ -20,6 +20,10 @@ static const struct {
   [PROBE_PRESSURE_MAX]       = {"pressure_max", "", "at"},
   [PROBE_PRESSURE_MEAN]      = {"pressure_mean", "", ""},
   [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", "", "measure excluding only"},
+  [PROBE_FRICTION_FORCE]     = {"friction_force", "component", ""},
+  [PROBE_FRICTION_TORQUE]    = {"friction_torque", "", "axis at"},
+  [PROBE_SLIPPED_AREA]       = {"slipped_area", "", ""},
+  [PROBE_ELASTIC_SLIP]       = {"elastic_slip", "", ""},
   [PROBE_FLUID_FRONT]        = {"fluid_front", "axis side", ""},
   [PROBE_FLUID_AREA]         = {"fluid_area", "", ""},
   [PROBE_SEAL_PRESSURE]      = {"seal_pressure", "", ""},
@@ -89,6 +93,40 @@ static PetscErrorCode SceneRefuseProbeTarget(Scene scene, SceneProbe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Refuses a probe of friction whose target is a pair without. */
+static PetscErrorCode SceneRefuseProbeFriction(Scene scene, SceneProbe *probe)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < scene->n_contacts; i++)
+    if (!strcmp(scene->contacts[i].name, probe->target) && !scene->contacts[i].friction)
+      PetscCall(SceneRefuse(scene, probe->path, ProbeForms[probe->kind].kind,
+                            "has no friction; allowed: the name of a pair with the key friction", probe->target));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads the axis of a torque: its direction, which in the plane can only be z, and a point of it. */
+static PetscErrorCode SceneReadProbeTorque(Scene scene, SceneProbe *probe)
+{
+  const Node at = SceneNode(scene, probe->path, "at");
+
+  PetscFunctionBeginUser;
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC)
+    PetscCall(SceneRefuse(scene, probe->path, "friction_torque",
+                          "is 0 in an axisymmetric scene; allowed: in the other geometries", NULL));
+  if (scene->dim == 3 && !SceneHas(scene, probe->path, "axis"))
+    PetscCall(SceneRefuse(scene, probe->path, "axis", "is missing; needed by friction_torque in 3D", NULL));
+  if (scene->dim == 2) {
+    if (SceneHas(scene, probe->path, "axis") && probe->axis != 2)
+      PetscCall(SceneRefuse(scene, probe->path, "axis", "lies in the plane; allowed: z", NULL));
+    probe->axis = 2;
+  }
+  if (!at) PetscFunctionReturn(PETSC_SUCCESS);
+  if (at->kind != NODE_LIST)
+    PetscCall(SceneRefuse(scene, probe->path, "at", "has the wrong type; allowed: a point of the axis", NULL));
+  (void)SceneReals(scene, probe->path, "at", probe->point[0]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Refuses a probe whose target is not a surface on which a fluid acts. */
 static PetscErrorCode SceneRefuseProbeFluid(Scene scene, SceneProbe *probe)
 {
@@ -106,6 +144,10 @@ static PetscErrorCode SceneReadProbeAt(Scene scene, SceneProbe *probe)
   Node at = SceneNode(scene, probe->path, "at");
 
   PetscFunctionBeginUser;
+  if (probe->kind == PROBE_FRICTION_TORQUE) {
+    PetscCall(SceneReadProbeTorque(scene, probe));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (probe->kind == PROBE_GAP) {
     if (at->kind != NODE_LIST)
       PetscCall(SceneRefuse(scene, probe->path, "at", "has the wrong type; allowed: the point of a slave node", NULL));
@@ -169,6 +211,8 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
       PetscCall(SceneRefuseProbeFluid(scene, probe));
     else if (probe->kind != PROBE_REACTION)
       PetscCall(SceneRefuseProbeTarget(scene, probe));
+    if (probe->kind >= PROBE_FRICTION_FORCE && probe->kind < PROBE_FLUID_FRONT)
+      PetscCall(SceneRefuseProbeFriction(scene, probe));
   }
   probe->component = PetscMax(0, SchemaChoice(document, "%s.component", path));
   probe->axis      = PetscMax(0, SchemaChoice(document, "%s.axis", path));

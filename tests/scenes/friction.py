@@ -9,7 +9,7 @@ from harness import Check, arguments, run, SCENES
 RUNS = SCENES.parent.parent / "runs"
 MU = 0.3
 
-args = arguments(("part", "what is shown", ("flat", "bounds", "shear", "belt", "turn", "bar", "rings")))
+args = arguments(("part", "what is shown", ("flat", "bounds", "circle", "shear", "belt", "turn", "bar", "rings")))
 check = Check()
 
 
@@ -26,9 +26,15 @@ def flat():
             name = f"{formulation}, {smoother}"
             finished = run(args, RUNS / "slide_flat.yaml", out=f"{formulation}_{smoother}",
                            overrides=[f"contact.0.formulation={formulation}", f"contact.0.smoother={smoother}",
-                                      f"contact.0.friction.mu={MU}", "stepping.initial=0.1"])
+                                      f"contact.0.friction.mu={MU}", "stepping.initial=0.1",
+                                      "probes.3={name: friction_x, friction_force: sole, component: x}",
+                                      "probes.4={name: slipped, slipped_area: sole}",
+                                      "probes.5={name: elastic, elastic_slip: sole}"])
             fields, friction = contact(finished)
             probes = finished.summary()["probes"]
+            check.near(f"{name}: probe of the force", abs(probes["friction_x"]), probes["force_x"], 1e-7)
+            check.near(f"{name}: probe of the area", probes["slipped"], friction["slipping_area"], 1e-12)
+            check.near(f"{name}: probe of the elastic slip", probes["elastic"], friction["elastic_slip"], 0)
             check.near(f"{name}: load", probes["force_y"], 160, 1e-5)
             check.near(f"{name}: friction", probes["force_x"], MU * 160, 1e-5)
             closed = fields["pressure"].ravel() > 0
@@ -39,14 +45,16 @@ def flat():
 
 
 def bounds():
-    """Exact: in full slip the force is the bound over the area in contact, and node by node the traction is the bound, at
-    the pressure of the penalty, which is over the reference area."""
-    table = "[[0, 1], [15, 0.9], [40, 0.4]]"
-    for name, own, force in (("cohesion", ["cohesion=2"], MU * 160), ("cohesion alone", ["mu=0", "cohesion=2"],
-                                                                              0), ("limit", ["tau_max=0.5"], 0.5 * 8),
-                             ("factor over t", ["history=[[0, 1], [1, 0.5]]"], MU * 160 / 2), ("factor over the pressure",
-                                                                                               [f"over_pressure={table}"],
-                                                                                               None)):
+    """Exact: in full slip the force is the bound over the area in contact, and at each node the traction is the bound at the
+    pressure of the penalty, which is over the reference area."""
+    cases = (
+        ("cohesion", ["cohesion=2"], MU * 160),
+        ("cohesion alone", ["mu=0", "cohesion=2"], 0),
+        ("limit", ["tau_max=0.5"], 0.5 * 8),
+        ("factor over t", ["history=[[0, 1], [1, 0.5]]"], MU * 160 / 2),
+        ("factor over the pressure", ["over_pressure=[[0, 1], [15, 0.9], [40, 0.4]]"], None),
+    )
+    for name, own, force in cases:
         finished = run(args, RUNS / "slide_flat.yaml", out=name.replace(" ", "_"), overrides=[
             "stepping.initial=0.1", f"contact.0.friction.mu={MU}", *(f"contact.0.friction.{key}" for key in own)
         ])
@@ -62,6 +70,27 @@ def bounds():
         law = (fields["penalty"].ravel() * fields["penetration"].ravel())[closed]
         check.near(f"{name}: traction", factor, numpy.interp(law, [0, 15, 40], [1, 0.9, 0.4]), 1e-6)
         check.holds(f"{name}: pressures differ", numpy.ptp(factor) > 0.01)
+
+
+def circle():
+    """A block is drawn along a circle of radius 3. Exact: friction takes mu N times the way. The last screen advises against
+    steps of 18 degrees, not against steps of 5."""
+    angle = "2*pi*max(0, (t-0.2)/0.8)"
+    for degrees, turns in ((18, True), (5, False)):
+        finished = run(args, RUNS / "slide_flat.yaml", out=f"degrees_{degrees}", overrides=[
+            "bodies=[{volume: block, material: {law: svk, E: 1000, nu: 0.3}}]", "supports=[]",
+            f"contact.0.friction.mu={MU}", "contact.0.master={plane: {point: [0, 0, 0], normal: [0, 1, 0]}}", "loads.1={surface: block_top, "
+            f"ux: '3*sin({angle})', uz: '3*(1-cos({angle}))'}}", f"stepping.initial={0.8 * degrees / 360:.9g}",
+            "stepping.at=[0.2]", "output.every=0"
+        ])
+        friction = finished.summary()["contact"][0]["friction"]
+        exact = MU * 160 * 2 * math.pi * 3
+        check.near(f"{degrees} degrees a step: energy over the exact one", friction["dissipated"] / exact, 1, 0.02)
+        share = friction["dissipated_turning"] / friction["dissipated"]
+        check.holds(f"{degrees} degrees a step: part taken where slip turns", share > 0.8 if turns else share < 0.05,
+                    f"{share:.3g}")
+        advised = "the slip turns by more than 10 degrees" in finished.text
+        check.holds(f"{degrees} degrees a step: advice", advised == turns)
 
 
 def shear():
@@ -133,7 +162,7 @@ def rings():
     slips over five faces of the outer one nothing changes."""
     pressure = 35.8860
     for name, angle, step, allowed in (("stick", 0.0001, 0.5, 0.015), ("slip", 0.26, 0.04, 0.001)):
-        finished = run(args, SCENES / "rings_turned.yaml", out=name, overrides=[
+        finished = run(args, RUNS / "friction/press_fit.yaml", out=name, overrides=[
             f"loads.0.ux='x*(cos({angle}*t)-1)-y*sin({angle}*t)'", f"loads.0.uy='x*sin({angle}*t)+y*(cos({angle}*t)-1)'",
             f"stepping.initial={step}"
         ])
@@ -145,6 +174,8 @@ def rings():
         if name == "stick":
             continue
         check.near(f"{name}: traction over pressure", traction.mean() / fields["pressure"].mean(), 0.2, 0.0004)
+        check.near(f"{name}: torque over 2 pi R^2 mu p", finished.summary()["probes"]["torque"] /
+                   (2 * math.pi * 20**2 * 0.2 * pressure), 1, 0.003)
         work = numpy.diff([row["dissipated"] for row in finished.steps()])[4:]
         check.near(f"{name}: work of a step over the mean one", work / work.mean(), 1, 1e-4)
 

@@ -103,7 +103,8 @@ CASES["line contact, mu over the pressure, cohesion"] = (RUNS / "hertz_line.yaml
     "mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.5",
     "contact.0.friction={mu: 0.01, over_pressure: [[0, 1], [4000, 0.3]], cohesion: 3}"
 ] + DIFFUSE)
-CASES["follower pressure, springs"] = (SCENES / "lame.yaml", [*FOLLOWER, "supports.2={surface: outer, spring: [80, 300]}"])
+CASES["follower pressure, springs"] = (SCENES / "lame.yaml",
+                                       [*FOLLOWER, "supports.2={surface: outer, spring: [80, 300]}"])
 
 args = arguments()
 check = Check()

@@ -80,6 +80,8 @@ FULL = {
     f"{PYTHON} scripts/patch_table.py": printed("patch_table", "patch"),
     f"{PYTHON} scripts/axis_table.py": printed("axis_table", "axis"),
     f"{PYTHON} scripts/drawn_table.py --record runs/records/drawn.csv": printed("drawn_table", "drawn"),
+    f"{PYTHON} scripts/friction_table.py --record runs/records/friction.csv": printed("friction_table", "friction"),
+    f"{PYTHON} scripts/plot.py out/press_fit": None,
     f"{PYTHON} scripts/ball_table.py": printed("ball_table", "ball"),
     f"{PYTHON} scripts/michell_table.py": printed("michell_table", "michell"),
     f"{PYTHON} scripts/penalty_table.py --record runs/records/penalty.csv": printed("penalty_table", "penalty"),

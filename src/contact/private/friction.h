@@ -29,6 +29,7 @@ typedef struct {
   /* Of each term, since the step began. */
   PetscBool *anchored; /* all of its points have anchors */
   PetscReal *kept;     /* 2 lengths */
+  PetscReal *heading;  /* 2 components of the slip's direction then; 0 where the node did not slip */
   PetscReal *began;    /* its opening, where it was open (length) */
   int       *axis;     /* of an analytic tool: that which gives the tangents */
   PetscReal *force;    /* 3 for each slave point, in the last residual */
