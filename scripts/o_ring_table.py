@@ -31,7 +31,7 @@ PRESSED_SIZES = {"quad4": (24, ), "quad9": (12, ), "tri6": (12, )}
 WAYS[PRESSED] = ()
 LIMITS = {"20 %": "20 %", "30 %": "30 %", "20 % in one step": "20 %", PRESSED: None}
 NUS = (0.49, 0.499, 0.4999, 0.5)
-LIMIT = 60  # s of one run
+LIMIT = 600  # s of one run
 COLUMNS = ("squeeze", "element", "n", "nu", "status", "t", "steps", "failed", "iterations", "cuts", "turned", "force",
            "error")
 
@@ -51,35 +51,64 @@ def run(burnish, way, element, n, nu):
         return json.loads((pathlib.Path(directory) / "run/summary.json").read_text())
 
 
-def row(way, element, n, nu, summary, limit):
+def figures(summary):
+    """What the record keeps of a run, but for the error."""
     done = summary["status"] == "done"
-    force = summary["probes"]["force"] if done else None
     guards = summary["guards"]
-    values = (way, element, n, nu, summary["status"], f"{summary['t']:.4g}", summary["steps"], summary["steps_failed"],
-              summary["newton_iterations"], guards["line_search_cuts"], guards["line_search_turned"],
-              f"{force:.7g}" if done else "", f"{force / limit - 1:+.5f}" if done and limit else "")
-    return dict(zip(COLUMNS, values))
+    return {
+        "status": summary["status"],
+        "t": f"{summary['t']:.4g}",
+        "steps": summary["steps"],
+        "failed": summary["steps_failed"],
+        "iterations": summary["newton_iterations"],
+        "cuts": guards["line_search_cuts"],
+        "turned": guards["line_search_turned"],
+        "force": f"{summary['probes']['force']:.7g}" if done else ""
+    }
+
+
+def cases(nus):
+    """Way, element, n and nu of every run, the fine meshes first."""
+    for way in WAYS:
+        for nu in nus:
+            if LIMITS[way] == way:
+                yield way, *FINE, nu
+            for element, (_, _, sizes) in ELEMENTS.items():
+                for n in sizes if way != PRESSED else PRESSED_SIZES[element]:
+                    yield way, element, n, nu
+
+
+def error(rows, row):
+    """Of the force against that of the finest mesh of the same squeeze and ratio."""
+    for other in rows:
+        if (other["squeeze"] == LIMITS[row["squeeze"]] and (other["element"], int(other["n"])) == FINE
+                and float(other["nu"]) == float(row["nu"]) and other["force"] and row["force"]):
+            return f"{float(row['force']) / float(other['force']) - 1:+.5f}"
+    return ""
 
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("--burnish", default=str(ROOT / "build/burnish"))
 parser.add_argument("--record", default=str(ROOT / "runs/records/o_ring.csv"))
 parser.add_argument("--nu", nargs="*", type=float, default=NUS)
+parser.add_argument("--on", action="store_true", help="goes on with a record: runs that it has are not made again")
 args = parser.parse_args()
-with open(args.record, "w", newline="") as file:
-    table = csv.DictWriter(file, COLUMNS)
-    table.writeheader()
-    limits = {}
-    for way in WAYS:
-        for nu in args.nu:
-            if LIMITS[way] == way:
-                fine = run(args.burnish, way, *FINE, nu)
-                limits[way, nu] = fine["probes"]["force"]
-                table.writerow(row(way, *FINE, nu, fine, limits[way, nu]))
-            for element, (_, _, sizes) in ELEMENTS.items():
-                for n in sizes if way != PRESSED else PRESSED_SIZES[element]:
-                    limit = limits.get((LIMITS[way], nu))
-                    values = row(way, element, n, nu, run(args.burnish, way, element, n, nu), limit)
-                    table.writerow(values)
-                    file.flush()
-                    print(", ".join(f"{key} {value}" for key, value in values.items()), flush=True)
+known = {}
+if args.on:
+    with open(args.record) as file:
+        for row in csv.DictReader(file):
+            if row["status"] != "stopped":
+                known[row["squeeze"], row["element"], int(row["n"]), float(row["nu"])] = row
+rows = []
+for case in cases(args.nu):
+    row = dict(zip(COLUMNS, case))
+    row.update(known.get(case) or figures(run(args.burnish, *case)))
+    rows.append(row)
+    row["error"] = error(rows, row)
+    if case not in known:
+        print(", ".join(f"{key} {value}" for key, value in row.items()), flush=True)
+    with open(args.record + ".part", "w", newline="") as file:
+        table = csv.DictWriter(file, COLUMNS)
+        table.writeheader()
+        table.writerows(rows)
+pathlib.Path(args.record + ".part").replace(args.record)
