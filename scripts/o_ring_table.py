@@ -27,7 +27,7 @@ WAYS = {  # name -> overrides, whose force is compared with that of the first wa
     "20 % in one step": ("stepping={control: fixed, initial: 1}", )
 }
 PRESSED = "20 %, then 10 MPa"
-PRESSED_SIZES = {"quad4": (24, ), "quad9": (12, ), "tri6": (12, )}
+PRESSED_SIZES = {"quad4": (24, ), "quad9": (10, 12), "tri6": (12, )}
 WAYS[PRESSED] = ()
 LIMITS = {"20 %": "20 %", "30 %": "30 %", "20 % in one step": "20 %", PRESSED: None}
 NUS = (0.49, 0.499, 0.4999, 0.5)
