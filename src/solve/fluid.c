@@ -46,6 +46,7 @@ typedef struct {
   PetscBool        has_from, has_to;
   FluidState       now, accepted;
   char            *laid;                           /* n: where the fluid's load lies: wet places and those ahead */
+  PetscBool        shut;                           /* no place was wet any more in this step */
   PetscReal       *area[FLUID_FORMS];              /* n_nodes: present area of the surface around each node */
   PetscReal       *wet, *pressing, *pressing_form; /* n_nodes: of the state, by local node */
   PetscReal       *nodes, *points;                 /* shares for the load, see LoadsSetShares() */
@@ -291,10 +292,12 @@ static PetscErrorCode LayAhead(Fluid *fluid)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves one fluid to where it can be at the present solution. *moved: it is where its load did not lie. */
+/* Moves one fluid to where it can be at the present solution. *moved: it is where its load did not lie. A load of which
+   no place is wet any more is taken away, once in a step. */
 static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, PetscReal t, PetscBool *moved)
 {
-  const int n = fluid->surface->graph.n;
+  const int n   = fluid->surface->graph.n;
+  PetscInt  wet = 0, laid = 0;
   char     *open;
   int      *stack;
 
@@ -305,7 +308,15 @@ static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, P
   PassageFlood(&fluid->surface->graph, open, fluid->from, stack, fluid->now.wet);
   PetscCall(PetscFree2(open, stack));
   *moved = PETSC_FALSE;
-  for (int i = 0; i < n; i++) *moved = (PetscBool)(*moved || (fluid->now.wet[i] && !fluid->laid[i]));
+  for (int i = 0; i < n; i++) {
+    *moved = (PetscBool)(*moved || (fluid->now.wet[i] && !fluid->laid[i]));
+    wet += fluid->now.wet[i];
+    laid += fluid->laid[i];
+  }
+  if (!wet && laid && !fluid->shut) {
+    fluid->shut = *moved = PETSC_TRUE;
+    PetscCall(PetscArrayzero(fluid->laid, n));
+  }
   if (!*moved) PetscCall(FindBarrier(fluid));
   if (!*moved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LayAhead(fluid));
@@ -635,6 +646,7 @@ PetscErrorCode FluidBegin(Fluids fluids, const PetscReal *u, PetscReal t)
     Fluid *fluid = &fluids->fluid[i];
 
     PetscCall(StateCopy(fluid->surface->graph.n, &fluid->accepted, &fluid->now));
+    fluid->shut = PETSC_FALSE;
     PetscCall(PetscArrayzero(fluid->laid, fluid->surface->graph.n));
     PetscCall(LayAhead(fluid));
     PetscCall(Apply(fluids, fluid, u, t));

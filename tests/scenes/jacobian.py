@@ -106,6 +106,12 @@ CASES["line contact, mu over the pressure, cohesion"] = (RUNS / "hertz_line.yaml
 CASES["follower pressure, springs"] = (SCENES / "lame.yaml",
                                        [*FOLLOWER, "supports.2={surface: outer, spring: [80, 300]}"])
 
+# The fluid pushes the squeezed ring against the outer wall, and comes up to its contact with floor and lid.
+CASES["rubber ring, fluid up to the contact"] = (RUNS / "o_ring_pressure.yaml", [
+    "mesh.parameters.n=4", "loads.0.pressure=1", "stepping={control: fixed, initial: 0.5}",
+    "contact.0.penalty.scale=1", "contact.1.penalty.scale=1"
+])
+
 args = arguments()
 check = Check()
 for name, (scene, overrides) in CASES.items():
