@@ -13,7 +13,7 @@ static const double largest_kappa = 1e4;
    that the projection does not see are unstable from about p = mu + part on, although the solid is stable: bonded
    bushes stop there. Up to 20 shear moduli full integration does not lock noticeably, see `auto` in scene.c; at the
    limit of fine meshes the part makes no difference. A tenth keeps moderate moduli projected too. */
-static const double largest_local = 20, local_share = 0.1;
+static const double largest_local = 1, local_share = 0.1;
 
 const char *const Formulations[] = {"full", "enhanced", "fbar", "mixed", NULL};
 

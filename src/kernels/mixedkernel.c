@@ -1,11 +1,17 @@
 /* Mixed elements, the formulation `mixed`. The pressure has its own shape functions in every element, so that solids
    that keep their volume nearly or exactly do not lock, and their pressures do not oscillate.
 
-   The energy of an element is int W_s dV + lambda/2 int (Pi ln J)^2 dV. W_s is the energy of the law with a small part
-   of the modulus of the volume, lambda is the rest of that modulus (VolumeModuli), and Pi the projection on the
-   pressure's shape functions (least squares over the reference volume). lambda Pi ln J is the pressure. This is the
-   mixed method with displacements and pressures as unknowns; the pressures of an element are condensed in it. In small
-   strains the trace of the strain takes the place of ln J.
+   The energy of an element is int W_s dV + lambda/2 int (ln j)^2 dV with j = 1 + Pi (J - 1). W_s is the energy of the
+   law with a small part of the modulus of the volume, lambda is the rest of that modulus (VolumeModuli), and Pi the
+   projection on the pressure's shape functions (least squares over the reference volume). The pressure is p =
+   Pi (lambda ln j / j). This is the mixed method with displacements, pressures and volumes as unknowns; the last two
+   are condensed in the element. In small strains the trace of the strain takes the place of J - 1, and j - 1 that of
+   ln j.
+
+   The projection is of J and not of ln J. J has no second variation that integrates to more than boundary terms, so
+   that a pressure neither stiffens nor softens changes of the volume inside an element that the projection does not
+   see. With ln J a mean tension above the shear modulus makes them unstable, although the solid is stable; bonded
+   bushes stop there.
 
    Pressures are constant in quad4 and hex8. They are linear in quad9, hex27, tri6 and tet10, in reference coordinates,
    not in those of the parent element: on general quadrilaterals only the former converge at the full order (Arnold,
@@ -14,8 +20,8 @@
    condensed in the element, as enhancedkernel.c does with its modes. Every call starts from no bubble, so that energy,
    force and tangent are functions of u alone.
 
-   Where lambda is large or infinite, a part kappa Pi ln J of the pressure and a multiplier make up the pressure. The
-   caller changes the multiplier until the pressure is right (augmented Lagrangian).
+   Where lambda is large or infinite, a part Pi (kappa ln j / j) of the pressure and a multiplier make up the pressure.
+   The caller changes the multiplier until the pressure is right (augmented Lagrangian).
 
    The geometric part of the tangent may have pressures that are extrapolated from an earlier state
    (stressreference.h): theta there and its linear change on the way, with the bubble's.
@@ -58,7 +64,8 @@ typedef struct {
   Lanes       shape[ELEMENT_MAX_POINTS][MIXED_PRESSURES]; /* orthonormal shape functions of the pressure */
   Lanes       centre[3];                                  /* about which they are linear */
   Lanes       L[MIXED_PRESSURES][MIXED_PRESSURES];        /* L L^T: matrix of their products before; 1/L_kk at k k */
-  Lanes       theta[MIXED_PRESSURES], p[MIXED_PRESSURES]; /* of ln J and of the pressure */
+  Lanes       theta[MIXED_PRESSURES], p[MIXED_PRESSURES]; /* of J - 1 and of the pressure */
+  Lanes       C[MIXED_PRESSURES][MIXED_PRESSURES];        /* derivatives of p by theta */
   Lanes       geometric[MIXED_PRESSURES];                 /* of the pressure in the tangent's geometric part */
   Lanes       b[MAX_BUBBLE];
 } Mixed;
@@ -213,40 +220,29 @@ LANES_INLINE void Prepare(const BatchCall *call, const Rule *rule, const int n, 
   PressureShapes(points, modes, x);
 }
 
-/* Computes J - 1 and ln J at a point; with small strains both are the trace. */
-LANES_INLINE void Dilatations(const BatchCall *call, const Lanes H[9], Lanes *dilatation, Lanes *log_J)
+/* Computes J - 1 at a point; with small strains it is the trace. */
+LANES_INLINE void Dilatation(const BatchCall *call, const Lanes H[9], Lanes *dilatation)
 {
-  if (!call->finite) {
-    *dilatation = *log_J = H[0] + H[4] + H[8];
-    return;
-  }
-  MaterialDilatation(H, dilatation);
-  for (int lane = 0; lane < LANES; lane++) {
-    const double d = (*dilatation)[lane];
-
-    (*log_J)[lane] = log1p(d > MATERIAL_LEAST_J - 1 ? d : MATERIAL_LEAST_J - 1);
-  }
+  if (call->finite)
+    MaterialDilatation(H, dilatation);
+  else
+    *dilatation = H[0] + H[4] + H[8];
 }
 
-/* Computes G = F^-T, the derivative of ln J by F; with small strains it is the unit tensor. */
-LANES_INLINE void DilatationGradient(const BatchCall *call, const Lanes H[9], const Lanes *dilatation, Lanes G[9])
+LANES_INLINE Lanes LogVolume(Lanes dilatation)
 {
-  Lanes F[9], inverse;
+  for (int lane = 0; lane < LANES; lane++) dilatation[lane] = log1p(FlooredDilatation(dilatation[lane]));
+  return dilatation;
+}
 
-  if (!call->finite) {
-    for (int r = 0; r < 9; r++) G[r] = (Lanes){0} + (double)(r % 4 == 0);
+/* Computes the derivative G of J by F, the cofactors; with small strains it is the unit tensor. */
+LANES_INLINE void DilatationGradient(const BatchCall *call, const Lanes H[9], Lanes G[9])
+{
+  if (call->finite) {
+    Cofactors(H, G);
     return;
   }
-  for (int r = 0; r < 9; r++) F[r] = H[r] + (double)(r % 4 == 0);
-  for (int lane = 0; lane < LANES; lane++)
-    inverse[lane] = 1 / (1 + (*dilatation)[lane] > MATERIAL_LEAST_J ? 1 + (*dilatation)[lane] : MATERIAL_LEAST_J);
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) {
-      const int i1 = 3 * ((i + 1) % 3), i2 = 3 * ((i + 2) % 3), j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-
-      G[3 * i + j] = (F[i1 + j1] * F[i2 + j2] - F[i1 + j2] * F[i2 + j1]) * inverse;
-    }
-  }
+  for (int r = 0; r < 9; r++) G[r] = (Lanes){0} + (double)(r % 4 == 0);
 }
 
 /* Adds the bubble to a displacement gradient. */
@@ -266,17 +262,6 @@ LANES_INLINE Lanes Multiplier(const BatchCall *call, int k)
   return multiplier;
 }
 
-/* Computes the pressures from theta, and adds the energy of the volume to W. */
-LANES_INLINE void Pressures(const BatchCall *call, const int modes, Mixed *x, Lanes *W)
-{
-  for (int k = 0; k < modes; k++) {
-    const Lanes multiplier = Multiplier(call, k);
-
-    x->p[k] = multiplier + call->kappa * x->theta[k];
-    *W += x->theta[k] * (multiplier + 0.5 * call->kappa * x->theta[k]);
-  }
-}
-
 LANES_INLINE Lanes PressureAt(const int modes, const Lanes p[MIXED_PRESSURES], const Lanes shape[MIXED_PRESSURES])
 {
   Lanes sum = p[0] * shape[0];
@@ -285,13 +270,43 @@ LANES_INLINE Lanes PressureAt(const int modes, const Lanes p[MIXED_PRESSURES], c
   return sum;
 }
 
+/* Computes the pressures from theta, their derivatives by theta, and the energy of the volume. With small strains it is
+   a square of theta. */
+LANES_INLINE void Pressures(const BatchCall *call, const int points, const int modes, Mixed *x, Lanes *W)
+{
+  *W = (Lanes){0};
+  for (int k = 0; k < modes; k++) {
+    x->p[k] = Multiplier(call, k);
+    *W += x->theta[k] * x->p[k];
+    for (int l = 0; l < modes; l++) x->C[k][l] = (Lanes){0};
+    if (call->finite) continue;
+    x->p[k] += call->kappa * x->theta[k];
+    x->C[k][k] = call->kappa;
+    *W += 0.5 * call->kappa * x->theta[k] * x->theta[k];
+  }
+  for (int q = 0; q < points && call->finite; q++) {
+    const Lanes dilatation = PressureAt(modes, x->theta, x->shape[q]), log_j = LogVolume(dilatation);
+    const Lanes weight = call->kappa * x->volume[q];
+    Lanes       inverse;
+
+    for (int lane = 0; lane < LANES; lane++) inverse[lane] = 1 / (1 + FlooredDilatation(dilatation[lane]));
+    *W += 0.5 * weight * log_j * log_j;
+    for (int k = 0; k < modes; k++) {
+      const Lanes part = weight * x->shape[q][k] * inverse;
+
+      x->p[k] += part * log_j;
+      for (int l = 0; l < modes; l++) x->C[k][l] += part * x->shape[q][l] * inverse * (1 - log_j);
+    }
+  }
+}
+
 /* The equations of the bubble: energy W of the element, force f and tangent K of the inner node. size is a sum of
    absolute values that W is a sum of, for its round-off. */
 typedef struct {
   Lanes W, size, f[MAX_BUBBLE], K[MAX_BUBBLE][MAX_BUBBLE];
 } BubbleSystem;
 
-/* What ln J adds to them: first and second derivatives of theta by the bubble */
+/* What J adds to them: first and second derivatives of theta by the bubble */
 typedef struct {
   Lanes first[MIXED_PRESSURES][MAX_BUBBLE], second[MIXED_PRESSURES][MAX_BUBBLE][MAX_BUBBLE];
 } BubbleDilatation;
@@ -317,23 +332,24 @@ LANES_INLINE void AddBubbleShape(const int dim, const int hoop, const Lanes g[3]
   }
 }
 
-/* Adds a point to the derivatives of theta. */
+/* Adds a point to the derivatives of theta. J is linear in the bubble but for the hoop stretch. */
 LANES_INLINE void AddBubbleDilatation(const int modes, const int dim, const int hoop, int finite, const Lanes g[3],
-                                      const Lanes *volume, const Lanes shape[MIXED_PRESSURES], const Lanes G[9],
-                                      BubbleDilatation *d)
+                                      const Lanes *volume, const Lanes shape[MIXED_PRESSURES], const Lanes H[9],
+                                      const Lanes G[9], BubbleDilatation *d)
 {
-  Lanes v[MAX_BUBBLE], ring = hoop ? G[TENSOR_HOOP] * g[2] : (Lanes){0};
+  Lanes v[MAX_BUBBLE], ring = {0};
 
   for (int i = 0; i < dim; i++) {
     v[i] = G[3 * i] * g[0];
     for (int m = 1; m < dim; m++) v[i] += G[3 * i + m] * g[m];
   }
+  if (hoop && finite) ring = g[2] / (1 + H[TENSOR_HOOP]);
   for (int k = 0; k < modes; k++) {
     const Lanes weight = *volume * shape[k];
 
     for (int i = 0; i < dim; i++) {
-      d->first[k][i] += weight * (i == 0 ? v[0] + ring : v[i]);
-      for (int j = i; j < dim && finite; j++) d->second[k][i][j] -= weight * (v[i] * v[j] + (i + j == 0) * ring * ring);
+      d->first[k][i] += weight * (hoop && i == 0 ? v[0] + G[TENSOR_HOOP] * g[2] : v[i]);
+      if (hoop) d->second[k][0][i] += weight * ring * (i == 0 ? 2 * v[0] : v[i]);
     }
   }
 }
@@ -341,33 +357,39 @@ LANES_INLINE void AddBubbleDilatation(const int modes, const int dim, const int 
 LANES_INLINE void SetBubbleSystem(const BatchCall *call, const int points, const int modes, const int dim,
                                   const int hoop, Mixed *x, BubbleSystem *s, BubbleDilatation *d)
 {
+  Lanes volume;
+
   memset(s, 0, sizeof(*s));
   memset(d, 0, sizeof(*d));
   for (int k = 0; k < modes; k++) x->theta[k] = (Lanes){0};
   for (int q = 0; q < points; q++) {
-    Lanes H[9], P[9], G[9], A[MATERIAL_TANGENT_SIZE], dilatation, log_J, energy;
+    Lanes H[9], P[9], G[9], A[MATERIAL_TANGENT_SIZE], dilatation, energy;
 
     for (int r = 0; r < 9; r++) H[r] = x->H[q][r];
     AddBubble(dim, hoop, x->b, x->bubble[q], H);
-    Dilatations(call, H, &dilatation, &log_J);
+    Dilatation(call, H, &dilatation);
     PointLaw(call, q, H, &dilatation, &energy, P, A);
-    DilatationGradient(call, H, &dilatation, G);
+    DilatationGradient(call, H, G);
     s->W += x->volume[q] * energy;
-    for (int k = 0; k < modes; k++) x->theta[k] += x->volume[q] * x->shape[q][k] * log_J;
+    for (int k = 0; k < modes; k++) x->theta[k] += x->volume[q] * x->shape[q][k] * dilatation;
     AddBubbleShape(dim, hoop, x->bubble[q], &x->volume[q], P, A, s);
-    AddBubbleDilatation(modes, dim, hoop, call->finite, x->bubble[q], &x->volume[q], x->shape[q], G, d);
+    AddBubbleDilatation(modes, dim, hoop, call->finite, x->bubble[q], &x->volume[q], x->shape[q], H, G, d);
   }
-  s->size = s->W;
-  Pressures(call, modes, x, &s->W);
+  Pressures(call, points, modes, x, &volume);
+  s->size = s->W + volume;
+  s->W += volume;
   for (int k = 0; k < modes; k++) {
     const Lanes work = x->theta[k] * Multiplier(call, k);
+    Lanes       change[MAX_BUBBLE]; /* of the pressure by the bubble */
 
-    for (int lane = 0; lane < LANES; lane++) s->size[lane] += fabs(work[lane]);
-    s->size += 0.5 * call->kappa * x->theta[k] * x->theta[k];
+    for (int lane = 0; lane < LANES; lane++) s->size[lane] += fabs(work[lane]) - work[lane];
+    for (int i = 0; i < dim; i++) {
+      change[i] = (Lanes){0};
+      for (int l = 0; l < modes; l++) change[i] += x->C[k][l] * d->first[l][i];
+    }
     for (int i = 0; i < dim; i++) {
       s->f[i] += x->p[k] * d->first[k][i];
-      for (int j = i; j < dim; j++)
-        s->K[i][j] += call->kappa * d->first[k][i] * d->first[k][j] + x->p[k] * d->second[k][i][j];
+      for (int j = i; j < dim; j++) s->K[i][j] += d->first[k][i] * change[j] + x->p[k] * d->second[k][i][j];
     }
   }
 }
@@ -457,11 +479,20 @@ LANES_INLINE void SolveBubble(const BatchCall *call, const int points, const int
   }
 }
 
-/* Adds second derivatives of ln J times the pressure to a tangent of the law. */
-LANES_INLINE void AddGeometry(const Lanes *pressure, const Lanes G[9], Lanes A[MATERIAL_TANGENT_SIZE])
+/* Adds second derivatives of J times the pressure to a tangent of the law: those of J by F_iI and F_kK are components
+   of F. */
+LANES_INLINE void AddGeometry(const Lanes *pressure, const Lanes H[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
-  for (int r = 0, k = 0; r < 9; r++) {
-    for (int s = r; s < 9; s++, k++) A[k] -= *pressure * G[3 * (r / 3) + s % 3] * G[3 * (s / 3) + r % 3];
+  for (int r = 0; r < 9; r++) {
+    for (int s = r + 1; s < 9; s++) {
+      const int i = r / 3, k = s / 3, I = r % 3, K = s % 3, rest = 3 * (3 - i - k) + 3 - I - K;
+
+      if (i == k || I == K) continue;
+      if (((k - i) % 3 + 3) % 3 == ((K - I) % 3 + 3) % 3)
+        A[MATERIAL_TANGENT_INDEX(r, s)] += *pressure * (H[rest] + (double)(rest % 4 == 0));
+      else
+        A[MATERIAL_TANGENT_INDEX(r, s)] -= *pressure * (H[rest] + (double)(rest % 4 == 0));
+    }
   }
 }
 
@@ -493,21 +524,23 @@ LANES_INLINE void FollowBubble(const BatchCall *call, const int points, const in
   for (int i = 0; i < dim; i++) s.f[i] = (Lanes){0};
   for (int q = 0; q < points; q++) {
     const Lanes pressure = PressureAt(modes, y->p, y->shape[q]);
-    Lanes       H[9], P[9], G[9], A[MATERIAL_TANGENT_SIZE], dH[9], dilatation, log_J;
+    Lanes       H[9], P[9], A[MATERIAL_TANGENT_SIZE], dH[9], dilatation;
 
     for (int r = 0; r < 9; r++) {
       H[r]  = y->H[q][r];
       dH[r] = x->H[q][r] - y->H[q][r];
     }
     AddBubble(dim, hoop, y->b, y->bubble[q], H);
-    Dilatations(call, H, &dilatation, &log_J);
+    Dilatation(call, H, &dilatation);
     PointLaw(call, q, H, &dilatation, NULL, P, A);
-    DilatationGradient(call, H, &dilatation, G);
-    AddGeometry(&pressure, G, A);
+    AddGeometry(&pressure, H, A);
     AddBubbleChange(dim, hoop, y->bubble[q], &y->volume[q], A, dH, s.f);
   }
   for (int k = 0; k < modes; k++) {
-    for (int i = 0; i < dim; i++) s.f[i] += call->kappa * change[k] * d.first[k][i];
+    Lanes pressure = y->C[k][0] * change[0];
+
+    for (int l = 1; l < modes; l++) pressure += y->C[k][l] * change[l];
+    for (int i = 0; i < dim; i++) s.f[i] += pressure * d.first[k][i];
   }
   SolveBubbleSystem(dim, &s, follow);
   for (int k = 0; k < modes; k++) {
@@ -521,7 +554,7 @@ LANES_INLINE void ReferencePressures(const BatchCall *call, const Rule *rule, co
                                      const int points, const int modes, const int dim, const int hoop, Mixed *x)
 {
   Mixed y;
-  Lanes change[MIXED_PRESSURES];
+  Lanes change[MIXED_PRESSURES], W;
 
   for (int i = 0; i < MAX_BUBBLE; i++) y.b[i] = (Lanes){0};
   for (int q = 0; q < points; q++) {
@@ -533,22 +566,23 @@ LANES_INLINE void ReferencePressures(const BatchCall *call, const Rule *rule, co
   if (bubble) SolveBubble(call, points, modes, dim, hoop, &y);
   for (int k = 0; k < modes; k++) y.theta[k] = change[k] = (Lanes){0};
   for (int q = 0; q < points; q++) {
-    Lanes H[9], G[9], dilatation, log_J, slope = {0};
+    Lanes H[9], G[9], dilatation, slope = {0};
 
     for (int r = 0; r < 9; r++) H[r] = y.H[q][r];
     if (bubble) AddBubble(dim, hoop, y.b, y.bubble[q], H);
-    Dilatations(call, H, &dilatation, &log_J);
-    DilatationGradient(call, H, &dilatation, G);
+    Dilatation(call, H, &dilatation);
+    DilatationGradient(call, H, G);
     for (int r = 0; r < 9; r++) slope += G[r] * (x->H[q][r] - y.H[q][r]);
     for (int k = 0; k < modes; k++) {
-      y.theta[k] += y.volume[q] * y.shape[q][k] * log_J;
+      y.theta[k] += y.volume[q] * y.shape[q][k] * dilatation;
       change[k] += y.volume[q] * y.shape[q][k] * slope;
     }
   }
-  for (int k = 0; k < modes; k++) x->geometric[k] = Multiplier(call, k) + call->kappa * y.theta[k];
+  Pressures(call, points, modes, &y, &W);
+  for (int k = 0; k < modes; k++) x->geometric[k] = y.p[k];
   if (bubble) FollowBubble(call, points, modes, dim, hoop, x, &y, change);
   for (int k = 0; k < modes; k++) {
-    x->geometric[k] += call->kappa * call->rate * change[k];
+    for (int l = 0; l < modes; l++) x->geometric[k] += call->rate * y.C[k][l] * change[l];
     for (int lane = 0; lane < LANES && call->held; lane++) {
       if (call->rest[lane] > 0) x->geometric[k][lane] = Multiplier(call, k)[lane] / call->rest[lane];
     }
@@ -562,25 +596,27 @@ LANES_INLINE void SetPressures(const BatchCall *call, const int n, const int bub
   for (int k = 0; k < modes; k++) x->theta[k] = (Lanes){0};
   for (int k = 0; k < dim && bubble; k++) LANE(x->u, n * dim + k) = x->b[k];
   for (int q = 0; q < points; q++) {
-    Lanes dilatation, log_J;
+    Lanes dilatation;
 
     if (bubble) AddBubble(dim, hoop, x->b, x->bubble[q], x->H[q]);
-    Dilatations(call, x->H[q], &dilatation, &log_J);
+    Dilatation(call, x->H[q], &dilatation);
     KeepLeastJ(call, &dilatation);
-    for (int k = 0; k < modes; k++) x->theta[k] += x->volume[q] * x->shape[q][k] * log_J;
+    for (int k = 0; k < modes; k++) x->theta[k] += x->volume[q] * x->shape[q][k] * dilatation;
   }
-  *W = (Lanes){0};
-  Pressures(call, modes, x, W);
+  Pressures(call, points, modes, x, W);
 }
 
-/* Adds kappa t t^T to the tangent, for the derivatives t of every theta by the displacements. */
-LANES_INLINE void AddDilatationTangent(const int dofs, const int modes, const Lanes *kappa,
+/* Adds t C t^T to the tangent, for the derivatives t of every theta by the displacements. */
+LANES_INLINE void AddDilatationTangent(const int dofs, const int modes, const Mixed *x,
                                        double t[MIXED_PRESSURES][ELEMENT_MAX_NODES * 3 * KERNEL_LANES], double *K)
 {
   for (int r = 0; r < dofs; r++) {
     Lanes row[MIXED_PRESSURES];
 
-    for (int k = 0; k < modes; k++) row[k] = *kappa * CONST_LANE(t[k], r);
+    for (int k = 0; k < modes; k++) {
+      row[k] = x->C[k][0] * CONST_LANE(t[0], r);
+      for (int l = 1; l < modes; l++) row[k] += x->C[k][l] * CONST_LANE(t[l], r);
+    }
     for (int s = r; s < dofs; s++) {
       Lanes value = LANE(K, r * dofs + s);
 
@@ -621,7 +657,7 @@ LANES_INLINE void StoreOutput(const BatchCall *call, const int n, const int bubb
   const Rule *rule = GetRule(call->e, 1);
 
   for (int q = 0; q < rule->points; q++) {
-    Lanes H[9], phi[MIXED_PRESSURES], volume, dilatation, log_J;
+    Lanes H[9], phi[MIXED_PRESSURES], volume, dilatation;
 
     PointGradients(n + bubble, dim, hoop, rule->N[q], rule->dN[q], rule->weight[q], 0, x->X, &x->c, &volume);
     PointDisplacementGradient(n + bubble, dim, hoop, 0, x->u, &x->c, H);
@@ -629,8 +665,12 @@ LANES_INLINE void StoreOutput(const BatchCall *call, const int n, const int bubb
     if (!call->pressure) continue;
     Monomials(n + bubble, modes, dim, rule->N[q], x, phi);
     Orthonormal(modes, x, phi);
-    Dilatations(call, H, &dilatation, &log_J);
-    LANE(call->pressure, q) = PressureAt(modes, x->p, phi) + call->constants[0] * log_J;
+    Dilatation(call, H, &dilatation);
+    LANE(call->pressure, q) = PressureAt(modes, x->p, phi);
+    if (call->finite)
+      LANE(call->pressure, q) = (1 + dilatation) * CONST_LANE(call->pressure, q) + call->constants[0] * LogVolume(dilatation);
+    else
+      LANE(call->pressure, q) += call->constants[0] * dilatation;
   }
 }
 
@@ -643,17 +683,17 @@ LANES_INLINE void EvaluateChunk(const BatchCall *call, const int modes, const in
   for (int at = 0; at < count; at++) {
     const int   q        = first + at;
     const Lanes pressure = PressureAt(modes, x->p, x->shape[q]);
-    Lanes       P[9], G[9], D[9], dilatation, log_J, energy, geometric;
+    Lanes       P[9], G[9], D[9], dilatation, energy, geometric;
 
-    Dilatations(call, x->H[q], &dilatation, &log_J);
+    Dilatation(call, x->H[q], &dilatation);
     PointLaw(call, q, x->H[q], &dilatation, call->W ? &energy : NULL, P, tangent ? x->c.A[at] : NULL);
     if (call->W) *W += x->volume[q] * energy;
-    DilatationGradient(call, x->H[q], &dilatation, G);
+    DilatationGradient(call, x->H[q], G);
     for (int r = 0; r < 9; r++) P[r] = x->volume[q] * (P[r] + pressure * G[r]);
     if (f) AddForce(nodes, dim, hoop, at, &x->c, P, f);
     if (!tangent) continue;
     geometric = PressureAt(modes, x->geometric, x->shape[q]);
-    if (call->finite) AddGeometry(&geometric, G, x->c.A[at]);
+    if (call->finite) AddGeometry(&geometric, x->H[q], x->c.A[at]);
     for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x->c.A[at][k] *= x->volume[q];
     for (int k = 0; k < modes; k++) {
       for (int r = 0; r < 9; r++) D[r] = x->volume[q] * x->shape[q][k] * G[r];
@@ -698,9 +738,9 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int bubble, co
   }
   if (call->W) LANE(call->W, 0) = W;
   for (int i = 0; i < n * dim && call->f; i++) LANE(call->f, i) = LANE(f, i);
-  if (K) AddDilatationTangent(dofs, modes, &call->kappa, t, K);
+  if (K) AddDilatationTangent(dofs, modes, &x, t, K);
   if (K && bubble) Condense(n * dim, dim, full, call->K);
-  for (int k = 0; k < modes && call->theta; k++) LANE(call->theta, k) = x.theta[k];
+  for (int k = 0; k < modes && call->theta; k++) LANE(call->theta, k) = (x.p[k] - Multiplier(call, k)) / call->kappa;
   if (call->H) StoreOutput(call, n, bubble, modes, dim, hoop, &x);
 }
 
