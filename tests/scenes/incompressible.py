@@ -126,8 +126,12 @@ def choice():
          "bodies.0.material.nu=0.48", status=0)
     said("another choice is respected", "effects  small strain, mean dilatation\n", "bodies.0.material.nu=0.48",
          "bodies.0.formulation=fbar", status=0)
-    said("triangles of first order lock", "mesh.order: 2 does not", "bodies.0.material.nu=0.499",
-         "mesh.parameters.simplex=1", status=0)
+    locking = ("bodies.0.material.nu=0.499", "mesh.parameters.simplex=1")
+    said("triangles of first order lock", "mesh.order: 2 does not", *locking, status=0)
+    said("they are not called mixed",
+         "chosen   formulation: full for body 'ring', nu = 0.499: there are no mixed tri3 and tet4; they lock\n", *locking,
+         status=0)
+    said("the last screen says so", "advice   body 'ring' has nu = 0.499 in elements of first order", *locking, status=0)
     said("triangles of first order are refused at nu = 0.5",
          "material.nu: 0.5 needs formulation: mixed, which is not for tri3 and tet4; cell", "bodies.0.material.nu=0.5",
          "mesh.parameters.simplex=1")
