@@ -668,7 +668,8 @@ LANES_INLINE void StoreOutput(const BatchCall *call, const int n, const int bubb
     Dilatation(call, H, &dilatation);
     LANE(call->pressure, q) = PressureAt(modes, x->p, phi);
     if (call->finite)
-      LANE(call->pressure, q) = (1 + dilatation) * CONST_LANE(call->pressure, q) + call->constants[0] * LogVolume(dilatation);
+      LANE(call->pressure, q) =
+        (1 + dilatation) * CONST_LANE(call->pressure, q) + call->constants[0] * LogVolume(dilatation);
     else
       LANE(call->pressure, q) += call->constants[0] * dilatation;
   }

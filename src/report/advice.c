@@ -129,12 +129,12 @@ static double BodyLocks(const SceneBody *body, char *text)
 {
   if (!body->locks) return 0;
   if (MaterialGetLaw(body->material.law)->plastic)
-    snprintf(text, ADVICE_TEXT, "body '%s' flows in elements of first order with full integration, which lock (too stiff)",
-             body->name);
+    snprintf(text, ADVICE_TEXT,
+             "body '%s' flows in elements of first order with full integration, which lock (too stiff)", body->name);
   else
     snprintf(text, ADVICE_TEXT,
-             "body '%s' has nu = %g in elements of first order with full integration, which lock (too stiff)", body->name,
-             body->material.nu);
+             "body '%s' has nu = %g in elements of first order with full integration, which lock (too stiff)",
+             body->name, body->material.nu);
   return 1;
 }
 

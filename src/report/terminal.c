@@ -133,8 +133,8 @@ static void PrintChosen(Terminal terminal)
       printf("chosen   formulation: mixed for body '%s', nu = %g%s\n", body->name, body->material.nu,
              body->locks ? "; full for its tri3 and tet4, which lock" : "");
     else if (body->locks)
-      printf("chosen   formulation: full for body '%s', nu = %g: there are no mixed tri3 and tet4; they lock\n", body->name,
-             body->material.nu);
+      printf("chosen   formulation: full for body '%s', nu = %g: there are no mixed tri3 and tet4; they lock\n",
+             body->name, body->material.nu);
   }
 }
 

@@ -381,10 +381,10 @@ static void test_kernels(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_length), cmocka_unit_test(test_locking), cmocka_unit_test(test_foretold),
-                                     cmocka_unit_test(test_pairs),  cmocka_unit_test(test_steps),
-                                     cmocka_unit_test(test_agree),  cmocka_unit_test(test_order),
-                                     cmocka_unit_test(test_sides),  cmocka_unit_test(test_kernels)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_length), cmocka_unit_test(test_locking), cmocka_unit_test(test_foretold),
+    cmocka_unit_test(test_pairs),  cmocka_unit_test(test_steps),   cmocka_unit_test(test_agree),
+    cmocka_unit_test(test_order),  cmocka_unit_test(test_sides),   cmocka_unit_test(test_kernels)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
