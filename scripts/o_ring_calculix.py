@@ -1,7 +1,8 @@
-"""The O-ring of runs/o_ring.yaml in Burnish and in CalculiX (ccx, Debian's package calculix-ccx) side by side, on one mesh
-of second-order quadrilaterals: mixed quad9, which has an inner node more, and CAX8R, reduced integration. CalculiX has no
-mixed elements. Both laws are neo-Hooke's of the shape with K/2 (ln J)^2 in Burnish and K/2 (J - 1)^2 in CalculiX. Its contact is surface to surface, penalty, on a row of fixed elements along the groove and one that comes
-down as the lid. Prints a table and writes runs/records/o_ring_calculix.csv. CPU seconds are of the process that solves.
+"""The O-ring of runs/o_ring.yaml in Burnish and in CalculiX (ccx, Debian's package calculix-ccx) side by side, on one
+mesh of second-order quadrilaterals: mixed quad9, which has an inner node more, and CAX8R, reduced integration. CalculiX
+has no mixed elements. Both laws are neo-Hooke's of the shape with K/2 (ln J)^2 in Burnish and K/2 (J - 1)^2 in CalculiX.
+Its contact is surface to surface, penalty, on a row of fixed elements along the groove and one that comes down as the
+lid. Prints a table and writes runs/records/o_ring_calculix.csv. CPU seconds are of the process that solves.
     build/venv/bin/python scripts/o_ring_calculix.py [--burnish build/burnish] [--ccx ccx] [--stiffness 200]
 The stiffness of CalculiX's contact is that many times Young's modulus over 1 mm. With 20 the force is up to 5 % lower. A
 run of CalculiX is stopped after --limit CPU seconds."""
@@ -32,8 +33,8 @@ def groove():
     a, b = (MEAN - WIDTH) / 2, (MEAN + WIDTH) / 2
 
     def arc(x, y, radius, start, end, n):
-        return [(x + radius * math.cos(start + (end - start) * i / n), y + radius * math.sin(start + (end - start) * i / n))
-                for i in range(n + 1)]
+        angles = [start + (end - start) * i / n for i in range(n + 1)]
+        return [(x + radius * math.cos(angle), y + radius * math.sin(angle)) for angle in angles]
 
     points = [(a - 1, DEPTH)] + arc(a - EDGE, DEPTH - EDGE, EDGE, math.pi / 2, 0, 4)
     points += arc(a + FOOT, FOOT, FOOT, math.pi, 1.5 * math.pi, 6)
@@ -68,7 +69,8 @@ def deck(results, nu, increment, stiffness):
     used = sorted(set(cells.ravel()))
     lines = ["*NODE", *(f"{k + 1}, {', '.join(f'{x:.12g}' for x in nodes[k])}" for k in used),
              "*ELEMENT, TYPE=CAX8R, ELSET=ring",
-             *(f"{n + 1}, {', '.join(str(k + 1) for k in cell)}" for n, cell in enumerate(cells)), "*SURFACE, NAME=skin"]
+             *(f"{n + 1}, {', '.join(str(k + 1) for k in cell)}" for n, cell in enumerate(cells)),
+             "*SURFACE, NAME=skin"]
     radius = numpy.hypot(nodes[:, 0] - MEAN / 2, nodes[:, 1] - CORD / 2)
     for number, cell in enumerate(cells):
         for side, ends in enumerate(((0, 1), (1, 2), (2, 3), (3, 0))):
@@ -77,7 +79,8 @@ def deck(results, nu, increment, stiffness):
     shear = YOUNG / (2 * (1 + nu))
     bulk = YOUNG / (3 * (1 - 2 * nu))
     lines += ["*MATERIAL, NAME=rubber", "*HYPERELASTIC, NEO HOOKE", f"{shear / 2!r}, {2 / bulk!r}",
-              "*SOLID SECTION, ELSET=ring, MATERIAL=rubber", "*MATERIAL, NAME=stiff", "*ELASTIC", f"{1000 * YOUNG}, 0.3"]
+              "*SOLID SECTION, ELSET=ring, MATERIAL=rubber", "*MATERIAL, NAME=stiff", "*ELASTIC",
+              f"{1000 * YOUNG}, 0.3"]
     face, behind = groove()
     lines += row("groove", face, behind, 100001, 100001)
     x = numpy.linspace((MEAN - WIDTH) / 2 - 1, (MEAN + WIDTH) / 2 + 1, 61)[::-1]
@@ -114,9 +117,11 @@ def timed(command, directory, log, limit=resource.RLIM_INFINITY):
 
 def burnish(nu, directory):
     results = directory / f"burnish_{nu}"
-    code, cpu = timed([args.burnish, ROOT / "runs/o_ring.yaml", "-o", results, "-set", "mesh.order=2", "-set",
-                       f"mesh.parameters.n={args.n}", "-set",
-                       f"bodies.0.material={{law: isochoric_neo_hookean, E: {YOUNG}, nu: {nu}}}"], directory, directory / "burnish.log")
+    material = f"{{law: isochoric_neo_hookean, E: {YOUNG}, nu: {nu}}}"
+    command = [args.burnish, ROOT / "runs/o_ring.yaml", "-o", results]
+    for override in ("mesh.order=2", f"mesh.parameters.n={args.n}", f"bodies.0.material={material}"):
+        command += ["-set", override]
+    code, cpu = timed(command, directory, directory / "burnish.log")
     summary = read_summary(results)
     return results, {"code": "Burnish", "element": "quad9 mixed", "nu": nu, "increment": "", "steps": summary["steps"],
                      "status": "done" if code == 0 else "not converged", "failed": summary["steps_failed"],
@@ -145,7 +150,7 @@ parser.add_argument("--ccx", default="ccx")
 parser.add_argument("--stiffness", type=float, default=200)
 parser.add_argument("--increments", type=float, nargs="+", default=(0.1,))
 parser.add_argument("--n", type=int, default=8, help="elements along a quarter of the cord")
-parser.add_argument("--limit", type=int, default=60)
+parser.add_argument("--limit", type=int, default=40)
 parser.add_argument("--record", type=pathlib.Path, default=ROOT / "runs/records/o_ring_calculix.csv")
 args = parser.parse_args()
 args.burnish = args.burnish.resolve()
