@@ -1,11 +1,11 @@
 """The O-ring of runs/o_ring.yaml in Burnish and in CalculiX (ccx, Debian's package calculix-ccx) side by side, on one
 mesh of second-order quadrilaterals: mixed quad9, which has an inner node more, and CAX8R, reduced integration. CalculiX
-has no mixed elements. Both laws are neo-Hooke's of the shape with K/2 (ln J)^2 in Burnish and K/2 (J - 1)^2 in CalculiX.
-Its contact is surface to surface, penalty, on a row of fixed elements along the groove and one that comes down as the
-lid. Prints a table and writes runs/records/o_ring_calculix.csv. CPU seconds are of the process that solves.
+has no mixed elements. Both laws are neo-Hooke's of the shape, with K/2 (ln J)^2 in Burnish and K/2 (J - 1)^2 in
+CalculiX. Its contact is surface to surface, penalty, on a row of fixed elements along the groove and one that comes
+down as the lid. Prints a table and writes runs/records/o_ring_calculix.csv. CPU seconds are of the process that solves.
     build/venv/bin/python scripts/o_ring_calculix.py [--burnish build/burnish] [--ccx ccx] [--stiffness 200]
-The stiffness of CalculiX's contact is that many times Young's modulus over 1 mm. With 20 the force is up to 5 % lower. A
-run of CalculiX is stopped after --limit CPU seconds."""
+The stiffness of CalculiX's contact is that many times Young's modulus over 1 mm. With 20 the force is some per cent
+lower. A run of CalculiX is stopped after --limit CPU seconds."""
 import argparse
 import csv
 import math
