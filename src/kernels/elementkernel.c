@@ -12,7 +12,7 @@ static const double largest_kappa = 1e4;
    modulus and over the modulus itself. Laws whose shape part does not depend on the volume resist changes of it inside
    an element that the projection does not see by their shear alone. One shear modulus more keeps Newton's method from
    long ways there: a bonded bush takes 27 iterations with it, 37 and a failed step without. It costs little accuracy,
-   as its full integration with nu = 0.27 is far from locking; 20 shear moduli cost 2 to 7 times the error. A tenth
+   as a solid with this modulus has nu = 0.125 and does not lock; 20 shear moduli cost 2 to 7 times the error. A tenth
    keeps moderate moduli projected too. */
 static const double largest_local = 1, local_share = 0.1;
 
@@ -328,7 +328,7 @@ int ElementPressures(const KernelCase *kernel)
 - multiplier - (stress times root of volume) [pressures][lanes]; NULL: they are 0
 
   Output Parameter:
-. theta - coefficients of the projection of ln J (root of volume) [pressures][lanes]
+. theta - coefficients of the projection of ln j / j, which mixedkernel.c explains (root of volume) [pressures][lanes]
 
   Note:
   The pressure in the element is multiplier + kappa theta, see ElementVolumeModuli(). It is right where it is the
