@@ -341,6 +341,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   PetscCall(PetscFree(e->value));
   PetscCall(PetscFree(e->buffer));
   PetscCall(PetscFree2(e->state.multiplier, e->accepted.multiplier));
+  PetscCall(PetscFree(e->enclosed.body));
   PetscCall(NodeMatrixDestroy(&e->matrix));
   PetscCall(PetscFree(*elasticity));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -402,6 +403,21 @@ void ElasticityGather(Elasticity e, CellGroup *g, PetscInt batch, const PetscRea
 }
 
 /*@
+  ElasticityMultipliersOf - gives the place of a batch with multipliers in an array of all multipliers.
+
+  Not collective
+
+  Input Parameters:
++ g           - a group with multipliers
+. batch       - of that group
+- multipliers - as in VolumeState
+@*/
+PetscReal *ElasticityMultipliersOf(const CellGroup *g, PetscInt batch, PetscReal *multipliers)
+{
+  return &multipliers[g->multipliers + batch * ElementPressures(&g->kernel) * KERNEL_LANES];
+}
+
+/*@
   ElasticityMultipliers - gives the present multipliers of a batch of mixed elements, or NULL where they have none.
 
   Not collective
@@ -413,8 +429,7 @@ void ElasticityGather(Elasticity e, CellGroup *g, PetscInt batch, const PetscRea
 @*/
 PetscReal *ElasticityMultipliers(Elasticity e, const CellGroup *g, PetscInt batch)
 {
-  if (g->multipliers < 0) return NULL;
-  return &e->state.multiplier[g->multipliers + batch * ElementPressures(&g->kernel) * KERNEL_LANES];
+  return g->multipliers < 0 ? NULL : ElasticityMultipliersOf(g, batch, e->state.multiplier);
 }
 
 /*@
@@ -765,6 +780,45 @@ PetscErrorCode ElasticityMatrixJoin(Elasticity e, Mat C)
   PetscFunctionBeginUser;
   PetscCall(JoinPattern(e, C));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElasticitySlotCoordinates - takes the reference coordinates of one cell out of its batch.
+
+  Not collective
+
+  Input Parameters:
++ e    - the elasticity
+. g    - the group of the cell
+- slot - its number there
+
+  Output Parameter:
+. X - (length) [nodes][dim]
+@*/
+void ElasticitySlotCoordinates(Elasticity e, const CellGroup *g, PetscInt slot, PetscReal *X)
+{
+  const size_t dofs = (size_t)g->nodes * e->dim;
+
+  for (size_t k = 0; k < dofs; k++)
+    X[k] = g->X[((slot / KERNEL_LANES) * dofs + k) * KERNEL_LANES + slot % KERNEL_LANES];
+}
+
+/*@
+  ElasticitySlotVolume - computes the reference volume of one cell.
+
+  Not collective
+
+  Input Parameters:
++ e    - the elasticity
+. g    - the group of the cell
+- slot - its number there
+@*/
+PetscReal ElasticitySlotVolume(Elasticity e, const CellGroup *g, PetscInt slot)
+{
+  PetscReal X[MAX_DOFS];
+
+  ElasticitySlotCoordinates(e, g, slot, X);
+  return CellVolume(g->kernel.type, e->dim, g->kernel.geometry, X);
 }
 
 /* Coordinates and displacements of the nodes of one cell, the constants of its law, and its multipliers; its plastic

@@ -9,6 +9,7 @@
    Mixed elements whose volume is kept exactly, or nearly so, have multipliers (volumes.c). ElasticityFollow() changes
    them in an iteration of Newton's method, ElasticityAugment() after a solve until the volume is right.
    ElasticityAccept() keeps them with the accepted state, ElasticityRestore() returns to those kept.
+   ElasticityFindEnclosed() comes before all these: it finds the bodies whose level of pressure is free.
 
    Plastic bodies have an accepted state at each quadrature point. All evaluations start from it;
    ElasticityAcceptPlastic() alone changes it. ElasticityArchivePlastic() saves and loads it. */
@@ -47,6 +48,7 @@ PetscErrorCode ElasticityAccept(Elasticity);
 PetscErrorCode ElasticityRestore(Elasticity);
 PetscErrorCode ElasticityArchive(Elasticity, Archive);
 PetscBool      ElasticityAugments(Elasticity);
-PetscErrorCode ElasticityCheckEnclosed(Elasticity, Scene, const PetscBool *prescribed);
+PetscErrorCode ElasticityFindEnclosed(Elasticity, Scene, const PetscBool *prescribed);
+PetscBool      ElasticityEnclosedChange(Elasticity);
 PetscReal      ElasticityCellModulus(Elasticity, PetscInt cell);
 PetscInt       ElasticityInvertedCell(Elasticity);

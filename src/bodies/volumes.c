@@ -6,7 +6,7 @@
    Newton's method changes them along with the displacements, so that one solve is enough as a rule: after each
    iteration the pressures become those of its linear problem, the unknowns of the mixed method. */
 #include "elasticityimpl.h"
-#include "base/refusal.h"
+#include "enclosed.h"
 
 /* Error that may be left in the strain of the volume, relative to the strains of the bodies, both in the norm of the
    energy. It is far below the errors of meshes. */
@@ -14,9 +14,6 @@
 /* Square of a strain that is negligible, for bodies without stress. It is far above the round-off of displacements and
    far below any strain of interest. */
 #define VOLUME_STRAIN2 1e-20
-/* Derivatives of the volume of a body by its nodes are zero below this part of the largest one: interior nodes have
-   round-off only. */
-#define VOLUME_ROUND_OFF 1e-8
 
 /*@
   ElasticityAugments - says whether a body has multipliers.
@@ -48,23 +45,6 @@ static void NextMultipliers(Elasticity e, CellGroup *g, PetscInt batch, const Pe
   }
 }
 
-/* Takes the reference coordinates of one cell out of its batch. */
-static void SlotCoordinates(Elasticity e, const CellGroup *g, PetscInt slot, PetscReal *X)
-{
-  const size_t dofs = (size_t)g->nodes * e->dim;
-
-  for (size_t k = 0; k < dofs; k++)
-    X[k] = g->X[((slot / KERNEL_LANES) * dofs + k) * KERNEL_LANES + slot % KERNEL_LANES];
-}
-
-static PetscReal SlotVolume(Elasticity e, const CellGroup *g, PetscInt slot)
-{
-  PetscReal X[MAX_DOFS];
-
-  SlotCoordinates(e, g, slot, X);
-  return CellVolume(g->kernel.type, e->dim, g->kernel.geometry, X);
-}
-
 /* Sums the energy of the error in the volume over the cells of a batch, and the energy of a negligible strain. */
 static void AddVolumeError(Elasticity e, const CellGroup *g, PetscInt batch, const PetscReal *next, PetscReal sum[2])
 {
@@ -77,8 +57,42 @@ static void AddVolumeError(Elasticity e, const CellGroup *g, PetscInt batch, con
     ElementVolumeModuli(&g->kernel, constants, KERNEL_LANES, &moduli);
     for (int k = lane; k < ElementPressures(&g->kernel) * KERNEL_LANES; k += KERNEL_LANES)
       sum[0] += moduli.mu * PetscSqr((next[k] - m[k]) / moduli.kappa);
-    sum[1] += moduli.mu * VOLUME_STRAIN2 * SlotVolume(e, g, batch * KERNEL_LANES + lane);
+    sum[1] += moduli.mu * VOLUME_STRAIN2 * ElasticitySlotVolume(e, g, batch * KERNEL_LANES + lane);
   }
+}
+
+/* Computes the next multipliers of all batches at u. */
+static PetscErrorCode AllNextMultipliers(Elasticity e, const PetscReal *u, PetscReal *next)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < e->n_groups; k++) {
+    CellGroup *g = &e->groups[k];
+
+    for (PetscInt batch = 0; batch < g->n_batches && g->multipliers >= 0; batch++)
+      NextMultipliers(e, g, batch, u, ElasticityMultipliersOf(g, batch, next));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Compares the error that is left in the volumes with the strains. */
+static PetscErrorCode VolumesHold(Elasticity e, const PetscReal *u, const PetscReal *next, PetscBool *holds)
+{
+  PetscReal sum[3] = {0, 0, 0}; /* energies: of the error, of a negligible strain, of all cells */
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < e->n_groups; k++) {
+    CellGroup *g = &e->groups[k];
+
+    for (PetscInt batch = 0; batch < g->n_batches && g->multipliers >= 0; batch++)
+      AddVolumeError(e, g, batch, ElasticityMultipliersOf(g, batch, (PetscReal *)next), sum);
+  }
+  PetscCall(ElasticityResidual(e, u, NULL, &sum[2], NULL, &ok));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, e->mesh->comm));
+  *holds = (PetscBool)(sum[0] <= PetscSqr(VOLUME_TOLERANCE) * sum[2] + sum[1]);
+  PetscCall(PetscInfo(NULL, "error of the volume strains %g of the strains\n",
+                      (double)PetscSqrtReal(sum[2] > 0 ? sum[0] / sum[2] : 0)));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -92,33 +106,25 @@ static void AddVolumeError(Elasticity e, const CellGroup *g, PetscInt batch, con
 
   Output Parameter:
 . holds - PETSC_FALSE: the multipliers were changed, and the step is to be solved on
+
+  Note:
+  Where a body is enclosed (enclosed.h), a change of the multipliers that moves nothing counts as none.
 @*/
 PetscErrorCode ElasticityAugment(Elasticity e, const PetscReal *u, PetscBool *holds)
 {
-  PetscReal  sum[3] = {0, 0, 0}; /* energies: of the error, of a negligible strain, of all cells */
   PetscReal *next;
-  PetscBool  ok;
 
   PetscFunctionBeginUser;
   *holds = PETSC_TRUE;
   if (!e->augments) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(e->state.n, &next));
-  for (int k = 0; k < e->n_groups; k++) {
-    CellGroup *g = &e->groups[k];
-
-    for (PetscInt batch = 0; batch < g->n_batches && g->multipliers >= 0; batch++) {
-      PetscReal *const own = &next[ElasticityMultipliers(e, g, batch) - e->state.multiplier];
-
-      NextMultipliers(e, g, batch, u, own);
-      AddVolumeError(e, g, batch, own, sum);
-    }
+  PetscCall(AllNextMultipliers(e, u, next));
+  PetscCall(EnclosedFixLevels(e, next));
+  PetscCall(VolumesHold(e, u, next, holds));
+  if (!*holds) {
+    PetscCall(EnclosedHold(e, u, next, holds));
+    PetscCall(PetscArraycpy(e->state.multiplier, next, e->state.n));
   }
-  PetscCall(ElasticityResidual(e, u, NULL, &sum[2], NULL, &ok));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, e->mesh->comm));
-  *holds = (PetscBool)(sum[0] <= PetscSqr(VOLUME_TOLERANCE) * sum[2] + sum[1]);
-  PetscCall(PetscInfo(NULL, "error of the volume strains %g of the strains\n",
-                      (double)PetscSqrtReal(sum[2] > 0 ? sum[0] / sum[2] : 0)));
-  if (!*holds) PetscCall(PetscArraycpy(e->state.multiplier, next, e->state.n));
   PetscCall(PetscFree(next));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -240,71 +246,5 @@ PetscErrorCode ElasticityArchive(Elasticity e, Archive archive)
   if (ArchiveLoads(archive)) CopyByCell(e, PETSC_TRUE, rows);
   PetscCall(ElasticityAccept(e));
   PetscCall(PetscFree(rows));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Adds the derivatives of the volume of a body by its nodes: the forces of a uniform pressure 1. */
-static void AddVolumeGradient(Elasticity e, PetscInt body, PetscReal *gradient)
-{
-  for (int k = 0; k < e->n_groups; k++) {
-    const CellGroup *g = &e->groups[k];
-
-    for (PetscInt slot = 0; slot < g->n_cells; slot++) {
-      const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
-      PetscReal       X[MAX_DOFS], f[MAX_DOFS];
-
-      if (e->mesh->cell_body[g->cell[slot]] != body) continue;
-      SlotCoordinates(e, g, slot, X);
-      CellVolumeGradient(g->kernel.type, e->dim, g->kernel.geometry, X, f);
-      for (int a = 0; a < g->nodes * e->dim; a++) gradient[nodes[a / e->dim] * e->dim + a % e->dim] += f[a];
-    }
-  }
-}
-
-/*@
-  ElasticityCheckEnclosed - refuses bodies that keep their volume exactly and have no node whose motion would change it.
-
-  Collective
-
-  Input Parameters:
-+ e          - the elasticity
-. scene      - its bodies
-- prescribed - whether a displacement is supported or imposed [n_nodes*dim]
-
-  Note:
-  The pressure of such a body is determined up to a constant only, and displacements that change its volume are
-  impossible.
-@*/
-PetscErrorCode ElasticityCheckEnclosed(Elasticity e, Scene scene, const PetscBool *prescribed)
-{
-  const PetscInt n = e->mesh->n_nodes * e->dim;
-  PetscReal     *gradient;
-  PetscMPIInt    rank;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(e->mesh->comm, &rank));
-  for (int b = 0; b < scene->n_bodies && e->augments; b++) {
-    PetscReal largest[2] = {0, 0}; /* of all nodes, of those that are free */
-
-    if (scene->bodies[b].rigid || scene->bodies[b].formulation != FORMULATION_MIXED ||
-        !PetscIsInfReal(scene->bodies[b].material.constants[0]))
-      continue;
-    PetscCall(PetscCalloc1(n, &gradient));
-    AddVolumeGradient(e, b, gradient);
-    PetscCall(MeshSumNodes(e->mesh, e->dim, gradient));
-    for (PetscInt d = 0; d < n; d++) {
-      largest[0] = PetscMax(largest[0], PetscAbsReal(gradient[d]));
-      if (!prescribed[d] && e->mesh->node_owner[d / e->dim] == rank)
-        largest[1] = PetscMax(largest[1], PetscAbsReal(gradient[d]));
-    }
-    PetscCall(PetscFree(gradient));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPIU_REAL, MPI_MAX, e->mesh->comm));
-    if (largest[1] > VOLUME_ROUND_OFF * largest[0]) continue;
-    PetscCall(RefuseInput(e->mesh->comm,
-                          "%s: body '%s' keeps its volume exactly, but supports and loads prescribe the displacement "
-                          "of its whole surface: its pressure is not determined; leave a part of the surface free, or "
-                          "take nu below 0.5",
-                          SceneWhere(scene, scene->bodies[b].path, "material.nu"), scene->bodies[b].name));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

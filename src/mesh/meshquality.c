@@ -73,7 +73,12 @@ static PetscBool HasFormulation(Mesh mesh, Scene scene, PetscInt c)
   return (PetscBool)ElementKernelExists(&kernel);
 }
 
-/* Makes a body full for which fbar was chosen, where no cell has it. */
+/* From this Poisson's ratio on, elements of first order with full integration lock: at 0.49 the bulk modulus is fifty
+   times the shear modulus. */
+#define LOCKING_NU 0.49
+
+/* Makes a body full for which fbar or mixed was chosen, where no cell has it. An incompressible body stays mixed, to be
+   refused. */
 static PetscErrorCode DropFormulations(Mesh mesh, Scene scene)
 {
   PetscBool *has;
@@ -84,10 +89,28 @@ static PetscErrorCode DropFormulations(Mesh mesh, Scene scene)
     if (HasFormulation(mesh, scene, c)) has[mesh->cell_body[c]] = PETSC_TRUE;
   for (int b = 0; b < scene->n_bodies; b++) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &has[b], sizeof(PetscBool), MPI_BYTE, MPI_BOR, mesh->comm));
-    if (scene->bodies[b].chosen && scene->bodies[b].formulation == FORMULATION_FBAR && !has[b])
+    if (scene->bodies[b].chosen && !has[b] && !scene->bodies[b].rigid && !isinf(scene->bodies[b].material.constants[0]))
       scene->bodies[b].formulation = FORMULATION_FULL;
   }
   PetscCall(PetscFree(has));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the bodies with cells of first order and full integration that lock: by the scene, or because there are no
+   others of their shape. */
+static PetscErrorCode FindLocking(Mesh mesh, Scene scene)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    SceneBody *body = &scene->bodies[mesh->cell_body[c]];
+
+    if ((body->formulation == FORMULATION_FULL || !HasFormulation(mesh, scene, c)) &&
+        ElementGet(mesh->cell_type[c])->order == 1 &&
+        (MaterialGetLaw(body->material.law)->plastic || body->material.nu >= LOCKING_NU))
+      body->locks = 1;
+  }
+  for (int b = 0; b < scene->n_bodies; b++)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &scene->bodies[b].locks, 1, MPI_INT, MPI_MAX, mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,7 +121,7 @@ static PetscErrorCode DropFormulations(Mesh mesh, Scene scene)
 
   Input Parameters:
 + mesh  - the mesh
-- scene - its bodies; one for which fbar was chosen becomes full where no cell has it
+- scene - its bodies; one for which fbar or mixed was chosen becomes full where no cell has it, and locks is set
 
   Note:
   The refusal names the cell's tag, its body and its element.
@@ -124,6 +147,7 @@ PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
                             : "mesh.order: 2, or formulation: full");
   }
   PetscCall(ComplaintRefuse(mesh->comm, &complaint));
+  PetscCall(FindLocking(mesh, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

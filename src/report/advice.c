@@ -48,8 +48,9 @@
 #define ADVICE_SQUEEZED 0.7
 
 /* A rule writes into text[ADVICE_TEXT] what is wrong and returns a positive number if it applies, else 0: for the run,
-   and for a pair. Where a value is wrong by a known factor, that is the number; else it is 1. */
+   for a body, and for a pair. Where a value is wrong by a known factor, that is the number; else it is 1. */
 typedef double (*RunRuleFn)(const RunFigures *, char *text);
+typedef double (*BodyRuleFn)(const SceneBody *, char *text);
 typedef double (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text);
 
 static double PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair, char *text)
@@ -136,6 +137,19 @@ static double UpdatesAreFew(const RunFigures *figures, const PairFigures *pair, 
            "up to %.3g g_max",
            pair->name, (long long)pair->window.missed, (long long)figures->run->way->steps,
            (long long)pair->window.outside, (long long)pair->window.loaded, (double)pair->window.excess);
+  return 1;
+}
+
+static double BodyLocks(const SceneBody *body, char *text)
+{
+  if (!body->locks) return 0;
+  if (MaterialGetLaw(body->material.law)->plastic)
+    snprintf(text, ADVICE_TEXT,
+             "body '%s' flows in elements of first order with full integration, which lock (too stiff)", body->name);
+  else
+    snprintf(text, ADVICE_TEXT,
+             "body '%s' has nu = %g in elements of first order with full integration, which lock (too stiff)",
+             body->name, body->material.nu);
   return 1;
 }
 
@@ -228,6 +242,7 @@ static double KernelsAreOld(const RunFigures *figures, char *text)
 /* What is wrong, and the changes that help, the best first */
 typedef struct {
   PairRuleFn pair;
+  BodyRuleFn body;
   RunRuleFn  run;
   ChangeKind changes[ADVICE_CHANGES];
 } Situation;
@@ -241,6 +256,7 @@ static const Situation situations[] = {
   {.pair = FitsFallBack, .changes = {CHANGE_FINER_MASTER, CHANGE_SYMMETRY, CHANGE_DEGREE_2}},
   {.pair = WindowIsMissed, .changes = {CHANGE_WHEN_CONVERGED, CHANGE_WIDER_WINDOW, CHANGE_RANGE}},
   {.pair = UpdatesAreFew, .changes = {CHANGE_STIFFER, CHANGE_UPDATES, CHANGE_WIDER_WINDOW}},
+  {.body = BodyLocks, .changes = {CHANGE_AUTO, CHANGE_SECOND_ORDER}},
   {.run = StepsFail, .changes = {CHANGE_SHORTER}},
   {.run = StepsRepeat, .changes = {CHANGE_PREDICTION, CHANGE_MORE_NODES}},
   {.run = NeighbourListsAreRemade, .changes = {CHANGE_SHORTER}},
@@ -377,6 +393,14 @@ void AdviceCollect(const RunFigures *figures, Advice *advice)
       const ChangePlace  at     = {.figures = figures, .pair = pair, .body = -1, .factor = factor};
 
       if (factor > 0) AddLine(advice, text, &at, situations[s].changes);
+    }
+  }
+  for (int b = 0; b < figures->scene->n_bodies; b++) {
+    for (size_t s = 0; s < sizeof(situations) / sizeof(situations[0]); s++) {
+      const ChangePlace at = {.figures = figures, .body = b, .factor = 1};
+
+      if (situations[s].body && situations[s].body(&figures->scene->bodies[b], text) > 0)
+        AddLine(advice, text, &at, situations[s].changes);
     }
   }
   for (size_t s = 0; s < sizeof(situations) / sizeof(situations[0]); s++) {

@@ -301,6 +301,27 @@ static void WriteFormulation(const ChangePlace *at, char *text, size_t size)
   snprintf(text, size, "-set %s.formulation=full", at->figures->scene->bodies[at->body].path);
 }
 
+static int IsNamed(const ChangePlace *at)
+{
+  return at->body >= 0 && !at->figures->scene->bodies[at->body].chosen;
+}
+
+static void WriteAuto(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set %s.formulation=auto", at->figures->scene->bodies[at->body].path);
+}
+
+static int IsFirstOrder(const ChangePlace *at)
+{
+  return at->figures->scene->order != 2;
+}
+
+static void WriteSecondOrder(const ChangePlace *at, char *text, size_t size)
+{
+  (void)at;
+  snprintf(text, size, "-set mesh.order=2");
+}
+
 /* Mean length of the steps so far. */
 static double MeanStep(const ChangePlace *at)
 {
@@ -447,6 +468,8 @@ static const Change changes[CHANGES] = {
   [CHANGE_SUPPORT]        = {"supports", AXIS_HOLD, 1, HasBody, WriteSupport},
   [CHANGE_LAW]            = {"bodies.*.material.law", AXIS_LAW, 1, MayBeCrushed, WriteLaw},
   [CHANGE_FORMULATION]    = {"bodies.*.formulation", AXIS_ELEMENTS, 1, IsEnhanced, WriteFormulation},
+  [CHANGE_AUTO]           = {"bodies.*.formulation", AXIS_ELEMENTS, 1, IsNamed, WriteAuto},
+  [CHANGE_SECOND_ORDER]   = {"mesh.order", AXIS_ELEMENTS, 1, IsFirstOrder, WriteSecondOrder},
   [CHANGE_SHORTER]        = {"stepping", AXIS_STEP, -1, MayBeShorter, WriteShorter},
   [CHANGE_SHORTER_MIN]    = {"stepping.dt_min", AXIS_STEP, -1, StopsEarly, WriteShorterMin},
   [CHANGE_MORE_NODES]     = {"stepping.N_c", AXIS_STEP, 1, CountsNodes, WriteMoreNodes},

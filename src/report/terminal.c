@@ -7,10 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 
-/* From this Poisson's ratio on, elements of first order with full integration lock: at 0.49 the bulk modulus is fifty
-   times the shear modulus. */
-#define LOCKING_NU 0.49
-
 enum {
   EFFECTS_SIZE  = 2 * PETSC_MAX_PATH_LEN, /* characters of the list of a run's effects */
   DURATION_SIZE = 32                      /* characters of a duration */
@@ -124,7 +120,7 @@ static void PrintProgram(Terminal terminal)
   PrintBlas();
 }
 
-/* Names the bodies for which `formulation: auto` took mixed elements. */
+/* Names the bodies for which `formulation: auto` took mixed elements, and those for which it had none. */
 static void PrintChosen(Terminal terminal)
 {
   const Scene scene = terminal->scene;
@@ -132,8 +128,13 @@ static void PrintChosen(Terminal terminal)
   for (int b = 0; b < scene->n_bodies; b++) {
     const SceneBody *body = &scene->bodies[b];
 
-    if (!body->rigid && body->chosen && body->formulation == FORMULATION_MIXED)
-      printf("chosen   formulation: mixed for body '%s', nu = %g\n", body->name, body->material.nu);
+    if (body->rigid || !body->chosen || MaterialGetLaw(body->material.law)->plastic) continue;
+    if (body->formulation == FORMULATION_MIXED)
+      printf("chosen   formulation: mixed for body '%s', nu = %g%s\n", body->name, body->material.nu,
+             body->locks ? "; full for its tri3 and tet4, which lock" : "");
+    else if (body->locks)
+      printf("chosen   formulation: full for body '%s', nu = %g: there are no mixed tri3 and tet4; they lock\n",
+             body->name, body->material.nu);
   }
 }
 
@@ -163,52 +164,28 @@ static PetscErrorCode PrintHead(Terminal terminal, PetscInt restarts, PetscInt l
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says whether a body has cells of first order with full integration: by the scene, or because there are no mixed ones
-   of their shape. */
-static PetscErrorCode HasFullCells(Terminal terminal, int body, PetscBool *has)
+/* Warns of bodies that lock. */
+static void WarnLocking(Terminal terminal)
 {
-  const Mesh       mesh = terminal->model->mesh;
-  const SceneBody *b    = &terminal->scene->bodies[body];
+  for (int b = 0; b < terminal->scene->n_bodies && !terminal->rank; b++) {
+    const SceneBody *body    = &terminal->scene->bodies[b];
+    const int        plastic = body->locks && MaterialGetLaw(body->material.law)->plastic;
 
-  PetscFunctionBeginUser;
-  *has = (PetscBool)(b->formulation == FORMULATION_FULL && mesh->order == 1);
-  for (PetscInt c = 0; c < mesh->n_cells && b->formulation == FORMULATION_MIXED; c++)
-    *has = (PetscBool)(*has || (mesh->cell_body[c] == body &&
-                                (mesh->cell_type[c] == ELEMENT_TRI3 || mesh->cell_type[c] == ELEMENT_TET4)));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, sizeof(PetscBool), MPI_BYTE, MPI_BOR, mesh->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Warns of bodies that lock. Where nu is near a half, elements of first order with full integration keep their volume
-   at every quadrature point, and so they hardly deform. */
-static PetscErrorCode WarnLocking(Terminal terminal)
-{
-  const Scene scene = terminal->scene;
-  PetscBool   full;
-
-  PetscFunctionBeginUser;
-  for (int b = 0; b < scene->n_bodies; b++) {
-    const int plastic = !scene->bodies[b].rigid && MaterialGetLaw(scene->bodies[b].material.law)->plastic;
-
-    if (scene->bodies[b].rigid || (!plastic && scene->bodies[b].material.nu < LOCKING_NU)) continue;
-    PetscCall(HasFullCells(terminal, b, &full));
-    if (!full || terminal->rank) continue;
-    if (plastic) {
+    if (!body->locks) continue;
+    if (plastic)
       fprintf(
         stderr,
         "burnish: warning: %s: plastic flow keeps volumes, and elements of first order with full integration lock "
         "(too stiff); mesh.order: 2 and formulation: fbar do not\n",
-        SceneWhere(scene, scene->bodies[b].path, "material.law"));
-      continue;
-    }
-    fprintf(stderr,
-            "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); "
-            "%s\n",
-            SceneWhere(scene, scene->bodies[b].path, "material.nu"), scene->bodies[b].material.nu,
-            scene->bodies[b].formulation == FORMULATION_MIXED ? "mesh.order: 2 does not"
-                                                              : "mesh.order: 2 or formulation: mixed does not");
+        SceneWhere(terminal->scene, body->path, "material.law"));
+    else
+      fprintf(
+        stderr,
+        "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); %s\n",
+        SceneWhere(terminal->scene, body->path, "material.nu"), body->material.nu,
+        body->chosen || body->formulation == FORMULATION_MIXED ? "mesh.order: 2 does not"
+                                                               : "mesh.order: 2 or formulation: mixed does not");
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Warns of pairs whose surfaces share nodes. A mesh generator that merges the points in which two bodies touch joins
@@ -254,7 +231,7 @@ PetscErrorCode TerminalBegin(Terminal terminal, PetscInt restarts, PetscInt last
   PetscFunctionBeginUser;
   terminal->t_began = terminal->model->t;
   PetscCall(PrintHead(terminal, restarts, last_step, options));
-  PetscCall(WarnLocking(terminal));
+  WarnLocking(terminal);
   PetscCall(WarnJoined(terminal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -29,6 +29,9 @@ typedef struct {
   Material    material;    /* of a deformable body */
   Formulation formulation; /* enhanced and fbar exist for quad4 and hex8 only, mixed not for tri3 and tet4 */
   int         chosen;      /* 1 if `auto` chose the formulation: cells that have none of it take full */
+  /* 1 if its volume is stiff or plastic flow keeps it, and cells of first order with full integration lock.
+     MeshCheckFormulations() sets it. */
+  int    locks;
   Motion      motion;      /* of a rigid tool */
 } SceneBody;
 

@@ -269,7 +269,8 @@ static PetscErrorCode ModelSolveVolumes(Model model, SolveReport *report)
     if (report->result != SOLVE_CONVERGED) break;
     PetscCall(ElasticityAugment(model->problem->elasticity, model->problem->trial, &holds));
     if (holds) break;
-    if (times == EQUILIBRIUM_MAX_AUGMENT) report->result = SOLVE_VOLUME;
+    if (times == EQUILIBRIUM_MAX_AUGMENT || ElasticityEnclosedChange(model->problem->elasticity))
+      report->result = SOLVE_VOLUME;
     report->adjusted++;
     model->work->augmented = PETSC_TRUE;
     model->work->energy    = 0; /* multipliers are part of the energy */

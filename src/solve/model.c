@@ -14,7 +14,7 @@ const char *const SolveResults[] = {
   "contact was lost behind a master",
   "nothing holds a body against its load",
   "the penetrations did not come into the window of the adjusted penalty",
-  "the volumes of incompressible bodies did not settle",
+  "the volumes of incompressible bodies did not settle (do the displacements of a whole surface change one?)",
   "the places that a fluid wets did not settle",
   "a fluid leaks, and the step is too long to say at which pressure",
   "a fluid leaks",

@@ -35,7 +35,7 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   PetscCall(ElasticityCreate(mesh, scene, &problem->elasticity));
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, problem->elasticity, problem->loads, &problem->contact));
   PetscCall(ElasticitySetSymmetric(problem->elasticity, ProblemConservative(problem)));
-  PetscCall(ElasticityCheckEnclosed(problem->elasticity, scene, LoadsConstrained(problem->loads)));
+  PetscCall(ElasticityFindEnclosed(problem->elasticity, scene, LoadsConstrained(problem->loads)));
   PetscCall(FluidCreate(mesh, scene, problem->loads, problem->contact, &problem->fluids));
   PetscCall(PetscCalloc2(n, &problem->f, n, &problem->trial));
   PetscCall(ElasticityTangent(problem->elasticity, problem->trial, NULL));

@@ -23,6 +23,7 @@ LIKE = {
     f"{PYTHON} scripts/ring_table.py": f"{PYTHON} scripts/ring_table.py --help",
     f"{PYTHON} scripts/incompressible_table.py {BURNISH}": f"{PYTHON} scripts/incompressible_table.py --help",
     f"{PYTHON} scripts/o_ring_table.py {BURNISH}": f"{PYTHON} scripts/o_ring_table.py --help",
+    f"{PYTHON} scripts/o_ring_calculix.py": f"{PYTHON} scripts/o_ring_calculix.py --help",
     "build/tests/incompressible meshes runs/records/incompressible_rates.csv": "test -s "
     "runs/records/incompressible_rates.csv",
     f"{PYTHON} -m http.server -d out/site": f"timeout 1 {PYTHON} -m http.server 0 -d out/site; test $? = 124",

@@ -1,5 +1,7 @@
 """A block of rubber under uniaxial, equibiaxial and planar tension and compression: each law against its closed form
-with the lateral stretches solved for, to 1e-8; in the plane and axisymmetric as far as these have the tests."""
+with the lateral stretches solved for, to 1e-8, with a bulk modulus and incompressible; in the plane and axisymmetric as
+far as these have the tests."""
+import itertools
 import math
 
 from harness import Check, arguments, run, SCENES
@@ -7,6 +9,16 @@ from rubberlaws import LAWS, principal
 
 BULK = 50
 STRETCHES = (0.6, 1.8)
+
+
+def incompressible(law, test, stretch):
+    """The nominal stress in x. The lateral stretch keeps the volume, and the pressure frees it of stress."""
+    lateral = {"uniaxial": stretch**-0.5, "equibiaxial": stretch**-2, "planar": 1 / stretch}[test]
+    other = {"uniaxial": lateral, "equibiaxial": stretch, "planar": 1}[test]
+    kirchhoff = principal(law, (stretch, other, lateral), 0)
+    return (kirchhoff[0] - kirchhoff[2]) / stretch
+
+
 def nominal(law, test, stretch):
     """The nominal stress in x. The lateral stretch has no stress: bisection."""
     def stretches(lateral):
@@ -34,20 +46,20 @@ args = arguments(("law", "of the material", LAWS),
                  ("order", "of the elements", ("1", "2")))
 check = Check()
 TESTS = {"solid": ("uniaxial", "equibiaxial", "planar"), "plane_strain": ("planar",), "axisymmetric": ("uniaxial",)}
-for test in TESTS[args.geometry]:
-    for stretch in STRETCHES:
-        common = [f"bodies.0.material={{law: {args.law}, {LAWS[args.law]}, K: {BULK}}}", f"mesh.order={args.order}",
-                  f"geometry={args.geometry}"]
-        force = nominal(args.law, test, stretch)
-        if args.geometry == "solid":
-            common += overrides(test, stretch)
-        else:
-            common += ["mesh={file: ../../meshes/square.geo, order: " + args.order + "}"]
-            axial, free = ("x", "y") if args.geometry == "plane_strain" else ("y", "x")
-            common += [f"supports=[{{surface: {axial}_min, u{axial}: 0}}, {{surface: {free}_min, u{free}: 0}}]",
-                       f"loads=[{{surface: {axial}_max, u{axial}: {stretch - 1}}}]",
-                       f"probes=[{{name: force, reaction: {axial}_max, component: {axial}}}]"]
-            force *= math.pi if args.geometry == "axisymmetric" else 1
-        finished = run(args, SCENES / "rubber.yaml", out=f"{test}_{stretch}", overrides=common)
-        check.near(f"{test} {stretch}", finished.summary()["probes"]["force"], force, 1e-8 * max(1, abs(force)))
+VOLUMES = {f"K: {BULK}": nominal, "incompressible: true": incompressible}
+for test, stretch, volume in itertools.product(TESTS[args.geometry], STRETCHES, VOLUMES):
+    common = [f"bodies.0.material={{law: {args.law}, {LAWS[args.law]}, {volume}}}", f"mesh.order={args.order}",
+              f"geometry={args.geometry}"]
+    force = VOLUMES[volume](args.law, test, stretch)
+    if args.geometry == "solid":
+        common += overrides(test, stretch)
+    else:
+        common += ["mesh={file: ../../meshes/square.geo, order: " + args.order + "}"]
+        axial, free = ("x", "y") if args.geometry == "plane_strain" else ("y", "x")
+        common += [f"supports=[{{surface: {axial}_min, u{axial}: 0}}, {{surface: {free}_min, u{free}: 0}}]",
+                   f"loads=[{{surface: {axial}_max, u{axial}: {stretch - 1}}}]",
+                   f"probes=[{{name: force, reaction: {axial}_max, component: {axial}}}]"]
+        force *= math.pi if args.geometry == "axisymmetric" else 1
+    finished = run(args, SCENES / "rubber.yaml", out=f"{test}_{stretch}_{volume[0]}", overrides=common)
+    check.near(f"{test} {stretch}, {volume}", finished.summary()["probes"]["force"], force, 1e-8 * max(1, abs(force)))
 check.finish()

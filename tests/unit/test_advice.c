@@ -113,6 +113,23 @@ static void test_length(void **state)
   Expect(&c, NULL);
 }
 
+/* A body that locks has a line as long as the scene can be changed. */
+static void test_locking(void **state)
+{
+  Case c;
+
+  (void)state;
+  Good(&c);
+  c.body.locks       = 1;
+  c.body.material.nu = 0.499;
+  Expect(&c, "body 'block' has nu = 0.499 in elements of first order with full integration, which lock (too stiff): "
+             "-set bodies.0.formulation=auto, or -set mesh.order=2");
+  c.body.chosen = 1;
+  Expect(&c, "(too stiff): -set mesh.order=2");
+  c.body.locks = 0;
+  Expect(&c, NULL);
+}
+
 /* The size of the results is foretold from a tenth of a gigabyte on. */
 static void test_foretold(void **state)
 {
@@ -364,10 +381,10 @@ static void test_kernels(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_length), cmocka_unit_test(test_foretold),
-                                     cmocka_unit_test(test_pairs),  cmocka_unit_test(test_steps),
-                                     cmocka_unit_test(test_agree),  cmocka_unit_test(test_order),
-                                     cmocka_unit_test(test_sides),  cmocka_unit_test(test_kernels)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_length), cmocka_unit_test(test_locking), cmocka_unit_test(test_foretold),
+    cmocka_unit_test(test_pairs),  cmocka_unit_test(test_steps),   cmocka_unit_test(test_agree),
+    cmocka_unit_test(test_order),  cmocka_unit_test(test_sides),   cmocka_unit_test(test_kernels)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

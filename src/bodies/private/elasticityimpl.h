@@ -1,5 +1,5 @@
-/* What elasticity.c, volumes.c and plasticstates.c share: the cells of an elasticity in batches. elasticity.c is below
-   the other two. */
+/* What elasticity.c, enclosed.c, volumes.c and plasticstates.c share: the cells of an elasticity in batches.
+   elasticity.c is below the others. */
 #pragma once
 #include "bodies/elasticity.h"
 #include "kernels/elementkernel.h"
@@ -37,6 +37,14 @@ typedef struct {
   PetscReal *multiplier; /* stress times root of volume */
 } VolumeState;
 
+/* Bodies that keep their volume exactly and have no free node whose motion would change it (enclosed.h) */
+typedef struct {
+  int              n_bodies;
+  PetscBool        any, *body; /* any: the same on all ranks; body: [n_bodies] */
+  const PetscBool *prescribed; /* whether a displacement is supported or imposed [n_nodes*dim] */
+  PetscReal        change;     /* largest relative change of the volume of one of them at the last solution */
+} Enclosed;
+
 struct _n_Elasticity {
   Mesh        mesh;
   int         dim, n_groups;
@@ -54,9 +62,13 @@ struct _n_Elasticity {
   PetscReal   accepted_t; /* time of the accepted plastic state */
   PetscBool   augments;   /* a body has multipliers, perhaps on other ranks only */
   VolumeState state, accepted;
+  Enclosed    enclosed;
 };
 
 void       ElasticityGather(Elasticity, CellGroup *, PetscInt batch, const PetscReal *u, PetscReal *gathered);
 size_t     ElasticityCellStates(const CellGroup *);
 int        ElasticityBatchCells(const CellGroup *, PetscInt batch);
 PetscReal *ElasticityMultipliers(Elasticity, const CellGroup *, PetscInt batch);
+PetscReal *ElasticityMultipliersOf(const CellGroup *, PetscInt batch, PetscReal *multipliers);
+void       ElasticitySlotCoordinates(Elasticity, const CellGroup *, PetscInt slot, PetscReal *X);
+PetscReal  ElasticitySlotVolume(Elasticity, const CellGroup *, PetscInt slot);

@@ -1,0 +1,168 @@
+"""The O-ring of runs/o_ring.yaml in Burnish and in CalculiX (ccx, Debian's package calculix-ccx) side by side, on one
+mesh of second-order quadrilaterals: mixed quad9, which has an inner node more, and CAX8R, reduced integration. CalculiX
+has no mixed elements. Both laws are neo-Hooke's of the shape, with K/2 (ln J)^2 in Burnish and K/2 (J - 1)^2 in
+CalculiX. Its contact is surface to surface, penalty, on a row of fixed elements along the groove and one that comes
+down as the lid. Prints a table and writes runs/records/o_ring_calculix.csv. CPU seconds are of the process that solves.
+    build/venv/bin/python scripts/o_ring_calculix.py [--burnish build/burnish] [--ccx ccx] [--stiffness 200]
+The stiffness of CalculiX's contact is that many times Young's modulus over 1 mm. With 20 the force is some per cent
+lower. A run of CalculiX is stopped after --limit CPU seconds."""
+import argparse
+import csv
+import math
+import os
+import pathlib
+import resource
+import subprocess
+import tempfile
+
+import h5py
+import numpy
+
+from launch import environment, read_summary
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+YOUNG, CORD, MEAN, WAY = 5.5, 3.53, 53.53, 0.706
+DEPTH, WIDTH, FOOT, EDGE = 2.8, 4.7, 0.4, 0.2  # of the groove, as in meshes/o_ring.geo
+NUS = (0.45, 0.49, 0.499, 0.4999, 0.5)
+COLUMNS = ("code", "element", "nu", "increment", "status", "steps", "failed", "iterations", "cpu_s", "force")
+WEDGE = 180  # CalculiX expands axisymmetric elements to wedges of 2 degrees
+
+
+def groove():
+    """Points of the groove from its left edge to its right one, with normals into the solid, and behind them."""
+    a, b = (MEAN - WIDTH) / 2, (MEAN + WIDTH) / 2
+
+    def arc(x, y, radius, start, end, n):
+        angles = [start + (end - start) * i / n for i in range(n + 1)]
+        return [(x + radius * math.cos(angle), y + radius * math.sin(angle)) for angle in angles]
+
+    points = [(a - 1, DEPTH)] + arc(a - EDGE, DEPTH - EDGE, EDGE, math.pi / 2, 0, 4)
+    points += arc(a + FOOT, FOOT, FOOT, math.pi, 1.5 * math.pi, 6)
+    points += arc(b - FOOT, FOOT, FOOT, -0.5 * math.pi, 0, 6)
+    points += arc(b + EDGE, DEPTH - EDGE, EDGE, math.pi, math.pi / 2, 4) + [(b + 1, DEPTH)]
+    fine = [points[0]]
+    for point in points[1:]:
+        n = max(1, math.ceil(math.dist(fine[-1], point) / 0.15))
+        start = fine[-1]
+        fine += [tuple(p + (q - p) * (i + 1) / n for p, q in zip(start, point)) for i in range(n)]
+    behind = []
+    for i, (x, y) in enumerate(fine):
+        before, after = fine[max(i - 1, 0)], fine[min(i + 1, len(fine) - 1)]
+        along = numpy.subtract(after, before) / math.dist(before, after)
+        behind.append((x + 0.1 * along[1], y - 0.1 * along[0]))  # the solid is to the right
+    return fine, behind
+
+
+def row(name, face, behind, node, element):
+    """A row of CAX4 with `face` as its side S3; all of its nodes are NAME_nodes."""
+    n = len(face)
+    lines = ["*NODE", *(f"{node + i}, {x:.12g}, {y:.12g}, 0" for i, (x, y) in enumerate([*behind, *face]))]
+    lines.append(f"*ELEMENT, TYPE=CAX4, ELSET={name}")
+    lines += [f"{element + i}, {node + i}, {node + i + 1}, {node + n + i + 1}, {node + n + i}" for i in range(n - 1)]
+    return lines + [f"*NSET, NSET={name}_nodes, GENERATE", f"{node}, {node + 2 * n - 1}", f"*SURFACE, NAME={name}_side",
+                    *(f"{element + i}, S3" for i in range(n - 1)), f"*SOLID SECTION, ELSET={name}, MATERIAL=stiff"]
+
+
+def deck(results, nu, increment, stiffness):
+    with h5py.File(results / "results.h5", "r") as file:
+        nodes, cells = file["mesh/nodes"][()], file["mesh/cells_quad9"][()][:, :8]
+    used = sorted(set(cells.ravel()))
+    lines = ["*NODE", *(f"{k + 1}, {', '.join(f'{x:.12g}' for x in nodes[k])}" for k in used),
+             "*ELEMENT, TYPE=CAX8R, ELSET=ring",
+             *(f"{n + 1}, {', '.join(str(k + 1) for k in cell)}" for n, cell in enumerate(cells)),
+             "*SURFACE, NAME=skin"]
+    radius = numpy.hypot(nodes[:, 0] - MEAN / 2, nodes[:, 1] - CORD / 2)
+    for number, cell in enumerate(cells):
+        for side, ends in enumerate(((0, 1), (1, 2), (2, 3), (3, 0))):
+            if all(abs(radius[cell[end]] - CORD / 2) < 1e-6 for end in ends):
+                lines.append(f"{number + 1}, S{side + 1}")
+    shear = YOUNG / (2 * (1 + nu))
+    bulk = YOUNG / (3 * (1 - 2 * nu))
+    lines += ["*MATERIAL, NAME=rubber", "*HYPERELASTIC, NEO HOOKE", f"{shear / 2!r}, {2 / bulk!r}",
+              "*SOLID SECTION, ELSET=ring, MATERIAL=rubber", "*MATERIAL, NAME=stiff", "*ELASTIC",
+              f"{1000 * YOUNG}, 0.3"]
+    face, behind = groove()
+    lines += row("groove", face, behind, 100001, 100001)
+    x = numpy.linspace((MEAN - WIDTH) / 2 - 1, (MEAN + WIDTH) / 2 + 1, 61)[::-1]
+    lines += row("lid", [(float(v), CORD) for v in x], [(float(v), CORD + 0.1) for v in x], 200001, 200001)
+    for master in ("groove", "lid"):
+        lines += [f"*SURFACE INTERACTION, NAME=law_{master}", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
+                  repr(stiffness * YOUNG), f"*CONTACT PAIR, INTERACTION=law_{master}, TYPE=SURFACE TO SURFACE",
+                  f"skin, {master}_side"]
+    middle = min(used, key=lambda k: abs(nodes[k, 0] - MEAN / 2) + abs(nodes[k, 1] - CORD / 2)) + 1
+    lines += ["*ELEMENT, TYPE=SPRING1, ELSET=hold", f"300001, {middle}", "*SPRING, ELSET=hold", "2", "0.0001",
+              "*BOUNDARY", "groove_nodes, 1, 2", "lid_nodes, 1, 1", "*STEP, NLGEOM, INC=2000", "*STATIC",
+              f"{increment}, 1, 1e-6, {increment}", "*BOUNDARY", f"lid_nodes, 2, 2, {-WAY}",
+              "*NODE PRINT, NSET=lid_nodes, FREQUENCY=1, TOTALS=ONLY", "RF", "*END STEP"]
+    return lines
+
+
+def rows_of(path):
+    if not path.exists():
+        return []
+    return [line.split() for line in path.read_text().splitlines() if line.split() and line.split()[0].isdigit()]
+
+
+def timed(command, directory, log, limit=resource.RLIM_INFINITY):
+    def stop():
+        resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+
+    with open(log, "w") as output:
+        process = subprocess.Popen([str(word) for word in command], cwd=directory, stdout=output,
+                                   stderr=subprocess.STDOUT, env=environment(args.burnish), preexec_fn=stop)
+        _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, usage.ru_utime + usage.ru_stime
+
+
+def burnish(nu, directory):
+    results = directory / f"burnish_{nu}"
+    material = f"{{law: isochoric_neo_hookean, E: {YOUNG}, nu: {nu}}}"
+    command = [args.burnish, ROOT / "runs/o_ring.yaml", "-o", results]
+    for override in ("mesh.order=2", f"mesh.parameters.n={args.n}", f"bodies.0.material={material}"):
+        command += ["-set", override]
+    code, cpu = timed(command, directory, directory / "burnish.log")
+    summary = read_summary(results)
+    return results, {"code": "Burnish", "element": "quad9 mixed", "nu": nu, "increment": "", "steps": summary["steps"],
+                     "status": "done" if code == 0 else "not converged", "failed": summary["steps_failed"],
+                     "iterations": summary["newton_iterations"], "cpu_s": f"{cpu:.2f}",
+                     "force": f"{summary['probes']['force']:.2f}" if code == 0 else ""}
+
+
+def calculix(nu, increment, results, directory):
+    for old in directory.glob("ring.*"):
+        old.unlink()
+    (directory / "ring.inp").write_text("\n".join(deck(results, nu, increment, args.stiffness)) + "\n")
+    _, cpu = timed([args.ccx, "-i", "ring"], directory, directory / "ccx.log", args.limit)
+    accepted, iterations = rows_of(directory / "ring.sta"), rows_of(directory / "ring.cvg")
+    done = bool(accepted) and abs(float(accepted[-1][4]) - 1) < 1e-9
+    steps = len({line[1] for line in accepted})
+    totals = [line.split() for line in (directory / "ring.dat").read_text().splitlines() if len(line.split()) == 3]
+    return {"code": "CalculiX", "element": "CAX8R", "nu": nu, "increment": increment, "steps": steps,
+            "status": "done" if done else f"stops at {float(accepted[-1][4]) if accepted else 0:.3g} of the way",
+            "failed": len({tuple(line[:3]) for line in iterations}) - steps, "iterations": len(iterations),
+            "cpu_s": f"{cpu:.2f}", "force": f"{WEDGE * abs(float(totals[-1][1])):.2f}" if done else ""}
+
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build/burnish")
+parser.add_argument("--ccx", default="ccx")
+parser.add_argument("--stiffness", type=float, default=200)
+parser.add_argument("--increments", type=float, nargs="+", default=(0.1,))
+parser.add_argument("--n", type=int, default=8, help="elements along a quarter of the cord")
+parser.add_argument("--limit", type=int, default=40)
+parser.add_argument("--record", type=pathlib.Path, default=ROOT / "runs/records/o_ring_calculix.csv")
+args = parser.parse_args()
+args.burnish = args.burnish.resolve()
+with open(args.record, "w", newline="") as record, tempfile.TemporaryDirectory() as temporary:
+    table = csv.DictWriter(record, COLUMNS)
+    table.writeheader()
+    print(f"| {' | '.join(COLUMNS)} |\n|{' --- |' * len(COLUMNS)}")
+    for ratio in NUS:
+        mesh, figures = burnish(ratio, pathlib.Path(temporary))
+        lines = [figures]
+        if ratio <= 0.499:
+            lines += [calculix(ratio, step, mesh, pathlib.Path(temporary)) for step in args.increments]
+        for line in lines:
+            table.writerow(line)
+            print("| " + " | ".join(str(line[name]) for name in COLUMNS) + " |", flush=True)
