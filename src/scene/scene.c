@@ -678,12 +678,11 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SceneReadContacts(Scene scene)
+/* Reads the contact pairs as they are listed. */
+static PetscErrorCode SceneReadPairsOfContact(Scene scene, int n, const SurfacePair *pairs)
 {
-  SurfacePair *pairs;
-
   PetscFunctionBeginUser;
-  PetscCall(SceneListSurfacePairs(scene, &scene->n_contacts, &pairs));
+  scene->n_contacts = n;
   PetscCall(PetscCalloc1(scene->n_contacts, &scene->contacts));
   for (int i = 0; i < scene->n_contacts; i++) {
     const int alone = (i == 0 || pairs[i - 1].entry != pairs[i].entry) &&
@@ -698,7 +697,20 @@ static PetscErrorCode SceneReadContacts(Scene scene)
                               "names another pair already; allowed: names used once", scene->contacts[i].name));
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneReadContacts(Scene scene)
+{
+  SurfacePair   *pairs = NULL;
+  int            n     = 0;
+  PetscErrorCode refused;
+
+  PetscFunctionBeginUser;
+  refused = SceneListSurfacePairs(scene, &n, &pairs);
+  if (!refused) refused = SceneReadPairsOfContact(scene, n, pairs);
   PetscCall(PetscFree(pairs));
+  PetscCall(refused);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -128,36 +128,53 @@ static PetscErrorCode CheckEntry(Scene scene, const char *path, Node surfaces)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the pairs of one entry. */
-static PetscErrorCode AddEntry(Scene scene, int entry, int *n, SurfacePair **pairs)
+/* Adds the pairs of listed surfaces. */
+static PetscErrorCode AddListed(Scene scene, int entry, const char *path, int n_list, const ListedSurface *list, int *n,
+                                SurfacePair *pairs)
 {
-  char           path[KEY_PATH_LENGTH];
-  Node           surfaces, exclude;
-  int            n_list = 1, deformable = 0, before = *n;
-  ListedSurface *list = NULL;
+  const Node exclude    = SceneNode(scene, path, "exclude");
+  const int  before     = *n;
+  int        deformable = 0;
 
   PetscFunctionBeginUser;
-  snprintf(path, sizeof path, "contact.%d", entry);
-  surfaces = SceneNode(scene, path, "surfaces");
-  exclude  = SceneNode(scene, path, "exclude");
-  PetscCall(CheckEntry(scene, path, surfaces));
-  if (surfaces) PetscCall(ListSurfaces(scene, surfaces, &n_list, &list));
   PetscCall(CheckExclude(scene, path, exclude, n_list, list));
-  PetscCall(PetscRealloc((*n + n_list * n_list) * sizeof(**pairs), pairs));
-  if (!surfaces) (*pairs)[(*n)++] = (SurfacePair){.entry = entry, .share = 1};
-  for (int s = 0; surfaces && s < n_list; s++) {
+  for (int s = 0; s < n_list; s++) {
     deformable += !list[s].rigid;
     for (int m = 0; m < n_list && !list[s].rigid; m++) {
       if (NamesPair(scene, list[s].group, list[m].group) || Excludes(exclude, &list[s], &list[m])) continue;
-      (*pairs)[(*n)++] = (SurfacePair){entry, 1, list[s], list[m], list[m].rigid ? 1 : 0.5};
+      pairs[(*n)++] = (SurfacePair){entry, 1, list[s], list[m], list[m].rigid ? 1 : 0.5};
     }
   }
-  if (surfaces && !deformable)
+  if (!deformable)
     PetscCall(
       SceneRefuse(scene, path, "surfaces", "has no surface of a deformable body; allowed: a list with one", NULL));
   if (*n == before)
     PetscCall(SceneRefuse(scene, path, "exclude", "leaves no pair; allowed: exclusions that leave one", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the pairs of one entry. */
+static PetscErrorCode AddEntry(Scene scene, int entry, int *n, SurfacePair **pairs)
+{
+  char           path[KEY_PATH_LENGTH];
+  Node           surfaces;
+  int            n_list = 1;
+  ListedSurface *list   = NULL;
+  PetscErrorCode refused;
+
+  PetscFunctionBeginUser;
+  snprintf(path, sizeof path, "contact.%d", entry);
+  surfaces = SceneNode(scene, path, "surfaces");
+  PetscCall(CheckEntry(scene, path, surfaces));
+  if (surfaces) PetscCall(ListSurfaces(scene, surfaces, &n_list, &list));
+  PetscCall(PetscRealloc((*n + n_list * n_list) * sizeof(**pairs), pairs));
+  if (!surfaces) {
+    (*pairs)[(*n)++] = (SurfacePair){.entry = entry, .share = 1};
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  refused = AddListed(scene, entry, path, n_list, list, n, *pairs);
   PetscCall(PetscFree(list));
+  PetscCall(refused);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -171,7 +188,7 @@ static PetscErrorCode AddEntry(Scene scene, int entry, int *n, SurfacePair **pai
 
   Output Parameters:
 + n     - number of pairs
-- pairs - the pairs in the order of the entries, to be freed with PetscFree()
+- pairs - the pairs in the order of the entries, to be freed with PetscFree(), after a refusal too
 
   Note:
   Refuses entries with neither slave and master nor surfaces, and what is not available with surfaces.
