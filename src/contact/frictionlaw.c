@@ -1,5 +1,5 @@
 /* Coulomb's law at one slave node and its derivatives. */
-#include "frictionlaw.h"
+#include "contact/frictionlaw.h"
 #include <math.h>
 #include <string.h>
 
@@ -163,10 +163,10 @@ static void ApplyMatrix(Matrix m, FrictionTraction *by)
 @*/
 void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
 {
-  const double pressure = in->pressure > 0 ? in->pressure : 0, rate = in->pressure > 0 ? in->rate : 0,
-               bound = in->coefficient * pressure;
-  double e[3], length;
-  Matrix m;
+  const int    pressed  = in->pressure > 0 || in->state == FRICTION_SLIPS;
+  const double pressure = pressed ? in->pressure : 0, rate = pressed ? in->rate : 0, bound = in->coefficient * pressure;
+  double       e[3], length;
+  Matrix       m;
 
   ElasticSlip(in, e, out);
   length     = sqrt(Dot(e, e));
@@ -183,7 +183,7 @@ void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
     return;
   }
   for (int i = 0; i < 3; i++) e[i] /= length;
-  Projector(bound / length, e, m);
+  Projector(bound > 0 ? bound / length : 0, e, m);
   ApplyMatrix(m, out);
   for (int i = 0; i < 3; i++) {
     out->traction[i] = bound * e[i];

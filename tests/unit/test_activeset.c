@@ -85,7 +85,7 @@ static double Step(const Case *t, PetscInt most, PetscBool *settled)
   }
   SolveTangent(t, b, x);
   for (int c = 0; c < N; c++) travel[c] = Gap(t, c, x);
-  assert_int_equal(ActiveSetCreate(N, t->term, travel, &pressing), 0);
+  assert_int_equal(ActiveSetCreate(N, 1, N, t->term, travel, &pressing), 0);
   for (assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0); m;
        assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0)) {
     assert_int_equal(ActiveSetLimit(pressing, most, &m, which), 0);
@@ -156,7 +156,7 @@ static void test_right_set_needs_nothing(void **state)
   ActiveSet     pressing;
 
   (void)state;
-  assert_int_equal(ActiveSetCreate(2, term, travel, &pressing), 0);
+  assert_int_equal(ActiveSetCreate(2, 1, 2, term, travel, &pressing), 0);
   assert_int_equal(ActiveSetSolve(pressing, &m, which, &settled), 0);
   assert_int_equal(m, 0);
   assert_true(settled);
@@ -172,7 +172,7 @@ static void test_loose_body_is_left_alone(void **state)
   ActiveSet     pressing;
 
   (void)state;
-  assert_int_equal(ActiveSetCreate(1, &term, &travel, &pressing), 0);
+  assert_int_equal(ActiveSetCreate(1, 1, 1, &term, &travel, &pressing), 0);
   assert_int_equal(ActiveSetSolve(pressing, &m, &which, &settled), 0);
   assert_int_equal(m, 1);
   assert_int_equal(ActiveSetAddColumns(pressing, 1, &which, &influence), 0);
