@@ -21,8 +21,56 @@ struct _n_Pressing {
   PetscInt      *column;       /* parts*n; -1: none */
   PetscInt      *term;         /* component of each column */
   PetscReal     *G, *excess;   /* m*parts*n, m */
+  PetscBool     *slipped;      /* n: the term slipped where friction was looked at last */
+  PetscBool     *sticks;       /* n: its slip has turned round since, so that it is to stick in the next set */
+  PetscReal     *slip;         /* 2*n: its slip there (length) */
   PetscBool      plain;        /* friction stays as residual and tangent have it */
 };
+
+/* Slip of a term along a tangent at the end, elastic slip where the step begins included. */
+static PetscReal EndSlip(const ActiveSet p, PetscInt i, PetscInt a)
+{
+  return p->terms[i].friction.law.slip[a] + (a + 1 < p->parts ? p->end[(a + 1) * p->n + i] : 0);
+}
+
+/* Finds terms whose slip has turned round since they were looked at last. In a set each slips on in its direction, and
+   the next set would turn it round again. Between the two it sticks. */
+static void LookAtSlips(ActiveSet p)
+{
+  for (PetscInt i = 0; i < p->n && p->parts > 1; i++) {
+    const FrictionInput *law      = &p->terms[i].friction.law;
+    const PetscReal      pressure = PetscMax(0, -p->terms[i].penalty * (p->terms[i].opening + p->end[i]));
+    PetscReal            along = 0, square = 0;
+
+    for (int a = 0; a < 2; a++) {
+      const PetscReal slip = EndSlip(p, i, a);
+
+      along += slip * p->slip[2 * i + a];
+      square += PetscSqr(slip);
+      p->slip[2 * i + a] = slip;
+    }
+    p->sticks[i]  = (PetscBool)(p->slipped[i] && along < 0);
+    p->slipped[i] = (PetscBool)(!p->sticks[i] && law->stiffness * PetscSqrtReal(square) > law->coefficient * pressure);
+  }
+}
+
+/* Makes room for friction, and looks at the slips of the step as it is. */
+static PetscErrorCode BeginFriction(ActiveSet p)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(p->n, &p->slipped, p->n, &p->sticks, 2 * p->n, &p->slip));
+  for (PetscInt i = 0; i < p->n; i++) {
+    const ActiveSetFriction *friction  = &p->terms[i].friction;
+    PetscReal                stiffness = 0;
+
+    for (int a = 0; a < p->parts - 1; a++) stiffness += friction->by_slip[a][a];
+    for (int a = 0; a < 2; a++) p->slip[2 * i + a] = friction->law.slip[a];
+    /* What slips has the stiffness of what sticks across its slip at most. */
+    p->slipped[i] = (PetscBool)(p->terms[i].stiffness > 0 && stiffness < (p->parts - 1.5) * friction->law.stiffness);
+  }
+  LookAtSlips(p);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /*@
   ActiveSetCreate - begins with the terms that the step as it is would press.
@@ -57,6 +105,7 @@ PetscErrorCode ActiveSetCreate(PetscInt n, PetscInt parts, PetscInt most, const 
   PetscCall(PetscArraycpy(p->end, travel, parts * n));
   for (PetscInt i = 0; i < n; i++) p->pressed[i] = (PetscBool)(terms[i].opening + travel[i] < 0);
   for (PetscInt i = 0; i < parts * n; i++) p->column[i] = -1;
+  if (parts > 1) PetscCall(BeginFriction(p));
   *out = p;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -76,6 +125,7 @@ PetscErrorCode ActiveSetDestroy(ActiveSet *pressing)
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree5(p->terms, p->travel, p->end, p->pressed, p->column));
+  PetscCall(PetscFree3(p->slipped, p->sticks, p->slip));
   PetscCall(PetscFree(p->term));
   PetscCall(PetscFree(p->G));
   PetscCall(PetscFree(p->excess));
@@ -150,6 +200,7 @@ static PetscReal ComponentExcess(ActiveSet p, PetscInt component, PetscReal by[A
   in.opening  = term->opening + p->end[i];
   in.pressure = -term->penalty * in.opening;
   in.rate     = term->penalty;
+  in.state    = p->sticks[i] ? FRICTION_STICKS : FRICTION_DECIDES;
   FrictionEvaluate(&in, &out);
   by[0] -= out.by_gap[a];
   for (PetscInt l = 1; l < p->parts; l++) by[l] -= out.by_slip[a][l - 1];
@@ -266,6 +317,7 @@ static PetscBool Follow(ActiveSet p)
     changed       = (PetscBool)(changed || pressed != p->pressed[i]);
     p->pressed[i] = pressed;
   }
+  LookAtSlips(p);
   negligible = Negligible(p);
   for (PetscInt j = 0; j < p->m; j++)
     if (p->term[j] >= p->n && PetscAbsReal(ComponentExcess(p, p->term[j], by) - p->excess[j]) > negligible)
@@ -310,6 +362,7 @@ PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBo
       if (regular) changed = Follow(p);
     }
     *converged = (PetscBool)(regular && !changed);
+    for (PetscInt i = 0; i < p->n && p->parts > 1; i++) p->sticks[i] = PETSC_FALSE;
     if (regular) *m = MissingFriction(p, which);
     if (*m || *converged || p->plain || p->parts == 1) PetscFunctionReturn(PETSC_SUCCESS);
     p->plain = PETSC_TRUE;
