@@ -106,8 +106,7 @@ static PetscErrorCode TakeSet(ContactCycle cycle, PetscInt slot)
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++) {
-      const uint64_t id =
-        (uint64_t)contact->mesh->node_id[pair->node[c]] * (uint64_t)contact->n_pairs + (uint64_t)p;
+      const uint64_t  id = (uint64_t)contact->mesh->node_id[pair->node[c]] * (uint64_t)contact->n_pairs + (uint64_t)p;
       const PetscBool slips = (PetscBool)(pair->friction && pair->now.slips[c]);
 
       *state = pair->now.status[c] != CONTACT_CLOSED ? TERM_OPEN : slips ? TERM_SLIPS : TERM_STICKS;

@@ -7,7 +7,7 @@
    The files call each other downwards in this order: contactwork (room), contactpair and contactterm (a pair, one of
    its terms), contactpoint (one slave point), contactvariation (first variations that are kept), contactprojection
    (gaps of all points), contactvectors (first variations over dofs), friction,
-   frictiontangent, contactresidual, contacttangent, contactlists,
+   frictionstep, frictiontangent, contactresidual, contacttangent, contactlists,
    contact. */
 #pragma once
 #include "matrix/blockmatrix.h"
