@@ -8,15 +8,69 @@
 /* Rounding of a pressure, as a part of it. */
 #define ACTIVE_SET_ROUND_OFF 1e-12
 
+/* What friction's law says of a traction at the end may differ from what residual and tangent do by this part of the
+   largest traction that any term can bear. Newton's method takes such differences in its stride, and columns for all
+   terms whose direction of slip turns a little would cost more than they save. */
+#define ACTIVE_SET_FRICTION 0.01
+
 struct _n_Pressing {
-  PetscInt       n, m;
+  PetscInt       n, parts, m, most;
   ActiveSetTerm *terms;
-  PetscReal     *travel, *end; /* n; end: with the excess at hand */
+  PetscReal     *travel, *end; /* parts*n; end: with the excess at hand */
   PetscBool     *pressed;      /* n: the set at hand */
-  PetscInt      *column;       /* n: -1: none */
-  PetscInt      *term;         /* of each column */
-  PetscReal     *G, *excess;   /* m*n, m */
+  PetscInt      *column;       /* parts*n; -1: none */
+  PetscInt      *term;         /* component of each column */
+  PetscReal     *G, *excess;   /* m*parts*n, m */
+  PetscBool     *slipped;      /* n: the term slipped where friction was looked at last */
+  PetscBool     *sticks;       /* n: its slip has turned round since, so that it is to stick in the next set */
+  PetscReal     *slip;         /* 2*n: its slip there (length) */
+  PetscBool      plain;        /* friction stays as residual and tangent have it */
 };
+
+/* Slip of a term along a tangent at the end, elastic slip where the step begins included. */
+static PetscReal EndSlip(const ActiveSet p, PetscInt i, PetscInt a)
+{
+  return p->terms[i].friction.law.slip[a] + (a + 1 < p->parts ? p->end[(a + 1) * p->n + i] : 0);
+}
+
+/* Finds terms whose slip has turned round since they were looked at last. In a set each slips on in its direction, and
+   the next set would turn it round again. Between the two it sticks. */
+static void LookAtSlips(ActiveSet p)
+{
+  for (PetscInt i = 0; i < p->n && p->parts > 1; i++) {
+    const FrictionInput *law      = &p->terms[i].friction.law;
+    const PetscReal      pressure = PetscMax(0, -p->terms[i].penalty * (p->terms[i].opening + p->end[i]));
+    PetscReal            along = 0, square = 0;
+
+    for (int a = 0; a < 2; a++) {
+      const PetscReal slip = EndSlip(p, i, a);
+
+      along += slip * p->slip[2 * i + a];
+      square += PetscSqr(slip);
+      p->slip[2 * i + a] = slip;
+    }
+    p->sticks[i]  = (PetscBool)(p->slipped[i] && along < 0);
+    p->slipped[i] = (PetscBool)(!p->sticks[i] && law->stiffness * PetscSqrtReal(square) > law->coefficient * pressure);
+  }
+}
+
+/* Makes room for friction, and looks at the slips of the step as it is. */
+static PetscErrorCode BeginFriction(ActiveSet p)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(p->n, &p->slipped, p->n, &p->sticks, 2 * p->n, &p->slip));
+  for (PetscInt i = 0; i < p->n; i++) {
+    const ActiveSetFriction *friction  = &p->terms[i].friction;
+    PetscReal                stiffness = 0;
+
+    for (int a = 0; a < p->parts - 1; a++) stiffness += friction->by_slip[a][a];
+    for (int a = 0; a < 2; a++) p->slip[2 * i + a] = friction->law.slip[a];
+    /* What slips has the stiffness of what sticks across its slip at most. */
+    p->slipped[i] = (PetscBool)(p->terms[i].stiffness > 0 && stiffness < (p->parts - 1.5) * friction->law.stiffness);
+  }
+  LookAtSlips(p);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /*@
   ActiveSetCreate - begins with the terms that the step as it is would press.
@@ -25,27 +79,33 @@ struct _n_Pressing {
 
   Input Parameters:
 + n      - number of terms
+. parts  - components of a term: 1, with friction 2 or 3
+. most   - number of columns that friction may not exceed
 . terms  - their state where the step begins; copied
-- travel - by how much the step opens the gaps, travel[n] (length); copied
+- travel - by how much the step opens the gaps and slides the terms along their tangents, travel[parts*n] (length);
+           copied
 
   Output Parameter:
 . out - the active set
 @*/
-PetscErrorCode ActiveSetCreate(PetscInt n, const ActiveSetTerm *terms, const PetscReal *travel, ActiveSet *out)
+PetscErrorCode ActiveSetCreate(PetscInt n, PetscInt parts, PetscInt most, const ActiveSetTerm *terms,
+                               const PetscReal *travel, ActiveSet *out)
 {
   ActiveSet p;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&p));
-  p->n = n;
-  PetscCall(PetscMalloc5(n, &p->terms, n, &p->travel, n, &p->end, n, &p->pressed, n, &p->column));
+  p->n     = n;
+  p->parts = parts;
+  p->most  = most;
+  PetscCall(
+    PetscMalloc5(n, &p->terms, parts * n, &p->travel, parts * n, &p->end, n, &p->pressed, parts * n, &p->column));
   PetscCall(PetscArraycpy(p->terms, terms, n));
-  PetscCall(PetscArraycpy(p->travel, travel, n));
-  PetscCall(PetscArraycpy(p->end, travel, n));
-  for (PetscInt i = 0; i < n; i++) {
-    p->pressed[i] = (PetscBool)(terms[i].opening + travel[i] < 0);
-    p->column[i]  = -1;
-  }
+  PetscCall(PetscArraycpy(p->travel, travel, parts * n));
+  PetscCall(PetscArraycpy(p->end, travel, parts * n));
+  for (PetscInt i = 0; i < n; i++) p->pressed[i] = (PetscBool)(terms[i].opening + travel[i] < 0);
+  for (PetscInt i = 0; i < parts * n; i++) p->column[i] = -1;
+  if (parts > 1) PetscCall(BeginFriction(p));
   *out = p;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -65,6 +125,7 @@ PetscErrorCode ActiveSetDestroy(ActiveSet *pressing)
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree5(p->terms, p->travel, p->end, p->pressed, p->column));
+  PetscCall(PetscFree3(p->slipped, p->sticks, p->slip));
   PetscCall(PetscFree(p->term));
   PetscCall(PetscFree(p->G));
   PetscCall(PetscFree(p->excess));
@@ -79,17 +140,19 @@ PetscErrorCode ActiveSetDestroy(ActiveSet *pressing)
 
   Input Parameters:
 + p     - the active set
-. m     - number of terms
+. m     - number of components
 . which - their numbers, which[m]
-- G     - G[m][n]: by how much an excess of 1 of a term closes all gaps
+- G     - G[m][parts*n]: by how much an excess of 1 of a component closes all gaps, and slides all terms back
 @*/
 PetscErrorCode ActiveSetAddColumns(ActiveSet p, PetscInt m, const PetscInt *which, const PetscReal *G)
 {
+  const PetscInt all = p->parts * p->n;
+
   PetscFunctionBeginUser;
   PetscCall(PetscRealloc((p->m + m) * sizeof(PetscInt), &p->term));
   PetscCall(PetscRealloc((p->m + m) * sizeof(PetscReal), &p->excess));
-  PetscCall(PetscRealloc((p->m + m) * p->n * sizeof(PetscReal), &p->G));
-  PetscCall(PetscArraycpy(&p->G[p->m * p->n], G, m * p->n));
+  PetscCall(PetscRealloc((p->m + m) * all * sizeof(PetscReal), &p->G));
+  PetscCall(PetscArraycpy(&p->G[p->m * all], G, m * all));
   for (PetscInt k = 0; k < m; k++) {
     p->column[which[k]] = p->m;
     p->excess[p->m]     = 0;
@@ -108,6 +171,55 @@ static void Excess(const ActiveSetTerm *term, PetscBool pressed, PetscReal *star
   if (PetscAbsReal(*start) <= ACTIVE_SET_ROUND_OFF * PetscAbsReal(term->pressure)) *start = 0;
 }
 
+/* What residual and tangent make of a component at the end, less what the laws say of it, and the derivatives of this
+   excess by the travel of the parts of its term. */
+static PetscReal ComponentExcess(ActiveSet p, PetscInt component, PetscReal by[ACTIVE_SET_PARTS])
+{
+  const PetscInt           i = component % p->n, part = component / p->n, a = part - 1;
+  const ActiveSetTerm     *term     = &p->terms[i];
+  const ActiveSetFriction *friction = &term->friction;
+  FrictionInput            in       = friction->law;
+  FrictionTraction         out;
+  PetscReal                excess, start, rate;
+
+  for (int l = 0; l < ACTIVE_SET_PARTS; l++) by[l] = 0;
+  if (!part) {
+    Excess(term, p->pressed[i], &start, &rate);
+    by[0] = rate;
+    return start + rate * p->end[i];
+  }
+  if (in.stiffness == 0 || p->plain) return 0;
+  excess = friction->traction[a] + friction->by_gap[a] * p->end[i];
+  by[0]  = friction->by_gap[a];
+  for (PetscInt l = 1; l < p->parts; l++) {
+    excess += friction->by_slip[a][l - 1] * p->end[l * p->n + i];
+    by[l] = friction->by_slip[a][l - 1];
+    in.slip[l - 1] += p->end[l * p->n + i];
+  }
+  if (!p->pressed[i]) return excess;
+  in.opening  = term->opening + p->end[i];
+  in.pressure = -term->penalty * in.opening;
+  in.rate     = term->penalty;
+  in.state    = p->sticks[i] ? FRICTION_STICKS : FRICTION_DECIDES;
+  FrictionEvaluate(&in, &out);
+  by[0] -= out.by_gap[a];
+  for (PetscInt l = 1; l < p->parts; l++) by[l] -= out.by_slip[a][l - 1];
+  return excess - out.traction[a];
+}
+
+/* Largest traction that is no matter to friction. */
+static PetscReal Negligible(ActiveSet p)
+{
+  PetscReal most = 0;
+
+  for (PetscInt i = 0; i < p->n && p->parts > 1; i++) {
+    const PetscReal pressure = -p->terms[i].penalty * (p->terms[i].opening + p->end[i]);
+
+    if (p->pressed[i]) most = PetscMax(most, p->terms[i].friction.law.coefficient * pressure);
+  }
+  return ACTIVE_SET_FRICTION * most;
+}
+
 /* Terms of the set at hand that need a column and have none. */
 static PetscInt Missing(ActiveSet p, PetscInt *which)
 {
@@ -122,13 +234,32 @@ static PetscInt Missing(ActiveSet p, PetscInt *which)
   return m;
 }
 
-/* Solves for the excess pressures e of the present set: e - rate (travel - G e) = start. *regular is PETSC_TRUE if the
-   matrix is not singular. */
+/* Components of friction, of the terms where the law at the end matters, that have no column. Where there would be too
+   many, none is asked for. */
+static PetscInt MissingFriction(ActiveSet p, PetscInt *which)
+{
+  const PetscReal negligible = Negligible(p);
+  PetscReal       by[ACTIVE_SET_PARTS];
+  PetscInt        m = 0;
+
+  for (PetscInt i = 0; i < p->n; i++) {
+    PetscBool matters = PETSC_FALSE;
+
+    for (PetscInt part = 1; part < p->parts; part++)
+      matters = (PetscBool)(matters || (p->column[part * p->n + i] < 0 &&
+                                        PetscAbsReal(ComponentExcess(p, part * p->n + i, by)) > negligible));
+    for (PetscInt part = 1; part < p->parts && matters; part++)
+      if (p->column[part * p->n + i] < 0) which[m++] = part * p->n + i;
+  }
+  return p->m + m <= p->most ? m : 0;
+}
+
+/* Changes the excess e of all columns by one iteration of Newton's method for e = excess(travel - G e). *regular is
+   PETSC_TRUE if its matrix is not singular. */
 static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
 {
-  const PetscInt m = p->m;
+  const PetscInt m = p->m, all = p->parts * p->n;
   PetscScalar   *a, *b;
-  PetscReal     *A;
   PetscErrorCode code;
   Mat            matrix;
   Vec            right, e;
@@ -139,12 +270,14 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
   PetscCall(MatDenseGetArray(matrix, &a));
   PetscCall(VecGetArray(right, &b));
   for (PetscInt j = 0; j < m; j++) {
-    PetscReal start, rate;
+    PetscReal by[ACTIVE_SET_PARTS];
 
-    Excess(&p->terms[p->term[j]], p->pressed[p->term[j]], &start, &rate);
-    b[j] = start + rate * p->travel[p->term[j]];
-    A    = &p->G[p->term[j]];
-    for (PetscInt l = 0; l < m; l++) a[l * m + j] = (l == j) + rate * A[l * p->n];
+    b[j] = ComponentExcess(p, p->term[j], by) - p->excess[j];
+    for (PetscInt l = 0; l < m; l++) {
+      a[l * m + j] = l == j;
+      for (PetscInt part = 0; part < p->parts; part++)
+        a[l * m + j] += by[part] * p->G[l * all + part * p->n + p->term[j] % p->n];
+    }
   }
   PetscCall(VecRestoreArray(right, &b));
   PetscCall(MatDenseRestoreArray(matrix, &a));
@@ -156,7 +289,7 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
     PetscCall(MatSolve(matrix, right, e));
     PetscCall(VecGetArray(e, &b));
     for (PetscInt j = 0; j < m; j++) {
-      p->excess[j] = PetscRealPart(b[j]);
+      p->excess[j] += PetscRealPart(b[j]);
       if (PetscIsInfOrNanReal(p->excess[j])) *regular = PETSC_FALSE;
     }
     PetscCall(VecRestoreArray(e, &b));
@@ -167,20 +300,28 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the set that the excess at hand leads to, and says whether it is another one. */
+/* Finds the set that the excess at hand leads to, and says whether it is another one, or friction's excess another. */
 static PetscBool Follow(ActiveSet p)
 {
-  PetscBool changed = PETSC_FALSE;
+  const PetscInt all     = p->parts * p->n;
+  PetscBool      changed = PETSC_FALSE;
+  PetscReal      by[ACTIVE_SET_PARTS], negligible;
 
-  for (PetscInt i = 0; i < p->n; i++) {
-    PetscBool pressed;
-
+  for (PetscInt i = 0; i < all; i++) {
     p->end[i] = p->travel[i];
-    for (PetscInt j = 0; j < p->m; j++) p->end[i] -= p->G[j * p->n + i] * p->excess[j];
-    pressed       = (PetscBool)(p->terms[i].opening + p->end[i] < 0);
+    for (PetscInt j = 0; j < p->m; j++) p->end[i] -= p->G[j * all + i] * p->excess[j];
+  }
+  for (PetscInt i = 0; i < p->n; i++) {
+    const PetscBool pressed = (PetscBool)(p->terms[i].opening + p->end[i] < 0);
+
     changed       = (PetscBool)(changed || pressed != p->pressed[i]);
     p->pressed[i] = pressed;
   }
+  LookAtSlips(p);
+  negligible = Negligible(p);
+  for (PetscInt j = 0; j < p->m; j++)
+    if (p->term[j] >= p->n && PetscAbsReal(ComponentExcess(p, p->term[j], by) - p->excess[j]) > negligible)
+      changed = PETSC_TRUE;
   return changed;
 }
 
@@ -193,29 +334,41 @@ static PetscBool Follow(ActiveSet p)
 . p - the active set
 
   Output Parameters:
-+ m         - number of terms whose columns are missing; 0: it ended
-. which     - their numbers; room for n
++ m         - number of components whose columns are missing; 0: it ended
+. which     - their numbers; room for parts*n
 - converged - where it ended: with a set of terms that is right
 
-  Note:
+  Notes:
+  Where friction keeps it from an end, it is solved with the friction that residual and tangent have.
+
   Newton's method is here that of active sets. Sources: Josephy, Newton's method for generalized equations, 1979 (the
   problem linearised except for its contact conditions); Hintermueller, Ito, Kunisch, The primal-dual active set
-  strategy as a semismooth Newton method, SIAM J. Optim. 13 (2003) 865-888.
+  strategy as a semismooth Newton method, SIAM J. Optim. 13 (2003) 865-888; Alart, Curnier, A mixed formulation for
+  frictional contact problems prone to Newton like solution methods, CMAME 92 (1991) 353-375.
 @*/
 PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool *converged)
 {
-  PetscBool regular = PETSC_TRUE, changed = PETSC_TRUE;
+  PetscBool regular, changed;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < ACTIVE_SET_MAX_SETS && changed && regular; i++) {
-    *m         = Missing(p, which);
-    *converged = (PetscBool)(!*m && !p->m);
-    if (*m || *converged) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(Balance(p, &regular));
-    if (regular) changed = Follow(p);
-  }
-  *converged = (PetscBool)(regular && !changed);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  do {
+    regular = changed = PETSC_TRUE;
+    for (PetscInt i = 0; i < ACTIVE_SET_MAX_SETS && changed && regular; i++) {
+      *m = Missing(p, which);
+      if (!*m && !p->m) *m = MissingFriction(p, which);
+      *converged = (PetscBool)(!*m && !p->m);
+      if (*m || *converged) PetscFunctionReturn(PETSC_SUCCESS);
+      PetscCall(Balance(p, &regular));
+      if (regular) changed = Follow(p);
+    }
+    *converged = (PetscBool)(regular && !changed);
+    for (PetscInt i = 0; i < p->n && p->parts > 1; i++) p->sticks[i] = PETSC_FALSE;
+    if (regular) *m = MissingFriction(p, which);
+    if (*m || *converged || p->plain || p->parts == 1) PetscFunctionReturn(PETSC_SUCCESS);
+    p->plain = PETSC_TRUE;
+    PetscCall(PetscArrayzero(p->excess, p->m));
+    Follow(p);
+  } while (PETSC_TRUE);
 }
 
 /* Sorts terms by depth where the step ends, the deepest first. */
@@ -275,8 +428,8 @@ PetscErrorCode ActiveSetLimit(ActiveSet p, PetscInt most, PetscInt *m, PetscInt 
 . p - the active set
 
   Output Parameters:
-+ excess  - for each column its term's excess: the pressure in residual and tangent, less the law's; belongs to the
-            object
++ excess  - for each column the excess of its component: the pressure or traction in residual and tangent, less the
+            law's; belongs to the object
 - pressed - which terms press at the end, pressed[n]; belongs to the object
 @*/
 void ActiveSetGet(ActiveSet p, const PetscReal **excess, const PetscBool **pressed)

@@ -1,4 +1,4 @@
-/* Finds out whether the set of nodes in contact repeats itself from iterate to iterate. */
+/* Finds out whether the set of nodes in contact, and of those that slip, repeats itself from iterate to iterate. */
 #include "contact/contactcycle.h"
 #include "contactimpl.h"
 #include "base/gathertable.h"
@@ -22,8 +22,11 @@ struct _n_ContactCycle {
   PetscInt       looks; /* iterates of this solve */
   uint64_t       set[CYCLE_ITERATES];
   PetscReal      residual[CYCLE_ITERATES];
-  unsigned char *closed; /* [CYCLE_ITERATES][n] */
+  unsigned char *state; /* [CYCLE_ITERATES][n] */
 };
+
+/* What a term does. What is in contact without friction counts as sticking. */
+enum { TERM_OPEN, TERM_STICKS, TERM_SLIPS };
 
 /*@
   ContactCycleCreate - makes room for the sets of a solve.
@@ -44,7 +47,7 @@ PetscErrorCode ContactCycleCreate(Contact contact, ContactCycle *out)
   PetscCall(PetscNew(&cycle));
   cycle->contact = contact;
   for (int p = 0; p < contact->n_pairs; p++) cycle->n += contact->pairs[p].n;
-  PetscCall(PetscCalloc1(CYCLE_ITERATES * cycle->n, &cycle->closed));
+  PetscCall(PetscCalloc1(CYCLE_ITERATES * cycle->n, &cycle->state));
   *out = cycle;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -61,7 +64,7 @@ PetscErrorCode ContactCycleDestroy(ContactCycle *cycle)
 {
   PetscFunctionBeginUser;
   if (!*cycle) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree((*cycle)->closed));
+  PetscCall(PetscFree((*cycle)->state));
   PetscCall(PetscFree(*cycle));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -95,7 +98,7 @@ static uint64_t HashFinish(uint64_t x)
 static PetscErrorCode TakeSet(ContactCycle cycle, PetscInt slot)
 {
   const Contact  contact = cycle->contact;
-  unsigned char *closed  = &cycle->closed[slot * cycle->n];
+  unsigned char *state   = &cycle->state[slot * cycle->n];
   uint64_t       sum     = 0;
 
   PetscFunctionBeginUser;
@@ -103,8 +106,11 @@ static PetscErrorCode TakeSet(ContactCycle cycle, PetscInt slot)
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++) {
-      *closed = pair->now.status[c] == CONTACT_CLOSED;
-      if (*closed++) sum += HashFinish((uint64_t)ContactTermId(pair, c) * (uint64_t)contact->n_pairs + (uint64_t)p);
+      const uint64_t  id = (uint64_t)ContactTermId(pair, c) * (uint64_t)contact->n_pairs + (uint64_t)p;
+      const PetscBool slips = (PetscBool)(pair->friction && pair->now.slips[c]);
+
+      *state = pair->now.status[c] != CONTACT_CLOSED ? TERM_OPEN : slips ? TERM_SLIPS : TERM_STICKS;
+      if (*state++ != TERM_OPEN) sum += HashFinish(2 * id + slips);
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, contact->mesh->comm));
@@ -185,8 +191,8 @@ PetscErrorCode ContactCycleLocate(ContactCycle cycle, PetscInt period, char *tex
       PetscBool changes = PETSC_FALSE;
 
       for (PetscInt back = 1; back < period; back++)
-        changes = (PetscBool)(changes || cycle->closed[Slot(cycle, back) * cycle->n + i] !=
-                                           cycle->closed[Slot(cycle, 0) * cycle->n + i]);
+        changes = (PetscBool)(changes || cycle->state[Slot(cycle, back) * cycle->n + i] !=
+                                           cycle->state[Slot(cycle, 0) * cycle->n + i]);
       if (!changes) continue;
       rows[2 * n]       = p;
       rows[2 * n++ + 1] = contact->mesh->node_tag[contact->pairs[p].node[c]];

@@ -6,19 +6,17 @@
    bodies, and by more than the first solution of the step says, because what opens or closes changes the step. */
 #define STEP_REACH 3
 
-/* Numbers of an ActiveSetTerm, as they are sent between ranks. */
-#define STEP_TERM 4
-
 struct _n_ContactStep {
   Contact        contact;
   PetscReal     *reach; /* of each pair */
-  PetscInt       n, mine;
+  PetscInt       n, mine, parts;
   PetscMPIInt    rank, *count, *first; /* terms of each rank */
   ActiveSetTerm *terms;                /* n */
   PetscInt      *pair, *term;          /* of mine */
   PetscReal     *area;
-  PetscInt      *ptr, *node; /* gap's first variation, over contact nodes of the pair */
-  PetscReal     *N;          /* dim for each of these */
+  PetscInt      *ptr, *node;  /* gap's first variation, over contact nodes of the pair */
+  PetscReal     *N;           /* dim for each of these */
+  PetscReal (*tangent)[2][3]; /* of mine, where there is friction */
 };
 
 /* How the contact nodes of a pair move with du, tools and an analytic master included: values[contact nodes*dim], to
@@ -54,23 +52,28 @@ static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const P
 }
 
 /* Adds a term of a pair, in its state at the last projection and without its variation, if the step may reach its
-   gap. */
-static void AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
+   gap. With friction all that press are added, because each may begin or cease to slip. */
+static PetscErrorCode AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
 {
   const ContactPair *pair  = &step->contact->pairs[p];
   const LawState     state = ContactTermState(pair, c, t, pair->most);
   LawValue           value;
   PetscReal          opening;
 
+  PetscFunctionBeginUser;
   ContactTermLaw(pair, c, t, &value, &opening, &step->area[step->mine]);
   opening -= LawOnsetGap(&state);
-  if (!(PetscAbsReal(opening) <= step->reach[p])) return; /* also where no master is near: NaN */
-  step->terms[step->mine]  = (ActiveSetTerm){.opening   = opening,
-                                             .pressure  = value.pressure,
-                                             .stiffness = pair->stiffness[c],
-                                             .penalty   = state.penalty};
+  if (!(PetscAbsReal(opening) <= step->reach[p] || (pair->friction && value.stiffness > 0)))
+    PetscFunctionReturn(PETSC_SUCCESS); /* also where no master is near: NaN */
+  step->terms[step->mine] = (ActiveSetTerm){.opening   = opening,
+                                            .pressure  = value.pressure,
+                                            .stiffness = pair->stiffness[c],
+                                            .penalty   = state.penalty};
+  if (pair->friction)
+    PetscCall(FrictionStepTerm(pair, c, t, &step->terms[step->mine].friction, step->tangent[step->mine]));
   step->pair[step->mine]   = p;
   step->term[step->mine++] = c;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Adds the variations of those terms of a pair that were added from number `from` on. */
@@ -109,19 +112,19 @@ static PetscErrorCode AddPair(ContactStep step, int p, const PetscReal *u, Petsc
 
   PetscFunctionBeginUser;
   PetscCall(ContactPairProject(step->contact, pair, u, t));
-  for (PetscInt c = 0; c < pair->n; c++) AddTerm(step, p, c, t);
+  for (PetscInt c = 0; c < pair->n; c++) PetscCall(AddTerm(step, p, c, t));
   PetscCall(AddVariations(step, p, from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gathers `size` values of each of my terms into their places among those of all ranks. */
-static PetscErrorCode Gather(ContactStep step, PetscInt size, const PetscReal *mine, PetscReal *all)
+/* Gathers `size` bytes of each of my terms into their places among those of all ranks. */
+static PetscErrorCode Gather(ContactStep step, size_t size, const void *mine, void *all)
 {
   MPI_Comm     comm = step->contact->mesh->comm;
   MPI_Datatype block;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)size, MPIU_REAL, &block));
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)size, MPI_BYTE, &block));
   PetscCallMPI(MPI_Type_commit(&block));
   PetscCallMPI(MPI_Allgatherv(mine, step->count[step->rank], block, all, step->count, step->first, block, comm));
   PetscCallMPI(MPI_Type_free(&block));
@@ -134,7 +137,6 @@ static PetscErrorCode GatherTerms(ContactStep step)
   MPI_Comm       comm = step->contact->mesh->comm;
   PetscMPIInt    size, mine = (PetscMPIInt)step->mine;
   ActiveSetTerm *own = step->terms;
-  PetscReal     *from, *to;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
@@ -144,20 +146,9 @@ static PetscErrorCode GatherTerms(ContactStep step)
   step->first[0] = 0;
   for (PetscMPIInt r = 0; r < size; r++) step->first[r + 1] = step->first[r] + step->count[r];
   step->n = step->first[size];
-  PetscCall(PetscMalloc2(STEP_TERM * step->mine, &from, STEP_TERM * step->n, &to));
-  for (PetscInt i = 0; i < step->mine; i++) {
-    from[STEP_TERM * i]     = own[i].opening;
-    from[STEP_TERM * i + 1] = own[i].pressure;
-    from[STEP_TERM * i + 2] = own[i].stiffness;
-    from[STEP_TERM * i + 3] = own[i].penalty;
-  }
-  PetscCall(Gather(step, STEP_TERM, from, to));
-  PetscCall(PetscFree(step->terms));
   PetscCall(PetscMalloc1(step->n, &step->terms));
-  for (PetscInt i = 0; i < step->n; i++)
-    step->terms[i] =
-      (ActiveSetTerm){to[STEP_TERM * i], to[STEP_TERM * i + 1], to[STEP_TERM * i + 2], to[STEP_TERM * i + 3]};
-  PetscCall(PetscFree2(from, to));
+  PetscCall(Gather(step, sizeof(*own), own, step->terms));
+  PetscCall(PetscFree(own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -189,6 +180,8 @@ PetscErrorCode ContactStepCreate(Contact contact, const PetscReal *u, const Pets
   for (int p = 0; p < contact->n_pairs; p++) most += contact->pairs[p].n;
   PetscCall(PetscMalloc1(most, &step->terms));
   PetscCall(PetscMalloc4(most, &step->pair, most, &step->term, most, &step->area, most + 1, &step->ptr));
+  step->parts = ContactHasFriction(contact) ? contact->mesh->dim : 1;
+  if (step->parts > 1) PetscCall(PetscCalloc1(most, &step->tangent));
   step->ptr[0] = 0;
   PetscCall(PetscMalloc1(contact->n_pairs, &step->reach));
   for (int p = 0; p < contact->n_pairs; p++) {
@@ -218,6 +211,7 @@ PetscErrorCode ContactStepDestroy(ContactStep *step)
   PetscCall(PetscFree(s->reach));
   PetscCall(PetscFree(s->terms));
   PetscCall(PetscFree4(s->pair, s->term, s->area, s->ptr));
+  PetscCall(PetscFree(s->tangent));
   PetscCall(PetscFree2(s->count, s->first));
   PetscCall(PetscFree(s->node));
   PetscCall(PetscFree(s->N));
@@ -243,6 +237,12 @@ PetscErrorCode ContactStepGetTerms(ContactStep step, PetscInt *n, const ActiveSe
   *n     = step->n;
   *terms = step->terms;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Parts of a term: 1, with friction as many as there are dimensions. */
+PetscInt ContactStepParts(ContactStep step)
+{
+  return step->parts;
 }
 
 /* Change of a term's gap. It is summed by components, so that no product waits for the one before it. */
@@ -289,8 +289,27 @@ PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscRea
     }
     PetscCall(PetscFree(values));
   }
-  PetscCall(Gather(step, 1, mine, travel));
+  PetscCall(Gather(step, sizeof(PetscReal), mine, travel));
   PetscCall(PetscFree(mine));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Motion of the sides of my terms along each other: slide[3] of each, 0 without friction. */
+static PetscErrorCode OwnSlide(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *slide)
+{
+  PetscReal *values;
+  PetscInt   i = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(slide, 3 * step->mine));
+  for (int p = 0; p < step->contact->n_pairs; p++) {
+    const ContactPair *pair = &step->contact->pairs[p];
+
+    PetscCall(PairMove(step->contact, &step->contact->pairs[p], du, t, t_next, &values));
+    for (; i < step->mine && step->pair[i] == p; i++)
+      if (pair->friction) PetscCall(FrictionTermMotion(pair, step->term[i], values, &slide[3 * i]));
+    PetscCall(PetscFree(values));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -311,21 +330,49 @@ PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscRea
 @*/
 PetscErrorCode ContactStepSlide(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *slide)
 {
-  PetscReal *mine, *values;
-  PetscInt   i = 0;
+  PetscReal *mine;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(3 * step->mine, &mine));
-  for (int p = 0; p < step->contact->n_pairs; p++) {
-    const ContactPair *pair = &step->contact->pairs[p];
-
-    PetscCall(PairMove(step->contact, &step->contact->pairs[p], du, t, t_next, &values));
-    for (; i < step->mine && step->pair[i] == p; i++)
-      if (pair->friction) PetscCall(FrictionTermMotion(pair, step->term[i], values, &mine[3 * i]));
-    PetscCall(PetscFree(values));
-  }
-  PetscCall(Gather(step, 3, mine, slide));
+  PetscCall(PetscMalloc1(3 * step->mine, &mine));
+  PetscCall(OwnSlide(step, du, t, t_next, mine));
+  PetscCall(Gather(step, 3 * sizeof(PetscReal), mine, slide));
   PetscCall(PetscFree(mine));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactStepChange - computes how local displacements change all parts of the terms, to first order: their gaps and,
+  with friction, their slips along their tangents.
+
+  Collective
+
+  Input Parameters:
++ step   - the step
+. du     - local displacements, du[n_nodes*dim] (length), prescribed ones included
+. t      - load parameter where the motion of tools begins
+- t_next - load parameter where it ends
+
+  Output Parameter:
+. change - change[ContactStepParts()*n] of the terms of all ranks, part by part (length)
+@*/
+PetscErrorCode ContactStepChange(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next,
+                                 PetscReal *change)
+{
+  PetscReal *slide, *mine;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactStepTravel(step, du, t, t_next, change));
+  if (step->parts == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(3 * step->mine, &slide, step->mine, &mine));
+  PetscCall(OwnSlide(step, du, t, t_next, slide));
+  for (PetscInt a = 0; a < step->parts - 1; a++) {
+    for (PetscInt i = 0; i < step->mine; i++) {
+      mine[i] = 0;
+      for (int d = 0; d < 3; d++) mine[i] += step->tangent[i][a][d] * slide[3 * i + d];
+    }
+    PetscCall(Gather(step, sizeof(PetscReal), mine, &change[(1 + a) * step->n]));
+  }
+  PetscCall(PetscFree2(slide, mine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -357,34 +404,61 @@ PetscErrorCode ContactStepWithin(ContactStep step, const PetscReal *du, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds to column j the forces of a pressure of 1 on my term i. */
+static PetscErrorCode AddPressure(ContactStep step, PetscInt i, PetscInt j, Mat B)
+{
+  const int       dim = step->contact->mesh->dim;
+  const PetscInt *dof = step->contact->pairs[step->pair[i]].lists->dof;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = step->ptr[i] * dim; k < step->ptr[i + 1] * dim; k++)
+    PetscCall(MatSetValue(B, dof[step->node[k / dim] * dim + k % dim], j, step->area[i] * step->N[k], ADD_VALUES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds to column j the forces of a traction of 1 on my term i along a tangent. */
+static PetscErrorCode AddTraction(ContactStep step, PetscInt i, PetscInt a, PetscInt j, Mat B)
+{
+  ContactPair   *pair = &step->contact->pairs[step->pair[i]];
+  const PetscInt n    = pair->lists->n_nodes * step->contact->mesh->dim;
+  PetscReal     *values;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &values));
+  PetscCall(FrictionTermForces(pair, step->term[i], step->tangent[i][a], values));
+  for (PetscInt k = 0; k < n; k++)
+    if (values[k] != 0) PetscCall(MatSetValue(B, pair->lists->dof[k], j, -values[k], ADD_VALUES));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  ContactStepForces - computes the forces of a pressure of 1 on each of some terms, against the opening of its gap,
-  over the free dofs.
+  ContactStepForces - computes the forces over the free dofs of a pressure of 1 on some terms, against the opening of
+  their gaps, or of a traction of 1 on them along a tangent, against their slip.
 
   Collective
 
   Input Parameters:
 + step  - the step
 . rows  - rows of the matrix on this rank
-. m     - number of terms
-- which - numbers of the terms, the same on all ranks
+. m     - number of components
+- which - their numbers as in activeset.h, the same on all ranks
 
   Output Parameter:
 . B - dense matrix with m columns; the caller destroys it
 @*/
 PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, const PetscInt *which, Mat *B)
 {
-  const int dim = step->contact->mesh->dim;
-
   PetscFunctionBeginUser;
   PetscCall(MatCreateDense(step->contact->mesh->comm, rows, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, B));
   for (PetscInt j = 0; j < m; j++) {
-    const PetscInt i = which[j] - step->first[step->rank];
+    const PetscInt i = which[j] % step->n - step->first[step->rank], part = which[j] / step->n;
 
     if (i < 0 || i >= step->mine) continue;
-    for (PetscInt k = step->ptr[i] * dim; k < step->ptr[i + 1] * dim; k++)
-      PetscCall(MatSetValue(*B, step->contact->pairs[step->pair[i]].lists->dof[step->node[k / dim] * dim + k % dim], j,
-                            step->area[i] * step->N[k], ADD_VALUES));
+    if (part)
+      PetscCall(AddTraction(step, i, part - 1, j, *B));
+    else
+      PetscCall(AddPressure(step, i, j, *B));
   }
   PetscCall(MatAssemblyBegin(*B, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*B, MAT_FINAL_ASSEMBLY));

@@ -391,6 +391,33 @@ static void TermEvaluate(const ContactPair *pair, PetscInt c, FrictionInput *in,
   FrictionEvaluate(in, out);
 }
 
+/* What the law is to be asked of a term that need not be in contact. *found: it has anchors. */
+PetscErrorCode FrictionTermAsk(const ContactPair *pair, PetscInt c, PetscReal t, FrictionInput *in, PetscBool *found)
+{
+  const Friction f     = pair->friction;
+  const LawState state = ContactTermState(pair, c, t, pair->most);
+  LawValue       value;
+  PetscReal      gap, area, mu, slope;
+
+  PetscFunctionBeginUser;
+  *found = f->anchored[c];
+  if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
+  ContactTermLaw(pair, c, t, &value, &gap, &area);
+  mu  = TermCoefficient(pair, c, t, value.pressure, &slope);
+  *in = (FrictionInput){.coefficient = mu,
+                        .steepness   = slope,
+                        .cohesion    = pair->scene->cohesion,
+                        .limit       = pair->scene->tau_max,
+                        .stiffness   = f->stiffness,
+                        .kept        = {f->kept[2 * c], f->kept[2 * c + 1]},
+                        .pressure    = value.pressure,
+                        .rate        = value.stiffness,
+                        .opening     = gap - LawOnsetGap(&state),
+                        .began       = f->began[c]};
+  PetscCall(TermSlip(pair, c, t, in, found));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FrictionTerm - evaluates friction at a term.
 
@@ -409,36 +436,22 @@ static void TermEvaluate(const ContactPair *pair, PetscInt c, FrictionInput *in,
 PetscErrorCode FrictionTerm(const ContactPair *pair, PetscInt c, PetscReal t, FrictionInput *in, FrictionTraction *out,
                             PetscBool *acts)
 {
-  const Friction f     = pair->friction;
-  const LawState state = ContactTermState(pair, c, t, pair->most);
-  LawValue       value;
-  PetscReal      gap, area, mu, slope;
+  LawValue  value;
+  PetscReal gap, area;
 
   PetscFunctionBeginUser;
   ContactTermLaw(pair, c, t, &value, &gap, &area);
-  *acts = (PetscBool)(value.stiffness > 0 && f->anchored[c]);
-  if (!*acts) PetscFunctionReturn(PETSC_SUCCESS);
-  mu  = TermCoefficient(pair, c, t, value.pressure, &slope);
-  *in = (FrictionInput){.coefficient = mu,
-                        .steepness   = slope,
-                        .cohesion    = pair->scene->cohesion,
-                        .limit       = pair->scene->tau_max,
-                        .stiffness   = f->stiffness,
-                        .kept        = {f->kept[2 * c], f->kept[2 * c + 1]},
-                        .pressure    = value.pressure,
-                        .rate        = value.stiffness,
-                        .opening     = gap - LawOnsetGap(&state),
-                        .began       = f->began[c]};
-  PetscCall(TermSlip(pair, c, t, in, acts));
+  *acts = (PetscBool)(value.stiffness > 0);
+  if (*acts) PetscCall(FrictionTermAsk(pair, c, t, in, acts));
   if (*acts) TermEvaluate(pair, c, in, out);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the forces of slave point q to the values of the contact nodes. */
-static PetscErrorCode PointForces(ContactPair *pair, PetscInt q, PetscReal *values)
+/* Adds a force F on slave point q, and its reaction on the master, to the values of the contact nodes. */
+PetscErrorCode FrictionPointForces(const ContactPair *pair, PetscInt q, const PetscReal F[3], PetscReal *values)
 {
   const int           dim = pair->mesh->dim;
-  const PetscReal    *F   = &pair->friction->force[3 * q], *S;
+  const PetscReal    *S;
   const PetscInt     *node;
   const PetscInt      n = FrictionOwnNodes(pair, q, &node, &S);
   const FrictionFoot *foot;
@@ -448,7 +461,6 @@ static PetscErrorCode PointForces(ContactPair *pair, PetscInt q, PetscReal *valu
   if (F[0] == 0 && F[1] == 0 && F[2] == 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt a = 0; a < n; a++)
     for (int d = 0; d < dim; d++) values[node[a] * dim + d] += S[a] * F[d];
-  for (int d = 0; d < dim; d++) pair->total[d] -= F[d];
   PetscCall(FrictionPointFoot(pair, q, &foot, &found));
   for (int k = 0; found && k < foot->nodes; k++) {
     PetscReal force[3][3], sign[3];
@@ -547,50 +559,13 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
       if (HasTurned(pair, c, &in, &out)) now->turned += energy;
     }
   }
-  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) PetscCall(PointForces(pair, q, values));
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
+    const PetscReal *F = &pair->friction->force[3 * q];
+
+    for (int d = 0; d < pair->mesh->dim; d++) pair->total[d] -= F[d];
+    PetscCall(FrictionPointForces(pair, q, F, values));
+  }
   PetscCall(NodalForces(pair));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Mean motion of the slave points of a term against their anchors in the tangent plane, where the contact nodes move by
-   values; 0 where the term has no anchors. */
-PetscErrorCode FrictionTermMotion(const ContactPair *pair, PetscInt c, const PetscReal *values, PetscReal motion[3])
-{
-  const NeighbourLists lists = pair->lists;
-  const int            dim   = lists->dim;
-  PetscReal            area = 0, across = 0, square = 0, normal[3] = {0, 0, 0};
-
-  PetscFunctionBeginUser;
-  for (int d = 0; d < 3; d++) motion[d] = 0;
-  for (PetscInt k = pair->term_ptr[c]; pair->friction->anchored[c] && k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt  q      = pair->term_point[k], *node;
-    const PetscReal weight = pair->term_weight[k] * pair->factor[q], *S;
-    const Facet    *face;
-    const PetscInt  n = FrictionOwnNodes(pair, q, &node, &S);
-    PetscReal       N[FACE_MAX_NODES];
-
-    if (!FrictionTermTakes(pair, k)) continue;
-    area += weight;
-    PetscCall(ContactVariationsNeed(pair, q));
-    for (int d = 0; d < dim; d++) normal[d] += weight * pair->variations->own[q * dim + d];
-    for (PetscInt a = 0; a < n; a++)
-      for (int d = 0; d < dim; d++) motion[d] += weight * S[a] * values[node[a] * dim + d];
-    if (!pair->master || pair->friction->at[q] < 0) continue;
-    face = &lists->face[pair->friction->at[q]];
-    ElementShape(face->type, &pair->friction->xi[2 * q], N, NULL, NULL);
-    for (int a = 0; a < ElementGet(face->type)->nodes; a++) {
-      PetscReal sign[3];
-      PetscInt  at;
-
-      FrictionNodeSign(pair, face->nodes[a], &at, sign);
-      for (int d = 0; d < dim; d++) motion[d] -= weight * N[a] * sign[d] * values[at * dim + d];
-    }
-  }
-  for (int d = 0; d < 3; d++) {
-    across += normal[d] * motion[d];
-    square += PetscSqr(normal[d]);
-  }
-  for (int d = 0; d < 3 && area > 0; d++) motion[d] = (motion[d] - across / square * normal[d]) / area;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

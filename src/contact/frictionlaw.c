@@ -1,5 +1,5 @@
 /* Coulomb's law at one slave node and its derivatives. */
-#include "frictionlaw.h"
+#include "contact/frictionlaw.h"
 #include <math.h>
 #include <string.h>
 
@@ -147,13 +147,14 @@ static void ApplyMatrix(Matrix m, FrictionTraction *by)
   for (int i = 0; i < 3; i++) by->by_gap[i] = Dot(m[i], e.by_gap);
 }
 
-/* The largest traction that sticks, and its slope over the pressure. */
+/* The largest traction that sticks, and its slope over the pressure. Where a linear step holds a node in slip, its
+   pressure may be negative and counts with its sign. */
 static double Bound(const FrictionInput *in, double *slope)
 {
   const double bound = in->cohesion + in->coefficient * in->pressure;
 
   *slope = 0;
-  if (!(in->pressure > 0)) return 0;
+  if (!(in->pressure > 0) && in->state != FRICTION_SLIPS) return 0;
   if (in->limit > 0 && bound >= in->limit) return in->limit;
   *slope = in->coefficient + in->steepness * in->pressure;
   return bound;
@@ -193,7 +194,7 @@ void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
     return;
   }
   for (int i = 0; i < 3; i++) e[i] /= length;
-  Projector(bound / length, e, m);
+  Projector(bound > 0 ? bound / length : 0, e, m);
   ApplyMatrix(m, out);
   for (int i = 0; i < 3; i++) {
     out->traction[i] = bound * e[i];

@@ -14,6 +14,10 @@
    tenth of the largest pressure, would show in the peak, and is left at half a per cent. */
 #define EQUILIBRIUM_LAG_AT_BREAK 1e-5
 #define EQUILIBRIUM_LAG_AT_END   0.05
+/* With friction surfaces slide, and the dent moves with them: offsets that lag by the usual drift change the forces of
+   a die that slides by three faces in a step by 3 %. With this value they agree with those of short steps within
+   0.2 %. */
+#define EQUILIBRIUM_LAG_SLIDING 0.1
 /* What the springs of free bodies hold after a solve may be this part of F_ref. More is relaxed. */
 #define EQUILIBRIUM_SPRINGS 1e-7
 /* The springs are relaxed at most this many times. */
@@ -229,7 +233,8 @@ static PetscReal ModelLag(Model model, PetscInt times)
 {
   if (times >= EQUILIBRIUM_MAX_OFFSET_UPDATES) return 1;
   if (model->t >= 1) return EQUILIBRIUM_LAG_AT_END;
-  return SceneBreaks(model->scene, model->t) ? EQUILIBRIUM_LAG_AT_BREAK : 1;
+  if (SceneBreaks(model->scene, model->t)) return EQUILIBRIUM_LAG_AT_BREAK;
+  return ContactHasFriction(model->contact) ? EQUILIBRIUM_LAG_SLIDING : 1;
 }
 
 /* Solves with frozen contact lists until the lists hold at the solution. */

@@ -3,9 +3,9 @@
 #include "contact/contactstep.h"
 #include "modelimpl.h"
 
-/* At most this many terms may change in one step. As many solves at once cost about as much as two or three factors and
-   save as many iterations. With half as many a pipe between plates has steps that stay as they are, and takes 69
-   iterations instead of 63. */
+/* At most this many terms may change in one step, with friction in each of their parts. As many solves at once cost
+   about as much as two or three factors and save as many iterations. With half as many a pipe between plates has steps
+   that stay as they are, and takes 69 iterations instead of 63. */
 #define LINEAR_CONTACT_TERMS 256
 /* All columns Z together have at most this many numbers on all ranks, which is 0.4 GB. */
 #define LINEAR_CONTACT_VALUES 5e7
@@ -19,13 +19,14 @@
    other; results differ in their last bits between ranks, and the ranks must go on together. */
 typedef struct {
   ContactStep contact;
-  ActiveSet   active;           /* NULL on the other ranks */
-  PetscInt    n;                /* terms near the contact */
-  PetscInt    m;                /* terms that change */
-  PetscInt    rounds;           /* times that such terms were added */
-  Mat Z[LINEAR_CONTACT_ROUNDS]; /* free displacements under a pressure of 1 on each of these terms, in their order */
-  PetscReal  *du;               /* n_nodes*dim (length) */
-  PetscReal  *travel;           /* n: change of the gaps in the step at hand (length) */
+  ActiveSet   active;                   /* NULL on the other ranks */
+  PetscInt    n;                        /* terms near the contact */
+  PetscInt    all;                      /* their components, as in activeset.h */
+  PetscInt    m, most;                  /* components that change, and how many may */
+  PetscInt    rounds;                   /* times that such components were added */
+  Mat         Z[LINEAR_CONTACT_ROUNDS]; /* free displacements under 1 on each of these components, in their order */
+  PetscReal  *du;                       /* n_nodes*dim (length) */
+  PetscReal  *travel;                   /* of all components: change of gaps and slips in the step at hand (length) */
   PetscMPIInt rank;
 } LinearContact;
 
@@ -54,9 +55,11 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
   PetscCall(LocalChange(model, y, -1, carried, s->du));
   PetscCall(ContactStepCreate(model->contact, u, s->du, t, model->t, &s->contact));
   PetscCall(ContactStepGetTerms(s->contact, &s->n, &terms));
-  PetscCall(PetscMalloc1(s->n, &s->travel));
-  PetscCall(ContactStepTravel(s->contact, s->du, t, model->t, s->travel));
-  if (!s->rank) PetscCall(ActiveSetCreate(s->n, terms, s->travel, &s->active));
+  s->all  = s->n * ContactStepParts(s->contact);
+  s->most = LINEAR_CONTACT_TERMS * ContactStepParts(s->contact);
+  PetscCall(PetscMalloc1(s->all, &s->travel));
+  PetscCall(ContactStepChange(s->contact, s->du, t, model->t, s->travel));
+  if (!s->rank) PetscCall(ActiveSetCreate(s->n, ContactStepParts(s->contact), s->most, terms, s->travel, &s->active));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -72,27 +75,27 @@ static PetscErrorCode LinearContactEnd(LinearContact *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds to the first rank's contact problem how a pressure of 1 on each term which[m] closes all gaps; Z has a column of
-   free displacements for each. The other ranks keep one column at a time, of which they compute their part. */
+/* Adds to the first rank's contact problem how 1 on each component which[m] changes all gaps and slips; Z has a column
+   of free displacements for each. The other ranks keep one column at a time, of which they compute their part. */
 static PetscErrorCode LinearContactAddColumns(Model model, LinearContact *s, PetscInt m, const PetscInt *which, Mat Z)
 {
   PetscReal *G;
   Vec        z;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1((s->rank ? 1 : m) * s->n, &G));
+  PetscCall(PetscMalloc1((s->rank ? 1 : m) * s->all, &G));
   for (PetscInt j = 0; j < m; j++) {
     PetscCall(MatDenseGetColumnVecRead(Z, j, &z));
     PetscCall(LocalChange(model, z, 1, NULL, s->du));
     PetscCall(MatDenseRestoreColumnVecRead(Z, j, &z));
-    PetscCall(ContactStepTravel(s->contact, s->du, model->t, model->t, &G[s->rank ? 0 : j * s->n]));
+    PetscCall(ContactStepChange(s->contact, s->du, model->t, model->t, &G[s->rank ? 0 : j * s->all]));
   }
   if (!s->rank) PetscCall(ActiveSetAddColumns(s->active, m, which, G));
   PetscCall(PetscFree(G));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves for the free displacements under a pressure of 1 on each term which[m]. *able: that could be done. */
+/* Solves for the free displacements under 1 on each component which[m]. *able: that could be done. */
 static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m, const PetscInt *which,
                                        PetscBool *able)
 {
@@ -101,7 +104,7 @@ static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m
 
   PetscFunctionBeginUser;
   PetscCall(VecGetSize(model->x, &n));
-  *able = (PetscBool)(s->rounds < LINEAR_CONTACT_ROUNDS && s->m + m <= LINEAR_CONTACT_TERMS &&
+  *able = (PetscBool)(s->rounds < LINEAR_CONTACT_ROUNDS && s->m + m <= s->most &&
                       (PetscReal)(s->m + m) * n <= LINEAR_CONTACT_VALUES);
   if (!*able) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetLocalSize(model->x, &rows));
@@ -117,8 +120,8 @@ static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Continues on the first rank as far as the columns that are known allow; the other ranks receive the terms which[m]
-   whose columns are missing. */
+/* Continues on the first rank as far as the columns that are known allow; the other ranks receive the components
+   which[m] whose columns are missing. */
 static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt *m, PetscInt *which,
                                          PetscBool *converged)
 {
@@ -209,7 +212,8 @@ static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, P
   Notes:
   The tangent holds terms that the step opens, and lacks terms that the step closes. Newton's method alone finds that
   out one iteration later, and repeats it until the set is right, which takes most of its iterations. Here the problem
-  of the step, linear but for its contact conditions, is solved to its end with the factor that is known.
+  of the step, linear but for its contact conditions, is solved to its end with the factor that is known. With friction
+  it finds what sticks and what slips too: a pinched pipe takes 65 iterations instead of 88.
 
   Source: Josephy, Newton's method for generalized equations, 1979. The convergence is of second order, whatever opens
   or closes.
@@ -226,7 +230,7 @@ PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const Pe
   if (!able) PetscFunctionReturn(PETSC_SUCCESS);
   TimingBegin(TIMING_ASSEMBLY_CONTACT);
   PetscCall(LinearContactBegin(model, u, carried, t, y, &s));
-  PetscCall(PetscMalloc1(s.n, &which));
+  PetscCall(PetscMalloc1(s.all, &which));
   while (able && m) {
     PetscCall(LinearContactSolve(model, &s, &m, which, &converged));
     if (m) PetscCall(LinearContactAdd(model, &s, m, which, &able));

@@ -1,4 +1,5 @@
-/* Block matrix: blocks that are assembled on any number of ranks give the same product as the blocks themselves. The
+/* Block matrix: blocks that are assembled on any number of ranks give the same product as the blocks themselves, also
+   with rows that are not symmetric. The
    pattern is kept while it contains the blocks, and can be restored to a marked one. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -86,6 +87,69 @@ static void test_assembled_equals_blocks(void **state)
   (void)state;
   AssembledEqualsBlocks(1);
   AssembledEqualsBlocks(2);
+}
+
+/* Rows that are not symmetric, beside a block that is: the matrix and the product with the blocks are their sum. */
+static void test_uneven_rows(void **state)
+{
+  const PetscInt  n = 4, row[2] = {2, 0}, column[4] = {2, 3, 0, 1}, *nodes;
+  const PetscReal vector[4 + BLOCK_PADDING] = {1, -2, 3, 0.5};
+  PetscReal       in[4], out[4] = {0}, expected[4] = {0}, place[4] = {0}, rows[2 * 4], error;
+  PetscMPIInt     rank, size;
+  PetscInt        count;
+  PetscBool       changed;
+  BlockMatrix     blocks;
+  Mat             matrix;
+  Vec             x, y, sum;
+
+  (void)state;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  {
+    const PetscInt        mine[4]  = {ROWS * rank + 1, ROWS * rank + 4, ROWS * ((rank + 1) % size) + 2, -1};
+    const PetscInt *const lists[1] = {mine};
+
+    for (int i = 0; i < 4; i++) in[i] = mine[i] < 0 ? 7 : 1 + mine[i];
+    for (int k = 0; k < 8; k++) rows[k] = 10 * (k / 4) + k % 4 + 1;
+    assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, 1, &blocks), 0);
+    assert_int_equal(BlockMatrixBegin(blocks, 1, &n, lists), 0);
+    assert_int_equal(BlockMatrixName(blocks, 0, n, (PetscInt[]){3, 1, 2, 0}, PETSC_TRUE), 0);
+    assert_int_equal(BlockMatrixPlace(blocks, ROWS, &changed), 0);
+    BlockMatrixGetNodes(blocks, 0, &count, &nodes);
+    BlockMatrixMultiply(blocks, in, out);
+    assert_int_equal(BlockMatrixAddOuter(blocks, 0, n, nodes, vector), 0);
+    assert_int_equal(BlockMatrixAddRows(blocks, 0, 2, row, 4, column, rows), 0);
+    assert_int_equal(BlockMatrixEnd(blocks, &matrix), 0);
+    for (int i = 0; i < 4; i++)
+      for (int j = 0; j < 4; j++) expected[nodes[i]] += vector[i] * vector[j] * in[nodes[j]];
+    for (int i = 0; i < 2; i++)
+      for (int j = 0; j < 4; j++) expected[row[i]] += rows[4 * i + j] * in[column[j]];
+    for (int i = 0; i < 4; i++) assert_true(PetscAbsReal(out[i] - expected[i]) <= 1e-12 * PetscAbsReal(expected[i]));
+    for (int i = 0; i < 4; i++) /* the entry without a dof is no column of the matrix */
+      for (int j = 0; j < 4; j++)
+        if (mine[nodes[i]] >= 0 && mine[nodes[j]] >= 0) place[nodes[i]] += vector[i] * vector[j] * in[nodes[j]];
+    for (int i = 0; i < 2; i++)
+      for (int j = 0; j < 4; j++)
+        if (mine[column[j]] >= 0) place[row[i]] += rows[4 * i + j] * in[column[j]];
+    assert_int_equal(MatCreateVecs(matrix, &x, &y), 0);
+    assert_int_equal(VecDuplicate(y, &sum), 0);
+    assert_int_equal(VecSetOption(sum, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE), 0);
+    assert_int_equal(VecSetValues(sum, 4, mine, place, ADD_VALUES), 0);
+    for (PetscInt i = ROWS * rank; i < ROWS * (rank + 1); i++)
+      assert_int_equal(VecSetValue(x, i, 1 + i, INSERT_VALUES), 0);
+  }
+  assert_int_equal(VecAssemblyBegin(sum), 0);
+  assert_int_equal(VecAssemblyEnd(sum), 0);
+  assert_int_equal(VecAssemblyBegin(x), 0);
+  assert_int_equal(VecAssemblyEnd(x), 0);
+  assert_int_equal(MatMult(matrix, x, y), 0);
+  assert_int_equal(VecAXPY(y, -1, sum), 0);
+  assert_int_equal(VecNorm(y, NORM_INFINITY, &error), 0);
+  assert_true(error <= 1e-12);
+  assert_int_equal(VecDestroy(&x), 0);
+  assert_int_equal(VecDestroy(&y), 0);
+  assert_int_equal(VecDestroy(&sum), 0);
+  assert_int_equal(BlockMatrixDestroy(&blocks), 0);
 }
 
 /* Creates a block matrix over single dofs, and returns the dofs of this rank. */
@@ -223,7 +287,9 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_assembled_equals_blocks),
                                      cmocka_unit_test(test_pattern_is_kept_while_it_holds),
                                      cmocka_unit_test(test_returns_to_the_marked_pattern),
-                                     cmocka_unit_test(test_no_blocks), cmocka_unit_test(test_coupled_nodes)};
+                                     cmocka_unit_test(test_no_blocks),
+                                     cmocka_unit_test(test_coupled_nodes),
+                                     cmocka_unit_test(test_uneven_rows)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;

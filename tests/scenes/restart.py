@@ -22,7 +22,7 @@ COUNTS = ("step", "newton", "attempts", "contact_nodes", "nodes_in", "nodes_out"
 OWN = ("wall_s", "cpu_s", "seconds", "peak_rss_mb", "restarts", "mesh_s")
 OF_RANKS = ("ranks", "partition", "linear.largest_residual")
 
-args = arguments(("part", "what is shown", ("kills", "signals", "refusals", "flips", "states", "options")),
+args = arguments(("part", "what is shown", ("kills", "sliding", "signals", "refusals", "flips", "states", "options")),
                  ("count", "how many kills, or flipped bits"))
 out = pathlib.Path(args.out)
 check = Check()
@@ -136,9 +136,9 @@ def wait_for_rows(process, directory, n):
         time.sleep(0.005)
 
 
-def kills():
+def kills(own=(), zeros=()):
     """kill -9 of all ranks, or of one, at a random moment; most of such a run is spent in writing."""
-    overrides = ["stepping.initial=0.06", "output={every: 1, checkpoint: 1}"]
+    overrides = ["stepping.initial=0.06", "output={every: 1, checkpoint: 1}", *own]
     generator = random.Random(4)
     reference = run(args, SCENE, out="reference", ranks=1, overrides=overrides).directory
     steps = len(rows(reference)) - 1
@@ -167,9 +167,14 @@ def kills():
             same_files(what, directory, reference)
         if again.status == 0:
             same_results(what, directory, reference)
-            same_summary(what, directory, reference, 0 if (ranks, others) == (1, 1) else 1e-7)
+            same_summary(what, directory, reference, 0 if (ranks, others) == (1, 1) else 1e-7, zeros)
     check.holds("most were killed after their first checkpoint", begun <= max(1,
                                                                               int(args.count) / 3), f"{begun} before")
+
+
+def sliding():
+    """The same with friction: what sticks and what has slipped goes on as if nothing had happened."""
+    kills(["contact.0.friction.mu=0.3"], zeros=["contact.0.friction.force.2"])
 
 
 def stopped(what, ended, reference, status=3):
@@ -514,6 +519,7 @@ def states():
 
 {
     "kills": kills,
+    "sliding": sliding,
     "signals": signals,
     "refusals": refusals,
     "flips": flips,

@@ -1,6 +1,6 @@
 /* A linear step with the wrong terms in its tangent ends in equilibrium with the right ones: bodies that overlap or
- * open on the way, terms that share their neighbours, pulled ones; where nothing holds a body once its term has opened,
- * the step is left alone. */
+ * open on the way, terms that share their neighbours, pulled ones, terms with friction that begin or cease to stick;
+ * where nothing holds a body once its term has opened, the step is left alone. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -85,7 +85,7 @@ static double Step(const Case *t, PetscInt most, PetscBool *settled)
   }
   SolveTangent(t, b, x);
   for (int c = 0; c < N; c++) travel[c] = Gap(t, c, x);
-  assert_int_equal(ActiveSetCreate(N, t->term, travel, &pressing), 0);
+  assert_int_equal(ActiveSetCreate(N, 1, N, t->term, travel, &pressing), 0);
   for (assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0); m;
        assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0)) {
     assert_int_equal(ActiveSetLimit(pressing, most, &m, which), 0);
@@ -124,7 +124,10 @@ static void Make(double hat, double pulled, Case *t)
     const double opening = c < N / 2 ? (c % 2 ? -0.01 : pulled) : 0.05 * (c - 3), penalty = 1000;
 
     t->load[c] = c < 2 ? 2 : -1 - 0.2 * c;
-    t->term[c] = (ActiveSetTerm){opening, c < N / 2 ? -penalty * opening : 0, c < N / 2 ? penalty : 0, penalty};
+    t->term[c] = (ActiveSetTerm){.opening   = opening,
+                                 .pressure  = c < N / 2 ? -penalty * opening : 0,
+                                 .stiffness = c < N / 2 ? penalty : 0,
+                                 .penalty   = penalty};
   }
 }
 
@@ -150,13 +153,14 @@ static void test_ends_in_equilibrium(void **state)
 static void test_right_set_needs_nothing(void **state)
 {
   PetscReal     travel[2] = {-0.3, 0.1};
-  ActiveSetTerm term[2]   = {{-0.1, 0.1 * 7, 7, 7}, {0.2, 0, 0, 7}};
+  ActiveSetTerm term[2]   = {{.opening = -0.1, .pressure = 0.1 * 7, .stiffness = 7, .penalty = 7},
+                             {.opening = 0.2, .penalty = 7}};
   PetscInt      m, which[2];
   PetscBool     settled;
   ActiveSet     pressing;
 
   (void)state;
-  assert_int_equal(ActiveSetCreate(2, term, travel, &pressing), 0);
+  assert_int_equal(ActiveSetCreate(2, 1, 2, term, travel, &pressing), 0);
   assert_int_equal(ActiveSetSolve(pressing, &m, which, &settled), 0);
   assert_int_equal(m, 0);
   assert_true(settled);
@@ -166,13 +170,13 @@ static void test_right_set_needs_nothing(void **state)
 static void test_loose_body_is_left_alone(void **state)
 {
   PetscReal     travel = 0.5, influence = 1.0 / 8;
-  ActiveSetTerm term = {-0.1, 0.8, 8, 8};
+  ActiveSetTerm term = {.opening = -0.1, .pressure = 0.8, .stiffness = 8, .penalty = 8};
   PetscInt      m, which;
   PetscBool     settled;
   ActiveSet     pressing;
 
   (void)state;
-  assert_int_equal(ActiveSetCreate(1, &term, &travel, &pressing), 0);
+  assert_int_equal(ActiveSetCreate(1, 1, 1, &term, &travel, &pressing), 0);
   assert_int_equal(ActiveSetSolve(pressing, &m, &which, &settled), 0);
   assert_int_equal(m, 1);
   assert_int_equal(ActiveSetAddColumns(pressing, 1, &which, &influence), 0);
@@ -182,12 +186,141 @@ static void test_loose_body_is_left_alone(void **state)
   assert_int_equal(ActiveSetDestroy(&pressing), 0);
 }
 
+/* One term with friction on an elastic body: unknowns are its gap and its slips, the first `parts` of three. */
+typedef struct {
+  int           parts;
+  double        load[3];
+  ActiveSetTerm term;
+} Rub;
+
+static const double rub_elastic[3][3] = {{20, 4, -3}, {4, 15, 2}, {-3, 2, 12}};
+
+/* What the law says at x: pressure and tractions along the tangents, and all that it says of friction. */
+static void RubLaw(const ActiveSetTerm *term, const double *x, FrictionState state, double *p, FrictionTraction *out)
+{
+  FrictionInput in = term->friction.law;
+
+  for (int a = 0; a < 2; a++) in.slip[a] += x[1 + a];
+  in.opening  = term->opening + x[0];
+  in.pressure = *p = PetscMax(0, -term->penalty * in.opening);
+  in.rate          = in.pressure > 0 ? term->penalty : 0;
+  in.state         = state;
+  FrictionEvaluate(&in, out);
+}
+
+/* x = K^-1 b with the tangent of the start. */
+static void RubSolve(const Rub *r, const double *b, double *x)
+{
+  double K[N][N] = {{0}}, y[N] = {0};
+
+  for (int i = 0; i < N; i++) K[i][i] = 1;
+  for (int i = 0; i < r->parts; i++) {
+    y[i] = b[i];
+    for (int j = 0; j < r->parts; j++) {
+      K[i][j] = rub_elastic[i][j];
+      if (!i && !j) K[i][j] += r->term.stiffness;
+      if (i && !j) K[i][j] += r->term.friction.by_gap[i - 1];
+      if (i && j) K[i][j] += r->term.friction.by_slip[i - 1][j - 1];
+    }
+  }
+  Solve(K, y);
+  for (int i = 0; i < 3; i++) x[i] = i < r->parts ? y[i] : 0;
+}
+
+/* Takes the step, and returns the largest force that is out of balance at its end. */
+static double RubStep(Rub *r, FrictionState state, FrictionState *found)
+{
+  const double     zero[3] = {0, 0, 0};
+  double           b[3], x[3], column[3][3], G[3], p, worst = 0;
+  PetscInt         which[3], m, n = 0;
+  PetscBool        settled;
+  const PetscReal *excess;
+  const PetscBool *pressed;
+  FrictionTraction out;
+  ActiveSet        active;
+
+  RubLaw(&r->term, zero, state, &p, &out);
+  r->term.pressure  = p;
+  r->term.stiffness = p > 0 ? r->term.penalty : 0;
+  for (int a = 0; a < 2 && p > 0; a++) {
+    r->term.friction.traction[a] = out.traction[a];
+    r->term.friction.by_gap[a]   = out.by_gap[a];
+    for (int c = 0; c < 2; c++) r->term.friction.by_slip[a][c] = out.by_slip[a][c];
+  }
+  for (int i = 0; i < 3; i++) b[i] = r->load[i] + (i ? -r->term.friction.traction[i - 1] : p);
+  RubSolve(r, b, x);
+  assert_int_equal(ActiveSetCreate(1, r->parts, 3, &r->term, x, &active), 0);
+  for (assert_int_equal(ActiveSetSolve(active, &m, which, &settled), 0); m;
+       assert_int_equal(ActiveSetSolve(active, &m, which, &settled), 0)) {
+    for (int j = 0; j < m; j++) {
+      for (int i = 0; i < 3; i++) b[i] = i != which[j] ? 0 : i ? -1 : 1;
+      RubSolve(r, b, column[n]);
+      for (int i = 0; i < r->parts; i++) G[i] = column[n][i];
+      assert_int_equal(ActiveSetAddColumns(active, 1, &which[j], G), 0);
+      n++;
+    }
+  }
+  assert_true(settled);
+  ActiveSetGet(active, &excess, &pressed);
+  for (int j = 0; j < n; j++)
+    for (int i = 0; i < 3; i++) x[i] -= excess[j] * column[j][i];
+  RubLaw(&r->term, x, FRICTION_DECIDES, &p, &out);
+  assert_int_equal(pressed[0], p > 0);
+  *found = p > 0 ? out.state : FRICTION_DECIDES;
+  for (int i = 0; i < r->parts; i++) {
+    double force = r->load[i] + (i ? p > 0 ? -out.traction[i - 1] : 0 : p);
+
+    for (int j = 0; j < r->parts; j++) force -= rub_elastic[i][j] * x[j];
+    worst = PetscMax(worst, PetscAbsReal(force));
+  }
+  assert_int_equal(ActiveSetDestroy(&active), 0);
+  return worst;
+}
+
+/* In the plane, where the law is linear but for its states, the end is exact. Else friction is within a hundredth of
+   what the term bears. */
+static void test_friction_at_the_end(void **state)
+{
+  const struct {
+    double        load[3], opening, slip;
+    FrictionState before, after;
+  } cases[] = {
+    {{-2, 0.1, 0.05}, -0.01, 0, FRICTION_STICKS, FRICTION_STICKS},
+    {{-2, 3, 1}, -0.01, 0, FRICTION_STICKS, FRICTION_SLIPS},
+    {{-2, -3, 2}, -0.01, 0.004, FRICTION_SLIPS, FRICTION_SLIPS}, /* turns round */
+    {{-2, 0.3, 0.1}, -0.01, 0.004, FRICTION_SLIPS, FRICTION_STICKS},
+    {{5, 1, 1}, -0.01, 0.004, FRICTION_SLIPS, FRICTION_DECIDES}, /* opens */
+    {{-2, 3, -1}, 0.02, 0, FRICTION_STICKS, FRICTION_SLIPS},     /* meets */
+    {{-2, 0.1, 0.05}, 0.02, 0, FRICTION_STICKS, FRICTION_STICKS},
+  };
+
+  (void)state;
+  for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
+    for (int parts = 2; parts <= 3; parts++) {
+      Rub           r = {.parts = parts,
+                         .term  = {.opening  = cases[k].opening,
+                                   .penalty  = 500,
+                                   .friction = {.law = {.coefficient = 0.3,
+                                                        .stiffness   = 300,
+                                                        .normal      = {0, 0, 1},
+                                                        .along       = {1, 0, 0},
+                                                        .slip        = {cases[k].slip, 0, 0}}}}};
+      FrictionState found;
+
+      for (int i = 0; i < parts; i++) r.load[i] = cases[k].load[i];
+      assert_true(RubStep(&r, cases[k].before, &found) < (parts == 2 ? 1e-10 : 0.01 * 0.3 * 5));
+      assert_int_equal(found, cases[k].after);
+    }
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_ends_in_equilibrium),
     cmocka_unit_test(test_right_set_needs_nothing),
     cmocka_unit_test(test_loose_body_is_left_alone),
+    cmocka_unit_test(test_friction_at_the_end),
   };
   int failed;
 

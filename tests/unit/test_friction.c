@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 #include "frictionfoot.h"
-#include "frictionlaw.h"
+#include "contact/frictionlaw.h"
 
 /* Allowed difference between derivatives and differences, relative to the largest of them. */
 #define ALLOWED 1e-8

@@ -8,10 +8,11 @@
    The files call each other downwards in this order: contactwork (room), contactpair, contactfaces and contactterm (a
    pair, the terms of its faces, one of its terms), contactpoint (one slave point), contactvariation (first variations
    that are kept), contactprojection (gaps of all points), contactvectors (first variations over dofs), friction,
-   frictiontangent, contactresidual, contacttangent, contactlists,
+   frictionstep, frictiontangent, contactresidual, contacttangent, contactlists,
    contact. */
 #pragma once
 #include "matrix/blockmatrix.h"
+#include "contact/activeset.h"
 #include "contact/contact.h"
 #include "smooth/fitderivatives.h"
 #include "contactlaw.h"
@@ -201,9 +202,15 @@ PetscErrorCode FrictionPointFoot(const ContactPair *, PetscInt q, const Friction
 PetscInt       FrictionOwnNodes(const ContactPair *, PetscInt q, const PetscInt **node, const PetscReal **S);
 void           FrictionNodeSign(const ContactPair *, PetscInt point, PetscInt *node, PetscReal sign[3]);
 PetscInt       FrictionFootPoint(const ContactPair *, PetscInt q, int node);
+PetscErrorCode FrictionPointForces(const ContactPair *, PetscInt q, const PetscReal force[3], PetscReal *values);
+PetscErrorCode FrictionTermAsk(const ContactPair *, PetscInt term, PetscReal t, FrictionInput *, PetscBool *found);
 PetscErrorCode FrictionResidual(ContactPair *, PetscReal t, PetscReal *values);
-PetscErrorCode FrictionTermMotion(const ContactPair *, PetscInt term, const PetscReal *values, PetscReal motion[3]);
 PetscErrorCode FrictionShow(const ContactPair *, const PetscReal *area, ContactNodes *);
+/* frictionstep.c */
+PetscErrorCode FrictionTermMotion(const ContactPair *, PetscInt term, const PetscReal *values, PetscReal motion[3]);
+PetscErrorCode FrictionTermForces(const ContactPair *, PetscInt term, const PetscReal traction[3], PetscReal *values);
+PetscErrorCode FrictionStepTerm(const ContactPair *, PetscInt term, PetscReal t, ActiveSetFriction *,
+                                PetscReal tangent[2][3]);
 /* frictiontangent.c */
 PetscErrorCode FrictionTermNodes(const ContactPair *, PetscInt term);
 PetscErrorCode FrictionTermBlock(const ContactPair *, BlockMatrix, int list, PetscInt term, PetscReal t, PetscInt n,

@@ -9,7 +9,7 @@
 #pragma once
 #include "base/petsccompat.h"
 #include "frictionfoot.h"
-#include "frictionlaw.h"
+#include "contact/frictionlaw.h"
 
 typedef struct {
   PetscReal stiffness; /* traction over elastic slip (force per length and area) */

@@ -28,7 +28,7 @@ typedef struct {
   double        slip[3];     /* v (length) */
   double        along[3];    /* not along the normal; of any length but 0 */
   double        kept[2];     /* lengths */
-  double        pressure;    /* p; friction sees none below 0 */
+  double        pressure;    /* p; none below 0 counts, unless the caller has it slip: in a linear step p is signed */
   double        rate;        /* -dp/dgap: force per length and area */
   double        opening;     /* gap less the gap below which there is pressure (length) */
   double        began;       /* the opening when the step began, where the node was open then; else 0 (length) */
