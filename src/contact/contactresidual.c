@@ -81,6 +81,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
   PetscCall(PairForces(pair, values));
   if (pair->friction) PetscCall(FrictionResidual(pair, t, values));
+  if (pair->tool) PetscCall(ContactToolForces(pair, values));
   PetscCall(NeighbourListsReduce(pair->lists, values, f));
   if (pair->formulation.surface) PetscCall(PairSharedForces(pair));
   for (PetscInt c = 0; c < pair->n && !pair->formulation.surface; c++)

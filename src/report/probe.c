@@ -111,7 +111,7 @@ static void ProbesLookAround(Probes probes, const PetscReal point[3], const Mesh
                              PetscInt *at)
 {
   const Mesh     mesh = probes->model->mesh;
-  const PetscInt n    = within ? within->n_nodes : mesh->n_nodes;
+  const PetscInt n    = within ? within->n_nodes : mesh->n_body_nodes;
 
   *nearby = (Nearby){.distance = PETSC_MAX_REAL, .nearest = PETSC_MAX_INT, .id = PETSC_MAX_INT};
   for (PetscInt k = 0; k < n; k++) {

@@ -12,6 +12,7 @@
 #pragma once
 #include "search/neighbourlists.h"
 #include "bodies/loads.h"
+#include "bodies/tools.h"
 #include "search/slavepoints.h"
 
 /* How a master surface is fitted. */
@@ -35,6 +36,7 @@ PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface master, PetscReal
                             const FaceMaps *maps, ContactSearch *);
 PetscErrorCode SearchDestroy(ContactSearch *);
 void           SearchKeepFaces(ContactSearch);
+void           SearchSetTool(ContactSearch, const MeshTool *);
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
 PetscErrorCode SearchLeastDistance(ContactSearch, const PetscReal *u, PetscReal t, PetscReal *distance);
 PetscErrorCode SearchDistance(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap);

@@ -93,13 +93,14 @@ static PetscErrorCode AddMotion(const Motion *motion, PetscInt *n, PetscReal *la
 {
   PetscFunctionBeginUser;
   for (int m = 0; m < motion->n; m++) PetscCall(AddHistory(&motion->components[m].history, n, landings));
+  PetscCall(AddHistory(&motion->history, n, landings));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Number of breakpoints of a motion, for the length of the array. */
 static PetscInt MotionBreakpoints(const Motion *motion)
 {
-  PetscInt n = 0;
+  PetscInt n = motion->history.n;
 
   for (int m = 0; m < motion->n; m++) n += motion->components[m].history.n;
   return n;
