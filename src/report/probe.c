@@ -307,6 +307,36 @@ static PetscErrorCode EvaluateContactForce(Probes probes, Probe *probe, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The motion of the tool that is the master of the probe's pair: six components, lengths and radians. */
+static void ToolComponents(Probes probes, const Probe *probe, PetscReal q[MOTION_COMPONENTS])
+{
+  const Scene         scene   = probes->model->scene;
+  const SceneContact *contact = &scene->contacts[probe->pair];
+  const int           body    = contact->master ? MeshFindBody(scene, contact->master, PETSC_TRUE) : -1;
+
+  MotionComponents(body < 0 ? &contact->motion : &scene->bodies[body].motion, probes->model->t, q);
+}
+
+static PetscErrorCode EvaluateToolMotion(Probes probes, Probe *probe, PetscReal *value)
+{
+  PetscReal q[MOTION_COMPONENTS];
+
+  PetscFunctionBeginUser;
+  ToolComponents(probes, probe, q);
+  *value = q[probe->scene->component];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateToolRotation(Probes probes, Probe *probe, PetscReal *value)
+{
+  PetscReal q[MOTION_COMPONENTS];
+
+  PetscFunctionBeginUser;
+  ToolComponents(probes, probe, q);
+  *value = q[3 + probe->scene->component] * 180 / PETSC_PI;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode EvaluateDisplacement(Probes probes, Probe *probe, PetscReal *value)
 {
   const Model model = probes->model;
@@ -527,6 +557,8 @@ static const ProbeType types[PROBE_KINDS] = {
   [PROBE_PRESSURE_MAX]       = {"pressure_max", NAMES_PAIR, 0, NULL, EvaluatePressureMax},
   [PROBE_PRESSURE_MEAN]      = {"pressure_mean", NAMES_PAIR, 0, NULL, EvaluatePressureMean},
   [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", NAMES_PAIR, 0, NULL, EvaluatePressureDeviation},
+  [PROBE_TOOL_MOTION]        = {"tool_motion", NAMES_PAIR, 0, NULL, EvaluateToolMotion},
+  [PROBE_TOOL_ROTATION]      = {"tool_rotation", NAMES_PAIR, 0, NULL, EvaluateToolRotation},
   [PROBE_FLUID_FRONT]        = {"fluid_front", NAMES_SURFACE, 0, NULL, EvaluateFluidFront},
   [PROBE_FLUID_AREA]         = {"fluid_area", NAMES_SURFACE, 0, NULL, EvaluateFluidArea},
   [PROBE_SEAL_PRESSURE]      = {"seal_pressure", NAMES_SURFACE, 0, NULL, EvaluateSealPressure},

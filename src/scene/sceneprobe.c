@@ -20,6 +20,8 @@ static const struct {
   [PROBE_PRESSURE_MAX]       = {"pressure_max", "", "at"},
   [PROBE_PRESSURE_MEAN]      = {"pressure_mean", "", ""},
   [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", "", "measure excluding only"},
+  [PROBE_TOOL_MOTION]        = {"tool_motion", "component", ""},
+  [PROBE_TOOL_ROTATION]      = {"tool_rotation", "", "component"},
   [PROBE_FLUID_FRONT]        = {"fluid_front", "axis side", ""},
   [PROBE_FLUID_AREA]         = {"fluid_area", "", ""},
   [PROBE_SEAL_PRESSURE]      = {"seal_pressure", "", ""},
@@ -86,6 +88,20 @@ static PetscErrorCode SceneRefuseProbeTarget(Scene scene, SceneProbe *probe)
   }
   PetscCall(
     SceneRefuse(scene, probe->path, ProbeForms[probe->kind].kind, pairs, "there is no contact pair of this name;"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses a probe of a tool whose target is a pair with a deformable master. */
+static PetscErrorCode SceneRefuseProbeTool(Scene scene, SceneProbe *probe)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < scene->n_contacts; i++) {
+    const SceneContact *contact = &scene->contacts[i];
+
+    if (!strcmp(contact->name, probe->target) && contact->master && !SceneFindBody(scene, contact->master, 1))
+      PetscCall(SceneRefuse(scene, probe->path, ProbeForms[probe->kind].kind,
+                            "has a deformable master; allowed: a pair whose master is a rigid tool", probe->target));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -169,8 +185,19 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
       PetscCall(SceneRefuseProbeFluid(scene, probe));
     else if (probe->kind != PROBE_REACTION)
       PetscCall(SceneRefuseProbeTarget(scene, probe));
+    if (probe->kind == PROBE_TOOL_MOTION || probe->kind == PROBE_TOOL_ROTATION)
+      PetscCall(SceneRefuseProbeTool(scene, probe));
   }
   probe->component = PetscMax(0, SchemaChoice(document, "%s.component", path));
+  if (probe->kind == PROBE_TOOL_ROTATION) {
+    if (scene->dim == 3 && !SceneHas(scene, path, "component"))
+      PetscCall(SceneRefuse(scene, path, "component", "is missing; needed by tool_rotation in 3D; allowed: x | y | z",
+                            NULL));
+    if (scene->dim == 2 && SceneHas(scene, path, "component"))
+      PetscCall(
+        SceneRefuse(scene, path, "component", "has no place here; in the plane a tool turns about z alone", NULL));
+    if (scene->dim == 2) probe->component = 2;
+  }
   probe->axis      = PetscMax(0, SchemaChoice(document, "%s.axis", path));
   probe->max_side  = SchemaChoice(document, "%s.side", path) == 1;
   PetscCall(SceneReadProbeAt(scene, probe));
