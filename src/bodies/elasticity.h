@@ -34,6 +34,7 @@ PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat C);
 PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *stress, PetscReal *weight);
 PetscErrorCode ElasticityAcceptPlastic(Elasticity, const PetscReal *u);
 PetscErrorCode ElasticityArchivePlastic(Elasticity, Archive);
+PetscErrorCode ElasticityPlasticGrowth(Elasticity, const PetscReal *u, PetscReal *growth);
 PetscErrorCode ElasticityNodalPlasticStrain(Elasticity, PetscReal *strain, PetscReal *weight);
 PetscInt64     ElasticityPlasticPoints(Elasticity);
 PetscErrorCode ElasticityPlasticWork(Elasticity, PetscReal *work, PetscReal *strain);

@@ -742,6 +742,11 @@ static PetscErrorCode SceneReadStepping(Scene scene)
   scene->stepping.dt_min           = SchemaReal(document, "stepping.dt_min");
   scene->stepping.dt_max           = SchemaReal(document, "stepping.dt_max");
   scene->stepping.growth           = SchemaReal(document, "stepping.growth");
+  if (SchemaHas(document, "stepping.plastic_strain"))
+    scene->stepping.plastic_strain = SchemaReal(document, "stepping.plastic_strain");
+  if (scene->stepping.plastic_strain > 0 && !SceneIsPlastic(scene))
+    PetscCall(SceneRefuse(scene, "stepping", "plastic_strain",
+                          "bounds plastic strains, but no body is plastic; allowed: with law: von_mises", NULL));
   if (scene->stepping.dt_min > scene->stepping.dt_max)
     PetscCall(SceneRefuse(scene, "stepping", "dt_min", "is above dt_max; allowed: dt_min <= initial <= dt_max", NULL));
   if (SchemaHas(document, "stepping.initial") &&

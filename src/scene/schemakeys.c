@@ -238,6 +238,9 @@ const SchemaKey SchemaKeys[] = {
    .help = "smallest step of the load parameter; the run ends if it needs a smaller one"},
   {"stepping.dt_max", REAL, .range = "(0, 1]", .preset = "1", .help = "largest step of the load parameter"},
   {"stepping.growth", REAL, .range = "[1, inf)", .preset = "4", .help = "largest factor from one step to the next"},
+  {"stepping.plastic_strain", REAL, .range = "(0, inf)",
+   .help = "largest growth of the equivalent plastic strain of a quadrature point in a step; a step with more is "
+           "repeated with a smaller dt, down to dt_min. Without the key there is no bound"},
   {"stepping.at", REALS, .range = "(0, 1]", .help = "load parameters at which a step must end"},
   {"solver", MAP, .help = "nonlinear and linear solver"},
   {"solver.type", CHOICE, .values = "direct | iterative | auto", .preset = "auto",
