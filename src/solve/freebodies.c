@@ -269,7 +269,7 @@ PetscErrorCode FreeBodiesAccept(FreeBodies b, ContactSprings springs)
 }
 
 /*@
-  FreeBodiesArchive - saves or loads what is tied in the accepted state.
+  FreeBodiesArchive - saves or loads what is tied in the accepted state, and what FreeBodiesMoved() says.
 
   Collective
 
@@ -281,6 +281,7 @@ PetscErrorCode FreeBodiesArchive(FreeBodies b, Archive archive)
 {
   PetscFunctionBeginUser;
   if (b->n) PetscCall(ArchiveIntegers(archive, "bodies/tied", b->n, b->state));
+  PetscCall(ArchiveString(archive, "bodies/moved", sizeof(b->moved), b->moved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
