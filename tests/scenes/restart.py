@@ -147,12 +147,13 @@ def wait_for_rows(process, directory, n):
 
 def plastic():
     """Kills with plastic states and a tool that is pushed; every other one goes on on one rank, to the last bit."""
-    kills([*PUSHED_OVERRIDES, "output={every: 1, checkpoint: 1}"], one=2)
+    kills([*PUSHED_OVERRIDES, "output={every: 1, checkpoint: 1}"], one=2, estimates=1e-5)
 
 
-def kills(overrides=("stepping.initial=0.06", "output={every: 1, checkpoint: 1}"), one=0):
+def kills(overrides=("stepping.initial=0.06", "output={every: 1, checkpoint: 1}"), one=0, estimates=1e-7):
     """kill -9 of all ranks, or of one, at a random moment; most of such a run is spent in writing. one: each kill of so
-    many is of a run on one rank that goes on on one, 0: the first alone."""
+    many is of a run on one rank that goes on on one, 0: the first alone. estimates: tolerance of summary.json on other
+    ranks, whose estimates of errors are differences of linear solves."""
     generator = random.Random(4)
     reference = run(args, SCENE, out="reference", ranks=1, overrides=overrides).directory
     steps = len(rows(reference)) - 1
@@ -182,7 +183,7 @@ def kills(overrides=("stepping.initial=0.06", "output={every: 1, checkpoint: 1}"
             same_files(what, directory, reference)
         if again.status == 0:
             same_results(what, directory, reference)
-            same_summary(what, directory, reference, 0 if (ranks, others) == (1, 1) else 1e-7)
+            same_summary(what, directory, reference, 0 if (ranks, others) == (1, 1) else estimates)
     check.holds("most were killed after their first checkpoint", begun <= max(1,
                                                                               int(args.count) / 3), f"{begun} before")
 
