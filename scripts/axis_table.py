@@ -3,18 +3,14 @@ interface's nodes differ from the load, which is exact everywhere. Runs inner ra
 formulations, leaves one record per run and prints the table; --print tables an existing record.
     python scripts/axis_table.py [--burnish BINARY] [--jobs N] [--record FILE]
 Stress is the one along the axis in results.h5, at the nodes of the interface, on either side."""
-import json
-import shutil
-import subprocess
-
 import h5py
 import numpy
 
-from launch import ROOT, environment, read_records, table_parser, write_records
+from launch import ROOT, fill_table, run_case, table_parser
 
 SCENE = ROOT / "runs/discs.yaml"
 RADII = (0, 4)
-PAIRS = ((13, 10), (10, 13), (52, 40))  # elements along the radius, master/slave
+PAIRS = ((13, 10), (52, 40), (10, 13), (40, 52))  # elements along the radius, master/slave
 SIDES = ("lower_top", "upper_bottom")
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
 COLUMNS = ("radius", "order", "master", "slave", "slave_body", "formulation", "status", "iterations", "pressure_axis",
@@ -51,22 +47,8 @@ def deviations(directory):
 
 def solve(case, args):
     radius, order, pair, slave, formulation = case
-    directory = args.out / "-".join(str(v) for v in (radius, order, *pair, slave, formulation))
-    shutil.rmtree(directory, ignore_errors=True)
-    command = [args.burnish, str(SCENE), "-o", str(directory), "-quiet"]
-    for override in overrides(*case):
-        command += ["-set", override]
-    finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                              text=True)
-    record = dict(zip(COLUMNS, (radius, order, *pair, slave.split("_")[0], formulation, finished.returncode)))
-    if finished.returncode == 0:
-        summary = json.loads((directory / "summary.json").read_text())
-        record.update(iterations=summary["newton_iterations"],
-                      **{name: f"{value:.3g}" for name, value in deviations(directory).items()})
-    else:
-        print(case, finished.stdout)
-    shutil.rmtree(directory, ignore_errors=True)
-    return record
+    return run_case((radius, order, *pair, slave.split("_")[0], formulation), COLUMNS, SCENE, overrides(*case),
+                    deviations, args)
 
 
 def print_table(records):
@@ -86,17 +68,13 @@ def print_table(records):
 def main():
     parser = table_parser(__doc__, "axis")
     parser.add_argument("--jobs", type=int, default=1, help="runs at the same time")
-    args = parser.parse_args()
-    if not args.only_print:
-        cases = [(radius, order, pair, slave, formulation)
-                 for radius in RADII
-                 for order in (1, 2)
-                 for pair in PAIRS
-                 for slave in SIDES
-                 for formulation in FORMULATIONS]
-        args.out.mkdir(parents=True, exist_ok=True)
-        write_records(args.record, COLUMNS, lambda case: [solve(case, args)], cases, args.jobs)
-    print_table(read_records(args.record))
+    cases = [(radius, order, pair, slave, formulation)
+             for radius in RADII
+             for order in (1, 2)
+             for pair in PAIRS
+             for slave in SIDES
+             for formulation in FORMULATIONS]
+    fill_table(parser.parse_args(), COLUMNS, solve, cases, print_table)
 
 
 if __name__ == "__main__":

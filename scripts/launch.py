@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 
@@ -83,6 +84,34 @@ def write_records(path, columns, solve, cases, jobs):
         for records in pool.map(solve, cases):
             writer.writerows(records)
             file.flush()
+
+
+def run_case(case, columns, scene, overrides, figures, args):
+    """The record of one run: its case, exit status and iterations, and the values that figures() finds in its folder,
+    which then is removed. args are those of table_parser()."""
+    directory = args.out / "-".join(str(v) for v in case)
+    shutil.rmtree(directory, ignore_errors=True)
+    line = [args.burnish, str(scene), "-o", str(directory), "-quiet"]
+    for override in overrides:
+        line += ["-set", override]
+    finished = subprocess.run(line, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True)
+    record = dict(zip(columns, (*case, finished.returncode)))
+    if finished.returncode == 0:
+        record.update(iterations=read_summary(directory)["newton_iterations"],
+                      **{name: f"{value:.4g}" for name, value in figures(directory).items()})
+    else:
+        print(case, finished.stdout)
+    shutil.rmtree(directory, ignore_errors=True)
+    return record
+
+
+def fill_table(args, columns, solve, cases, print_table):
+    """Runs the cases into the record, unless it is only to be printed, and prints its table."""
+    if not args.only_print:
+        args.out.mkdir(parents=True, exist_ok=True)
+        write_records(args.record, columns, lambda case: [solve(case, args)], cases, args.jobs)
+    print_table(read_records(args.record))
 
 
 def read_records(path):

@@ -59,7 +59,7 @@ PetscErrorCode ContactTermForces(Contact contact, int p, PetscReal touch, PetscR
 }
 
 /*@
-  ContactPairFiner - tells whether the slave of a pair has the finer quadrature rule, see FaceRuleGet().
+  ContactPairFiner - tells how fine the quadrature rule of a pair's slave is, see FaceRuleGet().
 
   Not collective
 
@@ -68,9 +68,9 @@ PetscErrorCode ContactTermForces(Contact contact, int p, PetscReal touch, PetscR
 - p       - number of the pair
 
   Note:
-  It returns 0 or 1; 0 in node to surface.
+  It returns FACE_RULE_PLAIN in node to surface.
 @*/
 int ContactPairFiner(Contact contact, int p)
 {
-  return contact->pairs[p].formulation.surface ? contact->pairs[p].slaves->finer : 0;
+  return contact->pairs[p].formulation.surface ? contact->pairs[p].slaves->finer : FACE_RULE_PLAIN;
 }

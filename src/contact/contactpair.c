@@ -15,9 +15,8 @@
 #define CONTACT_GLOBAL_COSINE 0.5
 
 /* In surface to surface, a slave whose faces are at least this many times coarser than the master's takes a finer
-   quadrature, as its points would skip facets. Axisymmetric slaves always do: the radius is one more factor, and next
-   to the axis the finer rule halves the error of the pressure. The figure is below 2, so that round-off does not decide
-   on a mesh of half the size. */
+   quadrature, as its points would skip facets. The figure is below 2, so that round-off does not decide on a mesh of
+   half the size. */
 #define CONTACT_COARSE 1.9
 
 /* In surface to surface, a node with less than this share of the mean hat area has no term. This is an axis node,
@@ -105,13 +104,27 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How fine the slave's quadrature is. Axisymmetric slaves have a finer rule, as the radius is one more factor. Nodes
+   next to the axis have so little area that what the rule misses of their forces shows twice in their pressures. What
+   it misses does not fall with the mesh, so pairs that meet the axis have the finest rule. */
+static int PairRule(Scene scene, const ContactPair *pair)
+{
+  PetscBool at_axis = PETSC_FALSE;
+
+  if (!pair->master) return FACE_RULE_PLAIN;
+  for (int i = 0; i < pair->n_images; i++) at_axis = (PetscBool)(at_axis || SurfaceImageBeyondAxis(&pair->images[i]));
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC) return at_axis ? FACE_RULE_HALVES : FACE_RULE_FINER;
+  /* With friction too: half as many points leave twice the noise in tractions that stick. */
+  return pair->scene->mu > 0 || pair->scene->mu_expression ||
+             pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size
+           ? FACE_RULE_FINER
+           : FACE_RULE_PLAIN;
+}
+
 /* Creates slave points, terms and offsets, as the formulation asks for. */
 static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
 {
-  /* With friction too: half as many points leave twice the noise in tractions that stick. */
-  const int finer =
-    pair->master && (scene->geometry == GEOMETRY_AXISYMMETRIC || pair->scene->mu > 0 || pair->scene->mu_expression ||
-                     pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size);
+  const int finer = PairRule(scene, pair);
 
   PetscFunctionBeginUser;
   if (pair->formulation.surface) {

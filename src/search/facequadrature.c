@@ -3,7 +3,7 @@
 #include <string.h>
 #include "search/facequadrature.h"
 
-static FaceRule rules[2][ELEMENT_TYPES];
+static FaceRule rules[FACE_RULES][ELEMENT_TYPES];
 
 /* Gauss-Legendre points and weights on [-1, 1], indexed by the number of points. */
 // clang-format off
@@ -55,19 +55,27 @@ static void AddOrbits(FaceRule *rule, const Orbit *orbit)
   }
 }
 
+/* Adds the n points of Gauss' rule in each direction of a face that is not a triangle, or on each of some equal parts
+   of an edge. */
+static void AddGauss(int dim, int n, int parts, FaceRule *rule)
+{
+  for (int part = 0; part < parts; part++)
+    for (int j = 0; j < (dim > 1 ? n : 1); j++)
+      for (int i = 0; i < n; i++)
+        AddPoint(rule, (gauss[n].x[i] + 2 * part + 1 - parts) / parts, dim > 1 ? gauss[n].x[j] : 0,
+                 gauss[n].w[i] / parts * (dim > 1 ? gauss[n].w[j] : 1));
+}
+
 /* Tabulates the points of a rule with shape functions, derivatives and hat functions. Edges have one more point,
    because points cost little there and the additional one leaves a third of the noise of curved second-order edges. */
 static void MakeRule(const Element *e, int finer, FaceRule *rule)
 {
-  const int n = e->order + 1 + finer + (e->dim == 1);
+  const int n = e->order + 1 + (finer > FACE_RULE_PLAIN) + (e->dim == 1);
 
   if (e->corners == 3)
     AddOrbits(rule, n == 2 ? triangle3 : n == 3 ? triangle6 : triangle12);
-  else {
-    for (int j = 0; j < (e->dim > 1 ? n : 1); j++)
-      for (int i = 0; i < n; i++)
-        AddPoint(rule, gauss[n].x[i], e->dim > 1 ? gauss[n].x[j] : 0, gauss[n].w[i] * (e->dim > 1 ? gauss[n].w[j] : 1));
-  }
+  else
+    AddGauss(e->dim, n, e->dim == 1 && finer == FACE_RULE_HALVES ? 2 : 1, rule);
   for (int q = 0; q < rule->n; q++) {
     double dN[FACE_MAX_NODES * 2];
 
@@ -85,11 +93,11 @@ static void MakeRule(const Element *e, int finer, FaceRule *rule)
 
   Input Parameters:
 + type  - of the face
-- finer - 0, or 1 for one order more
+- finer - FACE_RULE_PLAIN; FACE_RULE_FINER: of one order more; FACE_RULE_HALVES: the same on each half of an edge
 
   Note:
-  Number of points, finer = 0 | finer = 1: EDGE2 3 | 4, EDGE3 4 | 5, TRI3 3 | 6, TRI6 6 | 12, QUAD4 4 | 9, QUAD9 9 | 16.
-  Plain C.
+  Number of points, plain | finer | halves: EDGE2 3 | 4 | 8, EDGE3 4 | 5 | 10; plain | finer: TRI3 3 | 6, TRI6 6 | 12,
+  QUAD4 4 | 9, QUAD9 9 | 16. Plain C.
 @*/
 const FaceRule *FaceRuleGet(ElementType type, int finer)
 {

@@ -10,6 +10,9 @@
 
 enum { FACE_RULE_POINTS = 16 };
 
+/* How fine a rule is: plain, of one order more, and this one on each half of an edge. */
+enum { FACE_RULE_PLAIN, FACE_RULE_FINER, FACE_RULE_HALVES, FACE_RULES };
+
 typedef struct {
   int    n;
   double xi[FACE_RULE_POINTS][2], weight[FACE_RULE_POINTS];

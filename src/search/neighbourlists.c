@@ -322,12 +322,6 @@ static int CanonicalImage(ContactSearch s, const PetscReal *X, int image, int *p
 /* Rings reach as far as fits on a surface whose faces grow to this many times the length of the ring's own. */
 #define RING_GRADING 4
 
-/* Does this image of an axisymmetric scene lie beyond the axis, at negative radii? */
-static PetscBool ImageBeyondAxis(const SurfaceImage *image)
-{
-  return (PetscBool)(image->sign[0] < 0 && image->shift[0] == 0);
-}
-
 /* Allocates the points and their entries. */
 static PetscErrorCode NeighbourListsAllocatePoints(NeighbourLists lists, PetscInt room, PetscInt entries,
                                                    PetscBool revolved)
@@ -447,7 +441,7 @@ static PetscInt CandidateRings(ContactSearch s, NeighbourLists lists, const Sear
       for (int a = 0; a < ElementGet(facet->type)->nodes; a++) radius += image->sign[0] * rule->N[q][a] * X[a * dim];
       ring[q] = RingOf(radius, length / ElementGet(facet->type)->order,
                        reach * PetscMin(s->master->max_extent, RING_GRADING * length));
-      if (ImageBeyondAxis(image)) ring[q].n = 0;
+      if (SurfaceImageBeyondAxis(image)) ring[q].n = 0;
     }
     n += ring[q].n;
   }

@@ -32,7 +32,7 @@ struct _n_Offsets {
 . n_images      - number of mirror images
 . images        - the images, borrowed
 . feature_angle - fits end at edges that are sharper (radians)
-. finer         - 1: quadrature of one order more
+. finer         - how fine the quadrature is, see FaceRuleGet()
 - kind          - none, held or live; a rigid tool has held offsets instead of live ones
 
   Output Parameter:

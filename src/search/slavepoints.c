@@ -120,7 +120,7 @@ static PetscErrorCode TakeRecords(SlavePoints points, PetscInt n_records, FaceRe
   Input Parameters:
 + surface  - the slave surface
 . geometry - axisymmetric weights are over 360 degrees
-- finer    - quadrature of one order more
+- finer    - how fine the quadrature is, see FaceRuleGet()
 
   Output Parameter:
 . out - the slave points, with offsets 0

@@ -27,7 +27,7 @@ typedef struct {
   PetscInt     n_faces;
   Facet       *faces;      /* nodes: positions in nodes[] */
   PetscInt    *first;      /* first point of each face */
-  int          finer;      /* quadrature is one order higher */
+  int          finer;      /* how fine the quadrature is, see FaceRuleGet() */
   PetscSF      face_sf;    /* roots: faces where they live */
   MPI_Datatype face_block; /* FACE_RULE_POINTS*dim reals */
   /* Maps of the faces, where offsets are live: they replace the shape functions. */

@@ -3,9 +3,10 @@
    are all present on every rank.
 
    SurfaceCreate() makes a surface. SurfaceImages() makes the mirror images of a pair, and SurfaceFindFreeEdges()
-   needs them to mark the edges at which a master ends. SurfaceNodeAreas() and SurfaceNodeSizes() measure deformable
-   surfaces around their nodes. SurfaceFaces() checks that two surfaces face each other at all. SurfaceReflect() and
-   SurfaceImageFacet() take positions and faces to a mirror image. */
+   needs them to mark the edges at which a master ends. SurfaceImageBeyondAxis() finds those at negative radii.
+   SurfaceNodeAreas() and SurfaceNodeSizes() measure deformable surfaces around their nodes. SurfaceFaces() checks that
+   two surfaces face each other at all. SurfaceReflect() and SurfaceImageFacet() take positions and faces to a mirror
+   image. */
 #pragma once
 #include "bodies/elasticity.h"
 #include "smooth/facet.h"
@@ -51,6 +52,7 @@ PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, ContactSurface s
                              int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
 PetscErrorCode SurfaceImagesFromSupports(Mesh, Scene, ContactSurface slave, ContactSurface master, int *n_images,
                                          SurfaceImage images[SURFACE_MAX_IMAGES]);
+PetscBool      SurfaceImageBeyondAxis(const SurfaceImage *);
 void           SurfaceReflect(const SurfaceImage *, int dim, const PetscReal *x, PetscReal *y);
 Facet          SurfaceImageFacet(const Facet *, const SurfaceImage *);
 PetscErrorCode SurfaceFaces(ContactSurface master, PetscInt n, const PetscInt nodes[], const PetscReal normals[],

@@ -323,6 +323,19 @@ PetscErrorCode SurfaceImagesFromSupports(Mesh mesh, Scene scene, ContactSurface 
 }
 
 /*@
+  SurfaceImageBeyondAxis - tells whether an image of an axisymmetric scene lies beyond the axis, at negative radii.
+
+  Not collective
+
+  Input Parameter:
+. image - the image
+@*/
+PetscBool SurfaceImageBeyondAxis(const SurfaceImage *image)
+{
+  return (PetscBool)(image->sign[0] < 0 && image->shift[0] == 0);
+}
+
+/*@
   SurfaceReflect - computes the mirror image of a position.
 
   Not collective

@@ -25,15 +25,15 @@ static double Exact(const Element *e, int i, int j)
 
 static void test_degree(void **state)
 {
-  static const int triangle[2][2] = {{2, 4}, {4, 6}}; /* by order and finer */
+  static const int triangle[2][FACE_RULES] = {{2, 4, 4}, {4, 6, 6}}; /* by order and rule */
 
   (void)state;
   for (int t = 0; t < TYPES; t++) {
     const Element *e = ElementGet(types[t]);
 
-    for (int finer = 0; finer < 2; finer++) {
+    for (int finer = 0; finer < FACE_RULES; finer++) {
       const FaceRule *rule   = FaceRuleGet(types[t], finer);
-      const int       tensor = 2 * (e->order + 1 + finer) - 1,
+      const int       tensor = 2 * (e->order + 1 + (finer > 0)) - 1,
                 degree       = e->corners == 3 ? triangle[e->order - 1][finer] : tensor;
 
       for (int i = 0; i <= degree; i++) {
@@ -60,7 +60,7 @@ static void test_hats(void **state)
       FaceHat(types[t], e->node[a], psi);
       for (int b = 0; b < e->nodes; b++) assert_true(fabs(psi[b] - (a == b)) < 1e-15);
     }
-    for (int finer = 0; finer < 2; finer++) {
+    for (int finer = 0; finer < FACE_RULES; finer++) {
       const FaceRule *rule                 = FaceRuleGet(types[t], finer);
       double          area[FACE_MAX_NODES] = {0};
 
@@ -84,8 +84,8 @@ static void test_hats(void **state)
 static void test_hats_around(void **state)
 {
   (void)state;
-  for (int k = 0; k < 2 * TYPES; k++) {
-    const int       t = k / 2, finer = k % 2;
+  for (int k = 0; k < FACE_RULES * TYPES; k++) {
+    const int       t = k / FACE_RULES, finer = k % FACE_RULES;
     const Element  *e                                     = ElementGetFace(types[t]);
     const FaceRule *rule                                  = FaceRuleGet(types[t], finer);
     const int       linear                                = e->corners == 3 && e->dim == 2 && e->order == 2;
@@ -109,6 +109,24 @@ static void test_hats_around(void **state)
     }
     for (int a = 0; a < e->nodes; a++)
       for (int b = 0; b < e->nodes; b++) assert_true(fabs(points[a][b] - whole[a][b]) < 1e-14);
+  }
+}
+
+/* The rule on halves integrates the hat functions of a second-order edge, which have a kink in its middle, times a
+   parabola. */
+static void test_kink(void **state)
+{
+  static const double exact[2] = {0.5, 1}, moment[2] = {1. / 4, 1. / 6}; /* corner, middle */
+  const FaceRule     *rule = FaceRuleGet(ELEMENT_EDGE3, FACE_RULE_HALVES);
+
+  (void)state;
+  for (int a = 0; a < 3; a++) {
+    const int node   = fabs(ElementGet(ELEMENT_EDGE3)->node[a][0]) < 0.5 ? 1 : 0;
+    double    sum[2] = {0, 0};
+
+    for (int q = 0; q < rule->n; q++)
+      for (int k = 0; k < 2; k++) sum[k] += rule->weight[q] * rule->hat[q][a] * (k ? pow(rule->xi[q][0], 2) : 1);
+    assert_true(fabs(sum[0] - exact[node]) < 1e-15 && fabs(sum[1] - moment[node]) < 1e-15);
   }
 }
 
@@ -138,6 +156,7 @@ static void test_areas(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_degree), cmocka_unit_test(test_hats),
-                                     cmocka_unit_test(test_hats_around), cmocka_unit_test(test_areas)};
+                                     cmocka_unit_test(test_hats_around), cmocka_unit_test(test_kink),
+                                     cmocka_unit_test(test_areas)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
