@@ -237,8 +237,9 @@ void FreeModesNodeVelocity(Mesh mesh, const FreePiece *piece, PetscInt node, con
   double x[3];
 
   for (int d = 0; d < 3; d++)
-    x[d] =
-      d < mesh->dim ? (mesh->coords[node * mesh->dim + d] + u[node * mesh->dim + d] - piece->centre[d]) / piece->size : 0;
+    x[d] = d < mesh->dim
+             ? (mesh->coords[node * mesh->dim + d] + u[node * mesh->dim + d] - piece->centre[d]) / piece->size
+             : 0;
   RigidVelocity(motion, x, v);
   if (!piece->tool || node == piece->tool->node) return;
   v[0] = mesh->dim == 3 ? motion[0] : motion[2];
@@ -312,11 +313,11 @@ static PetscErrorCode MeasurePair(FreeModes modes, int c, double gram[])
 {
   Mesh                mesh    = modes->mesh;
   const SceneContact *contact = &modes->scene->contacts[c];
-  const int        n     = RIGID_MODES * (int)modes->n_pieces;
-  const MeshGroup *slave = &mesh->groups[MeshFindGroup(mesh, mesh->dim - 1, contact->slave)];
-  const PetscBool  rubs  = (PetscBool)(contact->mu > 0 || contact->mu_expression);
-  double          *row, area = 0;
-  int             *on_slave, *on_master, deformable = 0;
+  const int           n       = RIGID_MODES * (int)modes->n_pieces;
+  const MeshGroup    *slave   = &mesh->groups[MeshFindGroup(mesh, mesh->dim - 1, contact->slave)];
+  const PetscBool     rubs    = (PetscBool)(contact->mu > 0 || contact->mu_expression);
+  double             *row, area = 0;
+  int                *on_slave, *on_master, deformable = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(n, &row, modes->n_pieces, &on_slave, modes->n_pieces, &on_master));
@@ -433,8 +434,7 @@ PetscErrorCode FreeModesCreate(Mesh mesh, Scene scene, Loads loads, FreeModes *o
   if (modes->n_pieces > FREE_PIECES) PetscFunctionReturn(PETSC_SUCCESS);
   square = (size_t)PetscSqr(RIGID_MODES * modes->n_pieces);
   PetscCall(PetscCalloc1(scene->n_contacts * square, &modes->gram));
-  for (int c = 0; c < scene->n_contacts; c++)
-    PetscCall(MeasurePair(modes, c, &modes->gram[c * square]));
+  for (int c = 0; c < scene->n_contacts; c++) PetscCall(MeasurePair(modes, c, &modes->gram[c * square]));
   PetscCall(FindLoose(modes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -660,10 +660,11 @@ PetscErrorCode FreeModesRefuse(FreeModes modes)
   }
   for (PetscInt p = 0; p < modes->n_pieces; p++)
     if (modes->pieces[p].tool && !modes->pieces[p].paired)
-      PetscCall(RefuseInput(modes->mesh->comm,
-                            "%s: the tool '%s' is free to move, but no contact pair knows it; allowed: a free tool that "
-                            "is the master of a pair",
-                            SceneWhere(modes->scene, modes->pieces[p].tool->path, "free"), modes->pieces[p].name));
+      PetscCall(
+        RefuseInput(modes->mesh->comm,
+                    "%s: the tool '%s' is free to move, but no contact pair knows it; allowed: a free tool that "
+                    "is the master of a pair",
+                    SceneWhere(modes->scene, modes->pieces[p].tool->path, "free"), modes->pieces[p].name));
   if (body >= 0)
     PetscCall(RefuseInput(modes->mesh->comm,
                           "%s: %s; no support, imposed displacement or contact pair holds it; allowed: bodies that "

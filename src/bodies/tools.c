@@ -163,8 +163,7 @@ void ToolMove(Mesh mesh, const MeshTool *tool, const PetscReal *own, PetscReal t
 @*/
 void ToolsPlace(Mesh mesh, const PetscReal *u, PetscReal t)
 {
-  for (int k = 0; k < mesh->n_tools; k++)
-    ToolMove(mesh, &mesh->tools[k], &u[mesh->tools[k].node * mesh->dim], t);
+  for (int k = 0; k < mesh->n_tools; k++) ToolMove(mesh, &mesh->tools[k], &u[mesh->tools[k].node * mesh->dim], t);
 }
 
 /*@
@@ -214,9 +213,8 @@ void ToolsResidual(Mesh mesh, PetscReal t, const PetscReal *u, PetscReal *f, Pet
     const MeshTool *tool = &mesh->tools[k];
 
     for (int c = 0; c < MOTION_COMPONENTS; c++) {
-      const PetscInt  dof = tool->node * mesh->dim + ToolDof(mesh, c);
-      const PetscReal force =
-        tool->motion->free[c] ? MotionForce(tool->motion, t, c) / (c < 3 ? 1 : tool->arm) : 0;
+      const PetscInt  dof   = tool->node * mesh->dim + ToolDof(mesh, c);
+      const PetscReal force = tool->motion->free[c] ? MotionForce(tool->motion, t, c) / (c < 3 ? 1 : tool->arm) : 0;
 
       if (!tool->motion->free[c]) continue;
       if (f) f[dof] -= force;

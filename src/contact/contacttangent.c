@@ -38,8 +38,8 @@ static PetscErrorCode PairStiffness(Contact contact, ContactPair *pair, const Pe
 static PetscErrorCode NameListed(Contact contact, const ContactPair *pair, int p)
 {
   PetscFunctionBeginUser;
-  PetscCall(
-    BlockMatrixName(contact->blocks, p, pair->work->count, pair->work->number, (PetscBool)(contact->product || pair->tool)));
+  PetscCall(BlockMatrixName(contact->blocks, p, pair->work->count, pair->work->number,
+                            (PetscBool)(contact->product || pair->tool)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,7 +111,7 @@ static PetscErrorCode CoupleTool(const ContactPair *pair, PetscInt points, const
 {
   const int      dim = pair->mesh->dim;
   const PetscInt m   = n * dim;
-  PetscReal     *M = pair->work->M, *force;
+  PetscReal     *M   = pair->work->M, *force;
 
   PetscFunctionBeginUser;
   if (!pair->tool) PetscFunctionReturn(PETSC_SUCCESS);

@@ -130,11 +130,11 @@ PetscErrorCode ContactToolForces(const ContactPair *pair, PetscReal *values)
 /* The rows and columns of a block's tangent that belong to the tool's dofs. */
 typedef struct {
   ToolState        s;
-  PetscInt         n, m;       /* nodes and dofs of the block */
+  PetscInt         n, m; /* nodes and dofs of the block */
   const PetscInt  *nodes;
   const PetscReal *force;
-  PetscInt         row[6];     /* of each dof of the tool */
-  PetscReal       *B;          /* n*dim*2*dim */
+  PetscInt         row[6]; /* of each dof of the tool */
+  PetscReal       *B;      /* n*dim*2*dim */
   PetscReal       *K;
 } ToolBlock;
 
@@ -144,7 +144,7 @@ static void SlaveRows(ToolBlock *b, PetscInt i)
   const int dim = b->s.dim, width = TOOL_NODES * dim;
 
   for (int d = 0; d < dim; d++) {
-    PetscReal *row = &b->K[(i * dim + d) * b->m];
+    PetscReal *row    = &b->K[(i * dim + d) * b->m];
     PetscReal  sum[6] = {0};
 
     for (PetscInt j = 0; j < b->m; j++)
@@ -163,7 +163,7 @@ static void SlaveRows(ToolBlock *b, PetscInt i)
 /* What a slave node adds to the rows of the tool, besides the products with B: the turn of its force. */
 static void TurnRows(const ContactPair *pair, ToolBlock *b, PetscInt i)
 {
-  const int dim = b->s.dim;
+  const int dim      = b->s.dim;
   double    force[3] = {0}, arm[3], moment[3], turned[3];
 
   for (int d = 0; d < dim; d++) force[d] = b->force[i * dim + d];

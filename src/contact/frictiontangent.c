@@ -332,8 +332,8 @@ static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction
 static PetscErrorCode AddWithTool(const TermBlock *b, BlockMatrix blocks, int list, PetscInt n, const PetscInt nodes[],
                                   const FrictionTraction *out)
 {
-  const int      dim  = b->dim;
-  const PetscInt m    = n * dim, tool = b->pair->lists->tool;
+  const int      dim = b->dim;
+  const PetscInt m = n * dim, tool = b->pair->lists->tool;
   PetscInt      *rows = b->row_node, n_rows = 0;
   PetscReal     *M, *force;
 

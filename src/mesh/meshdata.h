@@ -48,7 +48,7 @@ enum { TOOL_NODES = 2 };
    the last local nodes of every rank, and rank 0 owns them. The displacement of the first is that of the tool's point;
    that of the second is the rotation vector times arm, in the plane its first component alone. */
 typedef struct {
-  const char *name; /* of the tool's surface, or of the pair whose master it is */
+  const char *name;     /* of the tool's surface, or of the pair whose master it is */
   char        path[64]; /* in the scene, such as "bodies.1.rigid" */
   Motion     *motion;
   int         body, contact; /* in the scene; the other one is -1 */
@@ -57,12 +57,13 @@ typedef struct {
 } MeshTool;
 
 typedef struct {
-  MPI_Comm  comm;
-  DM        dm; /* DMPlex */
-  int       dim, order;
-  PetscInt  n_nodes, n_owned, n_global;
-  PetscInt  n_free;                      /* free dofs that this rank owns, after MeshSetConstraints() */
-  PetscInt  n_body_nodes, n_body_owned, n_body_global; /* nodes of cells, which come first; the others are those of tools */
+  MPI_Comm comm;
+  DM       dm; /* DMPlex */
+  int      dim, order;
+  PetscInt n_nodes, n_owned, n_global;
+  PetscInt n_free; /* free dofs that this rank owns, after MeshSetConstraints() */
+  PetscInt n_body_nodes, n_body_owned,
+    n_body_global;            /* nodes of cells, which come first; the others are those of tools */
   PetscInt *node_id;          /* 0..n_global-1 in the order of gmsh's tags, the same on any number of ranks */
   PetscInt *node_tag;         /* gmsh's tag */
   PetscInt *node_owner;       /* rank */

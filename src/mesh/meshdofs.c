@@ -53,7 +53,7 @@ static PetscErrorCode AddNodes(Mesh mesh, PetscInt block, const PetscReal *value
 /* Numbers the free dofs globally: those of rank 0 come first, and on each rank they have the order of its nodes. */
 static PetscErrorCode NumberDofs(Mesh mesh, const PetscBool constrained[])
 {
-  const PetscInt n = mesh->n_nodes * mesh->dim;
+  const PetscInt n    = mesh->n_nodes * mesh->dim;
   PetscInt       next = 0;
   PetscMPIInt    rank;
   MPI_Datatype   integers;

@@ -68,8 +68,8 @@ static PetscErrorCode NextLabel(Mesh mesh, const PetscInt label[], PetscInt last
 - piece - piece of each local node [n_nodes]
 
   Note:
-  A tool with free motions is a piece of its own. Pieces are numbered in the order of their lowest gmsh node tag, so that the numbers are the same on any number of
-  ranks.
+  A tool with free motions is a piece of its own. Pieces are numbered in the order of their lowest gmsh node tag, so
+that the numbers are the same on any number of ranks.
 @*/
 PetscErrorCode MeshFindPieces(Mesh mesh, PetscInt *n, PetscInt piece[])
 {

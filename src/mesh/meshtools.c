@@ -73,8 +73,7 @@ PetscErrorCode MeshToolsPlaceNodes(Mesh mesh)
 
       mesh->node_id[node]  = mesh->n_body_global + TOOL_NODES * k + i;
       mesh->node_tag[node] = 0;
-      for (int d = 0; d < mesh->dim; d++)
-        mesh->coords[node * mesh->dim + d] = tool->motion->point[d] - mesh->centre[d];
+      for (int d = 0; d < mesh->dim; d++) mesh->coords[node * mesh->dim + d] = tool->motion->point[d] - mesh->centre[d];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

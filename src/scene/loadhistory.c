@@ -70,14 +70,14 @@ double HistoryValue(const History *history, double t)
 @*/
 void MotionComponents(const Motion *motion, double t, double q[MOTION_COMPONENTS])
 {
-  const double       origin[3] = {0, 0, 0};
-  const FreeComponents *state = t == motion->accepted.t && t != motion->now.t ? &motion->accepted : &motion->now;
+  const double          origin[3] = {0, 0, 0};
+  const FreeComponents *state     = t == motion->accepted.t && t != motion->now.t ? &motion->accepted : &motion->now;
 
   for (int c = 0; c < MOTION_COMPONENTS; c++) q[c] = motion->free[c] ? state->value[c] : 0;
   for (int m = 0; m < motion->n; m++) {
-    const MotionComponent *c     = &motion->components[m];
-    const double           value = c->expression ? ExpressionValue(c->expression, origin, t)
-                                                 : c->value * HistoryValue(&c->history, t);
+    const MotionComponent *c = &motion->components[m];
+    const double           value =
+      c->expression ? ExpressionValue(c->expression, origin, t) : c->value * HistoryValue(&c->history, t);
 
     q[c->component] += c->component < 3 ? value : value * M_PI / 180;
   }

@@ -35,7 +35,7 @@ typedef struct {
   int              n;
   MotionComponent *components;
   int              n_free, free[MOTION_COMPONENTS]; /* whether a component is an unknown */
-  FreeComponents      now, accepted;                   /* of the free components */
+  FreeComponents   now, accepted;                   /* of the free components */
   /* Force and moment on the body along its free components: numbers times the history, or expressions of t. */
   double     force[MOTION_COMPONENTS];
   Expression force_expression[MOTION_COMPONENTS];

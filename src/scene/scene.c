@@ -7,8 +7,9 @@
 #include "base/refusal.h"
 #include <string.h>
 
-static const char *const Displacements[] = {"ux", "uy", "uz"},
-                         *const Components[] = {"ux", "uy", "uz", "rx", "ry", "rz"}; /* of a rigid motion */
+static const char *const Displacements[] = {"ux", "uy", "uz"}, *const Components[] = {
+                                                                 "ux", "uy", "uz",
+                                                                 "rx", "ry", "rz"}; /* of a rigid motion */
 
 /* Load parameters, spread evenly from 0 to 1, at which expressions of t are tried when they are read. */
 enum { SCENE_SAMPLES = 16 };
@@ -159,7 +160,8 @@ static PetscErrorCode SceneReadFree(Scene scene, const char *tool, Motion *motio
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads force and moment on a tool. They may act along free components only: the others take them without any effect. */
+/* Reads force and moment on a tool. They may act along free components only: the others take them without any effect.
+ */
 static PetscErrorCode SceneReadForces(Scene scene, const char *tool, Motion *motion)
 {
   static const char *const keys[] = {"0", "1", "2", "x", "y", "z"};

@@ -191,15 +191,15 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
   probe->component = PetscMax(0, SchemaChoice(document, "%s.component", path));
   if (probe->kind == PROBE_TOOL_ROTATION) {
     if (scene->dim == 3 && !SceneHas(scene, path, "component"))
-      PetscCall(SceneRefuse(scene, path, "component", "is missing; needed by tool_rotation in 3D; allowed: x | y | z",
-                            NULL));
+      PetscCall(
+        SceneRefuse(scene, path, "component", "is missing; needed by tool_rotation in 3D; allowed: x | y | z", NULL));
     if (scene->dim == 2 && SceneHas(scene, path, "component"))
       PetscCall(
         SceneRefuse(scene, path, "component", "has no place here; in the plane a tool turns about z alone", NULL));
     if (scene->dim == 2) probe->component = 2;
   }
-  probe->axis      = PetscMax(0, SchemaChoice(document, "%s.axis", path));
-  probe->max_side  = SchemaChoice(document, "%s.side", path) == 1;
+  probe->axis     = PetscMax(0, SchemaChoice(document, "%s.axis", path));
+  probe->max_side = SchemaChoice(document, "%s.side", path) == 1;
   PetscCall(SceneReadProbeAt(scene, probe));
   PetscCall(SceneReadText(scene, path, "body", &probe->body));
   if (probe->body && !SceneFindBody(scene, probe->body, 0))

@@ -11,10 +11,12 @@
 // clang-format off
 /* The keys of the motion of a rigid tool or of an analytic master */
 #define MOTION_KEYS(tool) \
-  {tool ".motion", LIST, .help = "prescribed motions, which are added. A component may be an expression of t, which is " \
-   "the value at t itself and takes no history"}, \
+  {tool ".motion", LIST, \
+   .help = "prescribed motions, which are added. A component may be an expression of t, which is the value at t itself " \
+           "and takes no history"}, \
   {tool ".motion.*", MAP, .help = "displacement components, rotation components or both"}, \
-  {tool ".motion.*.ux|uy", REAL | FORMULA, .unit = "length", .help = "displacement component, multiplied by the history"}, \
+  {tool ".motion.*.ux|uy", REAL | FORMULA, .unit = "length", \
+   .help = "displacement component, multiplied by the history"}, \
   {tool ".motion.*.uz", REAL | FORMULA, SOLID, .unit = "length", \
    .help = "displacement component, multiplied by the history"}, \
   {tool ".motion.*.rx|ry", REAL | FORMULA, SOLID, .unit = "degrees", \
@@ -22,17 +24,19 @@
   {tool ".motion.*.rz", REAL | FORMULA, .unit = "degrees", .help = "rotation component, multiplied by the history"}, \
   {tool ".motion.*.history", HISTORY, .preset = "[[0, 0], [1, 1]]", .help = "factor over the load parameter t"}, \
   {tool ".free", CHOICES, .values = "ux | uy | uz | rx | ry | rz", \
-   .help = "components of the motion that are unknowns: the tool moves along them until its contact balances force and " \
-           "moment. In the plane ux, uy and rz, axisymmetric uy alone"}, \
+   .help = "components of the motion that are unknowns: the tool moves along them until its contact balances force " \
+           "and moment. In the plane ux, uy and rz, axisymmetric uy alone"}, \
   {tool ".force", POINT | FORMULA, .unit = "force", \
-   .help = "force on the tool at its point, in the plane per thickness, axisymmetric on the whole tool; it acts along the " \
-           "free displacements. Numbers are multiplied by the history, expressions are of t; the default is no force"}, \
+   .help = "force on the tool at its point, in the plane per thickness, axisymmetric on the whole tool; it acts along " \
+           "the free displacements. Numbers are multiplied by the history, expressions are of t; the default is no " \
+           "force"}, \
   {tool ".moment", MAP, .help = "moment on the tool along its free rotations; the default is none"}, \
   {tool ".moment.x|y", REAL | FORMULA, SOLID, .unit = "force times length", \
    .help = "moment on the tool, which does its work along the rotation vector (rx, ry, rz), as force"}, \
   {tool ".moment.z", REAL | FORMULA, .unit = "force times length", \
    .help = "moment on the tool, which does its work along the rotation vector (rx, ry, rz), as force"}, \
-  {tool ".history", HISTORY, .preset = "[[0, 0], [1, 1]]", .help = "factor on force and moment over the load parameter t"}
+  {tool ".history", HISTORY, .preset = "[[0, 0], [1, 1]]", \
+   .help = "factor on force and moment over the load parameter t"}
 
 const SchemaKey SchemaKeys[] = {
   {"name", NAME, .help = "name of the run and of its results; the default is the name of the scene file"},

@@ -38,9 +38,8 @@ static PetscErrorCode CollectKeys(ContactSearch s, const SearchField *field, Con
 
   PetscFunctionBeginUser;
   for (int m = 0; m < 2; m++) n_mapped += maps[m]->n ? maps[m]->ptr[maps[m]->n] : 0;
-  PetscCall(
-    PetscMalloc2(n_slaves + n_mapped + n_tool + FACE_MAX_NODES * n_records, &all->keys, FACE_MAX_NODES * n_records,
-                 &all->tool));
+  PetscCall(PetscMalloc2(n_slaves + n_mapped + n_tool + FACE_MAX_NODES * n_records, &all->keys,
+                         FACE_MAX_NODES * n_records, &all->tool));
   for (PetscInt i = 0; i < n_slaves; i++) all->keys[i] = s->slaves->nodes[i];
   for (PetscInt r = 0; r < n_records; r++) {
     PetscInt *count = rigid ? &n_rigid : &n;

@@ -24,8 +24,8 @@ static PetscInt TieNodes(FreeBodies b, PetscInt p, PetscMPIInt rank, PetscInt no
   return n;
 }
 
-/* A tie that measures coordinate k of the motions at displacements u, in lengths, by some nodes of its piece: the motion
-   nearest to that of these nodes. */
+/* A tie that measures coordinate k of the motions at displacements u, in lengths, by some nodes of its piece: the
+   motion nearest to that of these nodes. */
 static PetscErrorCode MakeTie(FreeBodies b, const PetscReal *u, int k, SpringTie *tie)
 {
   const Mesh       mesh  = b->mesh;

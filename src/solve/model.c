@@ -288,7 +288,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
     PetscCall(PetscArraycpy(model->u, work->accepted_u, mesh->n_nodes * mesh->dim));
     PetscCall(MeshCollectFree(mesh, model->u, model->x));
     PetscCall(VecCopy(model->x, work->accepted_x));
-    model->t      = work->accepted_t;
+    model->t = work->accepted_t;
     ToolsAccept(mesh, model->u, model->t);
     work->settled = (PetscBool)(work->accepted_t == 0);
   }

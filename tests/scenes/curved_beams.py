@@ -1,5 +1,5 @@
-"""An elastoplastic half ring is dragged over another one, with friction: forces against the table of Neto et al. (2016),
-which is for another mesh, and against elements of second order, the own limit of the mesh; facets beside the smooth
+"""An elastoplastic half ring is dragged over another one, with friction: forces against the table of Neto et al.
+(2016), which is for another mesh, and against elements of second order, the own limit of the mesh; facets beside the smooth
 surface, and the same without friction."""
 import numpy
 

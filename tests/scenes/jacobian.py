@@ -105,15 +105,16 @@ CASES["analytic tool that is pushed and turned, sticks"] = (SCENES / "tool.yaml"
     "[0, -300], moment: {z: 10}}}"
 ])
 CASES["plane that is turned by a moment"] = (SCENES / "tool.yaml", TOOL + [
-    "contact.0.master={plane: {point: [4, 5.45], normal: [0.1, -1], free: [rz], moment: {z: 200}, motion: [{uy: -0.9}]}}"
+    "contact.0.master={plane: {point: [4, 5.45], normal: [0.1, -1], free: [rz], moment: {z: 200}, motion: "
+    "[{uy: -0.9}]}}"
 ])
 CASES["meshed tool with four unknowns, sticks"] = (RUNS / "slide_cylinder.yaml", PUSHED + [
-    "contact.0.friction.mu=0.5", "bodies.1.rigid={point: [0, -20, 0], free: [uy, rx, ry, rz], force: [0, 30, 0], moment: "
-    "{x: 3, y: 2, z: 5}}"
+    "contact.0.friction.mu=0.5", "bodies.1.rigid={point: [0, -20, 0], free: [uy, rx, ry, rz], force: [0, 30, 0], "
+    "moment: {x: 3, y: 2, z: 5}}"
 ])
 CASES["meshed tool, diffuse, far turned"] = (RUNS / "slide_cylinder.yaml", PUSHED + [
-    "contact.0.smoother=diffuse", "bodies.1.rigid={point: [0, -20, 0], free: [uy, rx], force: [0, 30, 0], moment: {x: 3}, "
-    "motion: [{rz: 70}]}"
+    "contact.0.smoother=diffuse", "bodies.1.rigid={point: [0, -20, 0], free: [uy, rx], force: [0, 30, 0], moment: "
+    "{x: 3}, motion: [{rz: 70}]}"
 ])
 
 args = arguments()

@@ -80,6 +80,7 @@ FULL = {
     f"{PYTHON} scripts/patch_table.py": printed("patch_table", "patch"),
     f"{PYTHON} scripts/axis_table.py": printed("axis_table", "axis"),
     f"{PYTHON} scripts/ball_table.py": printed("ball_table", "ball"),
+    f"{PYTHON} scripts/forming_table.py": printed("forming_table", "forming"),
     f"{PYTHON} scripts/michell_table.py": printed("michell_table", "michell"),
     f"{PYTHON} scripts/penalty_table.py --record runs/records/penalty.csv": printed("penalty_table", "penalty"),
     f"{PYTHON} scripts/hertz_table.py": printed("hertz_table", "hertz"),

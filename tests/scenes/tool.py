@@ -1,5 +1,5 @@
-"""Rigid tools that are pushed by a force instead of moved: the force arrives, the tool starts from a gap, and a tool that
-is moved to the same place gives the same force; columns between a plate and the ground against beam theory; a cylinder
+"""Rigid tools that are pushed by a force instead of moved: the force arrives, the tool starts from a gap, and a tool
+that is moved to the same place gives the same force; columns between a plate and the ground against beam theory; a cylinder
 that friction rolls; motions by expressions."""
 import math
 
@@ -26,8 +26,8 @@ def obstacle(motion):
 
 MESHED = [
     "loads=[]", "stepping.initial=0.5", "mesh.parameters.overlap=-0.1", "supports.1={surface: block_top, ux: 0, uy: 0}",
-    "probes=[{name: force, contact_force: sole, component: y, absolute: true}, {name: way, tool_motion: sole, component:"
-    " y}]"
+    "probes=[{name: force, contact_force: sole, component: y, absolute: true}, {name: way, tool_motion: sole, "
+    "component: y}]"
 ]
 WAYS = {  # scene, overrides, tool with its motion, force
     "cylinder": ("tool.yaml", [PENALTY], cylinder, "force: [0, -300]", 300),
@@ -71,7 +71,8 @@ plate = run(args, SCENES / "tool.yaml", out="plate", overrides=[
 check.near("plate: its way", plate["way"] / (-FORCE * HEIGHT / modulus / WIDTH), 1, 1e-3)
 check.near("plate: its turn", math.radians(plate["turn"]) / (MOMENT * HEIGHT / modulus / (WIDTH**3 / 12)), 1, 1e-3)
 
-# A cylinder that sticks to the block carries a moment by friction: the force along the block is the moment over its arm.
+# A cylinder that sticks to the block carries a moment by friction: the force along the block is the moment over its
+# arm.
 roll = run(args, SCENES / "tool.yaml", out="roll", overrides=[
     "contact.0.friction.mu=0.5", cylinder("free: [uy, rz], force: [0, -30], moment: {z: 6}")
 ]).steps()[-1]

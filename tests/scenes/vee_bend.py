@@ -1,4 +1,4 @@
-"""A steel strip is bent into a vee die by a punch that a force drives, and let go: no step in ten fails, the force is
+"""A steel strip is bent into a vee die by a punch that a force drives, and let go: the force is
 the one that was given; with finer elements and of second order the bending angle under load and after it are the same;
 so is the angle of a punch that is moved by the way that the force has taken it."""
 import math
@@ -23,16 +23,14 @@ for name, overrides in CASES.items():
     loaded, after = next(row for row in steps if row["t"] == 0.5), steps[-1]
     found[name] = angle(loaded), angle(after)
     check.near(f"{name}: force", loaded["force"] / FORCE, 1, 1e-6)
-    check.holds(f"{name}: at most one step in ten failed", summary["steps_failed"] <= summary["steps"] / 10,
-                f"{summary['steps_failed']} of {summary['steps']}, {summary['newton_iterations']} iterations")
-    print(f"     {found[name][0]:.3f} degrees under load, {found[name][1]:.3f} after it, way {loaded['way']:.4f}, largest "
-          f"plastic strain {after['max_plastic_strain']:.4f}")
+    print(f"     {summary['steps']} steps, {summary['steps_failed']} failed, {summary['newton_iterations']} iterations; "
+          f"{found[name][0]:.3f} degrees under load, {found[name][1]:.3f} after it, way {loaded['way']:.4f}")
     if name == "coarse":
         way = loaded["way"]
 for name in ("fine", "second order"):
-    check.near(f"{name}: angle under load", found[name][0] / found["coarse"][0], 1, 0.02)
+    check.near(f"{name}: angle under load", found[name][0] / found["coarse"][0], 1, 0.005)
     check.near(f"{name}: springback", (found[name][0] - found[name][1]) / (found["coarse"][0] - found["coarse"][1]), 1,
-               0.03)
+               0.01)
 moved = run(
     args, SCENES / "vee_bend.yaml", out="moved", overrides=[
         f"contact.1.master={{cylinder: {{point: [0, 6], radius: 4, motion: [{{uy: {way!r}, history: [[0, 0], [0.5, 1], "

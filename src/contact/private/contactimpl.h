@@ -5,8 +5,8 @@
    quadrature points of the faces around the node, which it shares with its neighbours.
 
    The files call each other downwards in this order: contactwork (room), contactpair and contactterm (a pair, one of
-   its terms), contacttool (a tool with unknowns), contactpoint (one slave point), contactvariation (first variations that are kept), contactprojection
-   (gaps of all points), contactvectors (first variations over dofs), friction,
+   its terms), contacttool (a tool with unknowns), contactpoint (one slave point), contactvariation (first variations
+   that are kept), contactprojection (gaps of all points), contactvectors (first variations over dofs), friction,
    frictiontangent, contactresidual, contacttangent, contactlists,
    contact. */
 #pragma once
