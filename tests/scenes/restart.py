@@ -16,10 +16,10 @@ from harness import Check, Run, arguments, run, SCENES
 
 SLIDING = SCENES / "../../runs/slide_cylinder.yaml"
 PUSHED = SCENES / "tool.yaml"
-# A punch is pushed into a plastic block and let go: plastic states, unknowns of a tool and friction are kept.
+# A punch is pushed into a plastic block and let go: plastic states and unknowns of a tool are kept.
 PUSHED_OVERRIDES = [
     "bodies.0.material={law: von_mises, E: 1000, nu: 0.3, yield: 30, hardening: {linear: 20}}", "mesh.order=1",
-    "contact.0.friction.mu=0.2", "contact.0.master={cylinder: {point: [4.2, 8.2], radius: 3, free: [uy], force: "
+    "contact.0.master={cylinder: {point: [4.2, 8.2], radius: 3, free: [uy], force: "
     "[0, -150], history: [[0, 0], [0.7, 1], [1, 0.2]]}}", "stepping={control: fixed, initial: 0.04}"
 ]
 BATCH = pathlib.Path(__file__).resolve().parents[2] / "runs/batch"
