@@ -20,7 +20,8 @@ PUSHED = SCENES / "tool.yaml"
 PUSHED_OVERRIDES = [
     "bodies.0.material={law: von_mises, E: 1000, nu: 0.3, yield: 30, hardening: {linear: 20}}", "mesh.order=1",
     "contact.0.master={cylinder: {point: [4.2, 8.2], radius: 3, free: [uy], force: "
-    "[0, -150], history: [[0, 0], [0.7, 1], [1, 0.2]]}}", "stepping={control: fixed, initial: 0.04}"
+    "[0, -150], history: [[0, 0], [0.7, 1], [1, 0.2]]}}", "contact.0.penalty={scale: 100}",
+    "stepping={control: fixed, initial: 0.04}"
 ]
 BATCH = pathlib.Path(__file__).resolve().parents[2] / "runs/batch"
 COUNTS = ("step", "newton", "attempts", "contact_nodes", "nodes_in", "nodes_out")
