@@ -155,6 +155,9 @@ static PetscErrorCode NodeNeighbours(Mesh mesh, PetscInt node, const PetscInt *p
 {
   PetscFunctionBeginUser;
   *count = 0;
+  for (int k = 0; k < mesh->n_tools && node >= mesh->n_body_nodes; k++) /* of a tool, which has no cells */
+    for (PetscInt n = mesh->tools[k].node; n < mesh->tools[k].node + TOOL_NODES; n++)
+      if (node >= mesh->tools[k].node && node < mesh->tools[k].node + TOOL_NODES) neighbours[(*count)++] = n;
   for (PetscInt k = ptr[node]; k < ptr[node + 1]; k++) {
     for (PetscInt m = mesh->cell_ptr[cells[k]]; m < mesh->cell_ptr[cells[k] + 1]; m++) {
       const PetscInt n = mesh->cell_nodes[m];

@@ -1,5 +1,6 @@
 /* Rigid motions that a scene leaves its bodies, see freemodes.h. */
 #include "bodies/freemodes.h"
+#include "bodies/tools.h"
 #include "kernels/elementkernel.h"
 #include "mesh/meshpieces.h"
 #include "base/refusal.h"
@@ -62,6 +63,12 @@ static PetscErrorCode MeasurePieces(FreeModes modes)
     }
     piece->size = PetscSqrtReal(square) / 2;
   }
+  for (int k = 0; k < mesh->n_tools; k++) {
+    FreePiece *piece = &modes->pieces[modes->piece[mesh->tools[k].node]];
+
+    piece->tool = &mesh->tools[k];
+    piece->size = mesh->tools[k].arm;
+  }
   PetscCall(PetscFree(box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -97,6 +104,10 @@ static PetscErrorCode NamePieces(FreeModes modes)
       if (used < FREE_TEXT)
         used +=
           (size_t)snprintf(piece->name + used, FREE_TEXT - used, "%s%s", used ? " + " : "", scene->bodies[b].name);
+    }
+    if (piece->tool) {
+      PetscCall(PetscStrncpy(piece->name, piece->tool->name, FREE_TEXT));
+      piece->body = PetscMax(piece->tool->body, 0);
     }
     if (split && used < FREE_TEXT)
       snprintf(piece->name + used, FREE_TEXT - used, " (its part with node %" PetscInt_FMT ")", tag[p]);
@@ -152,7 +163,7 @@ static PetscErrorCode FindSupported(FreeModes modes, Loads loads)
     const PetscInt p = modes->piece[n];
     double         x[3], row[RIGID_MODES];
 
-    if (mesh->node_owner[n] != rank) continue;
+    if (mesh->node_owner[n] != rank || modes->pieces[p].tool) continue;
     PlaceInPiece(&modes->pieces[p], dim, &mesh->coords[n * dim], x);
     for (int d = 0; d < dim; d++) {
       if (!LoadsHeld(loads, n * dim + d)) continue;
@@ -162,6 +173,9 @@ static PetscErrorCode FindSupported(FreeModes modes, Loads loads)
   }
   PetscCallMPI(
     MPI_Allreduce(MPI_IN_PLACE, gram, (PetscMPIInt)(modes->n_pieces * square), MPI_DOUBLE, MPI_SUM, mesh->comm));
+  for (PetscInt p = 0; p < modes->n_pieces; p++)
+    for (int c = 0; c < MOTION_COMPONENTS && modes->pieces[p].tool; c++)
+      if (!modes->pieces[p].tool->motion->free[c]) gram[p * square + (c + 3) % 6 * (RIGID_MODES + 1)] = 1;
   PetscCall(ColumnOrder(1, columns));
   for (PetscInt p = 0; p < modes->n_pieces; p++) {
     HoldImpossible(modes->scene->geometry, &gram[p * square]);
@@ -173,27 +187,64 @@ static PetscErrorCode FindSupported(FreeModes modes, Loads loads)
 }
 
 /*@
-  FreeModesOnSurface - marks the pieces that a surface is part of.
+  FreeModesOnSide - marks the pieces that a side of a contact pair is part of.
 
   Collective
 
   Input Parameters:
-+ modes - the motions
-- name  - physical surface; NULL: of an analytic master
++ modes   - the motions
+. contact - number of the pair in the scene
+- master  - its master's side
 
   Output Parameter:
-. on - on[pieces]: 1 or 0; a rigid tool and an analytic master are part of none
+. on - on[pieces]: 1 or 0; a tool without free motions is part of none
 @*/
-PetscErrorCode FreeModesOnSurface(FreeModes modes, const char *name, int on[])
+PetscErrorCode FreeModesOnSide(FreeModes modes, int contact, PetscBool master, int on[])
 {
-  const int g = name ? MeshFindGroup(modes->mesh, modes->mesh->dim - 1, name) : -1;
+  const SceneContact *pair = &modes->scene->contacts[contact];
+  const char         *name = master ? pair->master : pair->slave;
+  const int           g    = name ? MeshFindGroup(modes->mesh, modes->mesh->dim - 1, name) : -1;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(on, modes->n_pieces));
   if (g >= 0 && modes->mesh->groups[g].attached)
     for (PetscInt i = 0; i < modes->mesh->groups[g].n_nodes; i++) on[modes->piece[modes->mesh->groups[g].nodes[i]]] = 1;
+  for (PetscInt p = 0; p < modes->n_pieces; p++)
+    if (master && modes->pieces[p].tool && modes->pieces[p].tool == ToolOfPair(modes->mesh, modes->scene, contact))
+      on[p] = 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, on, (PetscMPIInt)modes->n_pieces, MPI_INT, MPI_MAX, modes->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeModesNodeVelocity - computes how a rigid motion of a piece moves one of its nodes.
+
+  Not collective
+
+  Input Parameters:
++ mesh   - the mesh
+. piece  - the piece
+. node   - local node
+. u      - local displacements u[n_nodes*dim] (length)
+- motion - the motion
+
+  Output Parameter:
+. v - velocity of the node's dofs, in units of the piece's size; the second node of a tool carries its rotation
+@*/
+void FreeModesNodeVelocity(Mesh mesh, const FreePiece *piece, PetscInt node, const PetscReal *u,
+                           const double motion[RIGID_MODES], double v[3])
+{
+  double x[3];
+
+  for (int d = 0; d < 3; d++)
+    x[d] = d < mesh->dim
+             ? (mesh->coords[node * mesh->dim + d] + u[node * mesh->dim + d] - piece->centre[d]) / piece->size
+             : 0;
+  RigidVelocity(motion, x, v);
+  if (!piece->tool || node == piece->tool->node) return;
+  v[0] = mesh->dim == 3 ? motion[0] : motion[2];
+  v[1] = mesh->dim == 3 ? motion[1] : 0;
+  v[2] = mesh->dim == 3 ? motion[2] : 0;
 }
 
 /* Marks the pieces that some contact pair knows. */
@@ -204,9 +255,7 @@ static PetscErrorCode MarkPaired(FreeModes modes)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(modes->n_pieces, &on));
   for (int side = 0; side < 2 * modes->scene->n_contacts; side++) {
-    const SceneContact *contact = &modes->scene->contacts[side / 2];
-
-    PetscCall(FreeModesOnSurface(modes, side % 2 ? contact->master : contact->slave, on));
+    PetscCall(FreeModesOnSide(modes, side / 2, (PetscBool)(side % 2), on));
     for (PetscInt p = 0; p < modes->n_pieces; p++)
       if (on[p]) modes->pieces[p].paired = PETSC_TRUE;
   }
@@ -260,19 +309,20 @@ static PetscErrorCode AddBetween(FreeModes modes, PetscInt slave, PetscInt m, co
 /* Adds up the mean square of the motion between slave and master over the slave's faces: that along the normal or, with
    friction, that along all axes. All pieces that the master surface lies on count as masters, because it is not known
    before where the surfaces meet. Gaps are assumed to be small against the bodies. */
-static PetscErrorCode MeasurePair(FreeModes modes, const SceneContact *contact, double gram[])
+static PetscErrorCode MeasurePair(FreeModes modes, int c, double gram[])
 {
-  Mesh             mesh  = modes->mesh;
-  const int        n     = RIGID_MODES * (int)modes->n_pieces;
-  const MeshGroup *slave = &mesh->groups[MeshFindGroup(mesh, mesh->dim - 1, contact->slave)];
-  const PetscBool  rubs  = (PetscBool)contact->friction;
-  double          *row, area = 0;
-  int             *on_slave, *on_master, deformable = 0;
+  Mesh                mesh    = modes->mesh;
+  const SceneContact *contact = &modes->scene->contacts[c];
+  const int           n       = RIGID_MODES * (int)modes->n_pieces;
+  const MeshGroup    *slave   = &mesh->groups[MeshFindGroup(mesh, mesh->dim - 1, contact->slave)];
+  const PetscBool     rubs    = (PetscBool)contact->friction;
+  double             *row, area = 0;
+  int                *on_slave, *on_master, deformable = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(n, &row, modes->n_pieces, &on_slave, modes->n_pieces, &on_master));
-  PetscCall(FreeModesOnSurface(modes, contact->slave, on_slave));
-  PetscCall(FreeModesOnSurface(modes, contact->master, on_master));
+  PetscCall(FreeModesOnSide(modes, c, PETSC_FALSE, on_slave));
+  PetscCall(FreeModesOnSide(modes, c, PETSC_TRUE, on_master));
   for (PetscInt p = 0; p < modes->n_pieces; p++) deformable += on_master[p];
   for (PetscInt f = 0; f < slave->n_faces; f++) {
     PetscReal    centre[3];
@@ -384,8 +434,7 @@ PetscErrorCode FreeModesCreate(Mesh mesh, Scene scene, Loads loads, FreeModes *o
   if (modes->n_pieces > FREE_PIECES) PetscFunctionReturn(PETSC_SUCCESS);
   square = (size_t)PetscSqr(RIGID_MODES * modes->n_pieces);
   PetscCall(PetscCalloc1(scene->n_contacts * square, &modes->gram));
-  for (int c = 0; c < scene->n_contacts; c++)
-    PetscCall(MeasurePair(modes, &scene->contacts[c], &modes->gram[c * square]));
+  for (int c = 0; c < scene->n_contacts; c++) PetscCall(MeasurePair(modes, c, &modes->gram[c * square]));
   PetscCall(FindLoose(modes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -599,7 +648,7 @@ PetscErrorCode FreeModesRefuse(FreeModes modes)
   for (PetscInt p = 0; p < modes->n_pieces && body < 0; p++) {
     const FreePiece *piece = &modes->pieces[p];
 
-    if (piece->paired || !piece->n_free) continue;
+    if (piece->paired || !piece->n_free || piece->tool) continue;
     body = piece->body;
     for (int i = 0; i < piece->n_free && used < FREE_MESSAGE; i++) {
       char motion[FREE_TEXT];
@@ -609,6 +658,13 @@ PetscErrorCode FreeModesRefuse(FreeModes modes)
       used += (size_t)snprintf(message + used, FREE_MESSAGE - used, "%s%s", i ? "; " : "", motion);
     }
   }
+  for (PetscInt p = 0; p < modes->n_pieces; p++)
+    if (modes->pieces[p].tool && !modes->pieces[p].paired)
+      PetscCall(
+        RefuseInput(modes->mesh->comm,
+                    "%s: the tool '%s' is free to move, but no contact pair knows it; allowed: a free tool that "
+                    "is the master of a pair",
+                    SceneWhere(modes->scene, modes->pieces[p].tool->path, "free"), modes->pieces[p].name));
   if (body >= 0)
     PetscCall(RefuseInput(modes->mesh->comm,
                           "%s: %s; no support, imposed displacement or contact pair holds it; allowed: bodies that "

@@ -15,12 +15,13 @@ enum { FREE_TEXT = 320 };
 
 /* A connected piece of the mesh. Its motions are measured at its own centre, in units of its size (rigidkernel.h). */
 typedef struct {
-  char      name[FREE_TEXT];
-  PetscReal centre[3], size; /* of its bounding box, relative to the mesh's centre; half the diagonal */
-  int       body;            /* one of its bodies */
-  PetscBool paired;          /* a contact pair knows it */
-  int       n_free;          /* motions that supports leave */
-  double    free[RIGID_MODES * RIGID_MODES];
+  char            name[FREE_TEXT];
+  PetscReal       centre[3], size; /* of its bounding box, relative to the mesh's centre; half the diagonal */
+  int             body;            /* one of its bodies */
+  PetscBool       paired;          /* a contact pair knows it */
+  const MeshTool *tool;            /* it is a rigid tool, whose size is its arm; NULL: it has cells */
+  int             n_free;          /* motions that supports leave */
+  double          free[RIGID_MODES * RIGID_MODES];
 } FreePiece;
 
 typedef struct _n_FreeModes *FreeModes;
@@ -31,5 +32,7 @@ PetscErrorCode FreeModesReport(FreeModes, PetscBool held, FILE *);
 PetscErrorCode FreeModesRefuse(FreeModes);
 PetscErrorCode FreeModesGetPieces(FreeModes, PetscInt *n, const FreePiece **pieces, const PetscInt **piece);
 void           FreeModesMotionText(FreeModes, PetscInt piece, const double motion[RIGID_MODES], char text[FREE_TEXT]);
-PetscErrorCode FreeModesOnSurface(FreeModes, const char *surface, int on[]);
+PetscErrorCode FreeModesOnSide(FreeModes, int contact, PetscBool master, int on[]);
+void FreeModesNodeVelocity(Mesh, const FreePiece *, PetscInt node, const PetscReal *u, const double motion[RIGID_MODES],
+                           double v[3]);
 PetscErrorCode FreeModesUnheld(Mesh, Scene, Loads, size_t size, char *text);

@@ -4,6 +4,7 @@
 #include "bodies/foundation.h"
 #include "bodies/loads.h"
 #include "bodies/loadvalues.h"
+#include "bodies/tools.h"
 #include "base/refusal.h"
 
 /* Stands in the place of a load's index where the axisymmetric geometry itself holds u_r on the axis. */
@@ -180,7 +181,7 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
     loads->constrained[i] = PETSC_FALSE;
     loads->owner[i]       = -1;
   }
-  for (PetscInt node = 0; node < mesh->n_nodes && scene->geometry == GEOMETRY_AXISYMMETRIC; node++)
+  for (PetscInt node = 0; node < mesh->n_body_nodes && scene->geometry == GEOMETRY_AXISYMMETRIC; node++)
     if (mesh->coords[node * mesh->dim] + mesh->centre[0] <= LOADS_ON_AXIS * mesh->size)
       LoadsAddDof(loads, &(Prescribed){.dof = node * mesh->dim, .load = LOADS_AXIS});
   for (int s = 0; s < scene->n_supports; s++) {
@@ -200,6 +201,7 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
   }
   PetscCall(PetscFree(loads->owner));
   PetscCall(ComplaintRefuse(mesh->comm, &loads->complaint));
+  ToolsConstrain(mesh, loads->constrained);
   PetscCall(MeshSetConstraints(mesh, loads->constrained));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -470,6 +472,7 @@ PetscErrorCode LoadsPrescribe(Loads loads, PetscReal t, PetscReal *u)
 {
   PetscFunctionBeginUser;
   PetscCall(LoadsMove(loads, t));
+  ToolsPrescribe(loads->mesh, t, u);
   for (PetscInt i = 0; i < loads->n_prescribed; i++)
     u[loads->prescribed[i].dof] = loads->prescribed[i].value * HistoryFactor(loads->prescribed[i].history, t);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -528,6 +531,7 @@ PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, Petsc
 
   PetscFunctionBeginUser;
   PetscCall(LoadsMove(loads, t));
+  ToolsResidual(loads->mesh, t, u, f, energy, force2);
   for (PetscInt l = 0; l < loads->n_dead; l++) {
     const DeadLoad *dead   = &loads->dead[l];
     const PetscReal factor = HistoryFactor(dead->history, t);

@@ -36,6 +36,68 @@ PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The largest growth of the equivalent plastic strain of a group's points from states before to those of the group. */
+static PetscReal GroupGrowth(const CellGroup *g, const PetscReal *before)
+{
+  const size_t states = ElasticityCellStates(g);
+  PetscReal    most   = 0;
+
+  for (size_t batch = 0; batch < (size_t)g->n_batches; batch++) {
+    for (size_t k = PLASTIC_STRAIN; k < states; k += PLASTIC_STATE) {
+      const size_t first = (batch * states + k) * KERNEL_LANES;
+
+      for (size_t lane = 0; lane < KERNEL_LANES; lane++)
+        most = PetscMax(most, g->state[first + lane] - before[first + lane]);
+    }
+  }
+  return most;
+}
+
+/*@
+  ElasticityPlasticGrowth - computes the largest growth of the equivalent plastic strain from the accepted state.
+
+  Collective
+
+  Input Parameters:
++ e - the elasticity
+- u - local displacements (length) [n_nodes*dim]
+
+  Output Parameter:
+. growth - over all quadrature points of all ranks
+
+  Note:
+  The accepted state stays what it is.
+@*/
+PetscErrorCode ElasticityPlasticGrowth(Elasticity e, const PetscReal *u, PetscReal *growth)
+{
+  PetscReal **before;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(e->n_groups, &before));
+  for (int k = 0; k < e->n_groups; k++) {
+    const CellGroup *g = &e->groups[k];
+    const size_t     n = (size_t)g->n_batches * KERNEL_LANES * ElasticityCellStates(g);
+
+    if (!g->state) continue;
+    PetscCall(PetscMalloc1(n, &before[k]));
+    PetscCall(PetscArraycpy(before[k], g->state, n));
+  }
+  PetscCall(ElasticityAcceptPlastic(e, u));
+  *growth = 0;
+  for (int k = 0; k < e->n_groups; k++) {
+    CellGroup   *g = &e->groups[k];
+    const size_t n = (size_t)g->n_batches * KERNEL_LANES * ElasticityCellStates(g);
+
+    if (!g->state) continue;
+    *growth = PetscMax(*growth, GroupGrowth(g, before[k]));
+    PetscCall(PetscArraycpy(g->state, before[k], n));
+    PetscCall(PetscFree(before[k]));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, growth, 1, MPIU_REAL, MPI_MAX, e->mesh->comm));
+  PetscCall(PetscFree(before));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Copies the plastic state of a cell out of its group or into it. */
 static void CopyState(CellGroup *g, PetscInt slot, PetscBool out, PetscReal *values)
 {

@@ -365,6 +365,8 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   if (contact->listed) PetscCall(PairIsOneBody(mesh, scene, pair, &pair->one_body));
   if (contact->listed) SearchAllSides(pair->search, pair->one_body);
   if (contact->share < 1) PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &pair->reaction));
+  pair->tool = ToolOfPair(mesh, scene, (int)(contact - scene->contacts));
+  SearchSetTool(pair->search, pair->tool);
   PetscCall(PetscCalloc2(pair->n, &pair->held, pair->n, &pair->predicted));
   if (friction) PetscCall(FrictionCreate(pair));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));

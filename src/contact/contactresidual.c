@@ -107,6 +107,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscCall(PairForces(pair, values));
   if (pair->reaction) PetscCall(PairReaction(pair, values));
   if (pair->friction) PetscCall(FrictionResidual(pair, t, values));
+  if (pair->tool) PetscCall(ContactToolForces(pair, values));
   PetscCall(NeighbourListsReduce(pair->lists, values, f));
   if (pair->formulation.surface) PetscCall(PairSharedForces(pair));
   for (PetscInt c = 0; c < pair->n_nodes && !pair->formulation.surface; c++)

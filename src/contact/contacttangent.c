@@ -38,8 +38,8 @@ static PetscErrorCode PairStiffness(Contact contact, ContactPair *pair, const Pe
 static PetscErrorCode NameListed(Contact contact, const ContactPair *pair, int p)
 {
   PetscFunctionBeginUser;
-  PetscCall(
-    BlockMatrixName(contact->blocks, p, pair->work->count, pair->work->number, (PetscBool)(contact->product != NULL)));
+  PetscCall(BlockMatrixName(contact->blocks, p, pair->work->count, pair->work->number,
+                            (PetscBool)(contact->product || pair->tool)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,6 +89,41 @@ static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Forces of slave points on the nodes of the block at hand, as residual force[n*dim]. */
+static void PointForces(const ContactPair *pair, PetscInt points, const PetscInt *point, PetscReal *force)
+{
+  const int                dim = pair->mesh->dim;
+  const ContactVariations *v   = pair->variations;
+
+  for (PetscInt k = 0; k < points; k++) {
+    for (PetscInt i = v->first[point[k]]; pair->point_force[point[k]] != 0 && i < v->end[point[k]]; i++) {
+      const int place = pair->work->slot[v->number[i]];
+
+      for (int d = 0; place >= 0 && d < dim; d++)
+        force[place * dim + d] -= pair->point_force[point[k]] * v->N[i * dim + d];
+    }
+  }
+}
+
+/* Completes the sum of second variations in the work's M, of some slave points, by the dofs of a tool. */
+static PetscErrorCode CoupleTool(const ContactPair *pair, PetscInt points, const PetscInt *point, PetscInt n,
+                                 const PetscInt *nodes)
+{
+  const int      dim = pair->mesh->dim;
+  const PetscInt m   = n * dim;
+  PetscReal     *M   = pair->work->M, *force;
+
+  PetscFunctionBeginUser;
+  if (!pair->tool) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < m; i++)
+    for (PetscInt j = 0; j < i; j++) M[i * m + j] = M[j * m + i]; /* it has its upper triangle */
+  PetscCall(PetscCalloc1(m, &force));
+  PointForces(pair, points, point, force);
+  PetscCall(ContactToolBlock(pair, n, nodes, force, M));
+  PetscCall(PetscFree(force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds the block A psi'' Nbar Nbar^T of a term. It stands alone where the term shares its points; else it comes with
    -p M of its one point. */
 static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscInt n,
@@ -108,6 +143,7 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
     FitDerivativesAddOuter(&pair->work->sum, 1, v);
     if (pair->point_force[q] != 0) PetscCall(ContactSecondAdd(pair, q, -pair->point_force[q], own));
     ContactSecondEnd(pair);
+    PetscCall(CoupleTool(pair, 1, &q, n, nodes));
     PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
   }
   PetscCall(PetscFree(v));
@@ -127,6 +163,7 @@ static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p,
   for (PetscInt k = 0; k < loaded; k++)
     PetscCall(ContactSecondAdd(pair, points[k], -pair->point_force[points[k]], own));
   ContactSecondEnd(pair);
+  PetscCall(CoupleTool(pair, loaded, points, n, nodes));
   PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -199,11 +236,8 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, Pets
 @*/
 PetscErrorCode ContactMatrixRows(Contact contact, PetscInt *rows)
 {
-  PetscSection section;
-
   PetscFunctionBeginUser;
-  PetscCall(DMGetGlobalSection(contact->mesh->dm, &section));
-  PetscCall(PetscSectionGetConstrainedStorageSize(section, rows));
+  *rows = contact->mesh->n_free;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

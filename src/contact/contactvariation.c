@@ -82,8 +82,8 @@ PetscErrorCode ContactVariationsKeep(const ContactPair *pair, PetscInt q, PetscB
   v->first[q] = v->end[q] = v->n;
   if (!found) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactPointToNodes(pair, pair->lists, q));
-  if (v->n + work->count > v->room) {
-    v->room = 2 * (v->n + work->count);
+  if (v->n + work->count + TOOL_NODES > v->room) {
+    v->room = 2 * (v->n + work->count + TOOL_NODES);
     PetscCall(PetscRealloc(v->room * sizeof(PetscInt), &v->number));
     PetscCall(PetscRealloc(v->room * dim * sizeof(PetscReal), &v->N));
   }
@@ -91,8 +91,29 @@ PetscErrorCode ContactVariationsKeep(const ContactPair *pair, PetscInt q, PetscB
   PetscCall(PetscArraycpy(&v->N[v->n * dim], work->N, work->count * dim));
   PetscCall(PetscArraycpy(&v->own[q * dim], work->result.N, dim));
   v->n += work->count;
+  if (pair->tool) {
+    PetscCall(ContactToolVariation(pair, work->count, work->number, work->N, &v->N[v->n * dim]));
+    for (int k = 0; k < TOOL_NODES; k++) v->number[v->n++] = pair->lists->tool + k;
+  }
   v->end[q] = v->n;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactVariationsOwn - returns the number of nodes of the first variation of a slave point without those of a tool,
+  which are the last ones.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+- q    - the slave point, after ContactVariationsNeed()
+@*/
+PetscInt ContactVariationsOwn(const ContactPair *pair, PetscInt q)
+{
+  const PetscInt n = pair->variations->end[q] - pair->variations->first[q];
+
+  return pair->tool && n ? n - TOOL_NODES : n;
 }
 
 /*@

@@ -22,7 +22,7 @@ static PetscErrorCode PointTurns(const ContactPair *pair, PetscInt q, const Pets
   const int      dim  = pair->mesh->dim;
   ContactWork   *work = pair->work;
   Friction       f    = pair->friction;
-  const PetscInt n    = pair->variations->end[q] - pair->variations->first[q];
+  const PetscInt n    = ContactVariationsOwn(pair, q);
   PetscReal     *row, *to;
   PetscBool      found;
 
@@ -171,7 +171,7 @@ static PetscErrorCode AddVariations(const TermBlock *b, PetscReal *rows, PetscIn
 
   PetscFunctionBeginUser;
   PetscCall(PointTurns(b->pair, q, &turns));
-  for (PetscInt i = v->first[q]; i < v->end[q]; i++) {
+  for (PetscInt i = v->first[q]; i < v->first[q] + ContactVariationsOwn(b->pair, q); i++) {
     const PetscReal *turn = &turns[(i - v->first[q]) * dim * dim], *N = &v->N[i * dim];
     PetscReal        sum[3][3];
 
@@ -328,6 +328,35 @@ static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the block of a term whose master is a tool with unknowns, completed by the rows and columns of the tool. */
+static PetscErrorCode AddWithTool(const TermBlock *b, BlockMatrix blocks, int list, PetscInt n, const PetscInt nodes[],
+                                  const FrictionTraction *out)
+{
+  const int      dim = b->dim;
+  const PetscInt m = n * dim, tool = b->pair->lists->tool;
+  PetscInt      *rows = b->row_node, n_rows = 0;
+  PetscReal     *M, *force;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(m * m, &M, m, &force));
+  for (PetscInt r = 0; r < b->n_rows * dim; r++) {
+    const PetscInt i = b->pair->work->slot[b->row_node[r / dim]] * dim + r % dim;
+
+    PetscCall(PetscArraycpy(&M[i * m], &b->value[r * m], m));
+    for (int d = 0; d < dim; d++) force[i] += b->share[r * dim + d] * out->traction[d];
+  }
+  PetscCall(ContactToolBlock(b->pair, n, nodes, force, M));
+  for (PetscInt i = 0; i < n; i++) {
+    if (nodes[i] >= tool + TOOL_NODES) continue;
+    rows[n_rows] = nodes[i];
+    if (n_rows < i) PetscCall(PetscArraymove(&M[n_rows * dim * m], &M[i * dim * m], dim * m));
+    n_rows++;
+  }
+  PetscCall(BlockMatrixAddRows(blocks, list, n_rows, rows, n, nodes, M));
+  PetscCall(PetscFree2(M, force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FrictionTermBlock - adds the tangent of a term's friction.
 
@@ -358,7 +387,10 @@ PetscErrorCode FrictionTermBlock(const ContactPair *pair, BlockMatrix blocks, in
   PetscCall(PetscMalloc2(n, &b.row_node, n, &b.row_of));
   for (PetscInt i = 0; i < n; i++) b.row_of[i] = -1;
   PetscCall(FillBlock(&b, c, &out));
-  PetscCall(BlockMatrixAddRows(blocks, list, b.n_rows, b.row_node, n, nodes, b.value));
+  if (pair->tool)
+    PetscCall(AddWithTool(&b, blocks, list, n, nodes, &out));
+  else
+    PetscCall(BlockMatrixAddRows(blocks, list, b.n_rows, b.row_node, n, nodes, b.value));
   PetscCall(PetscFree2(b.by_node, b.share));
   PetscCall(PetscFree2(b.row_node, b.row_of));
   PetscCall(PetscFree(b.value));

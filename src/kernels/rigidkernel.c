@@ -223,6 +223,90 @@ void RigidMove(const double q[RIGID_MODES], double x[3])
   for (int d = 0; d < 3; d++) x[d] += v[d] + second * wv[d] + third * wwv[d];
 }
 
+/* (1 - cos a) / a^2 and (a - sin a) / a^3, differentiated by a and divided by a, also for small angles. */
+static void MoveFactorRates(double a, double *second, double *third)
+{
+  if (a < SMALL_ANGLE) {
+    *second = -1. / 12 + a * a / 180;
+    *third  = -1. / 60 + a * a / 1260;
+  } else {
+    *second = (a * sin(a) - 2 * (1 - cos(a))) / (a * a * a * a);
+    *third  = (a * (1 - cos(a)) - 3 * (a - sin(a))) / (a * a * a * a * a);
+  }
+}
+
+static void Cross(const double a[3], const double b[3], double c[3])
+{
+  for (int d = 0; d < 3; d++) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+}
+
+/*@
+  RigidTurnRate - computes the spin of a body whose rotation vector changes.
+
+  Not collective
+
+  Input Parameter:
+. turn - rotation vector (radians): the rotation is its exponential
+
+  Output Parameter:
+. spin - spin[k]: angular velocity where component k of the rotation vector grows at rate 1
+
+  Note:
+  The spin of a rate v is v + w x v (1 - cos a) / a^2 + w x (w x v) (a - sin a) / a^3, with the rotation vector w and
+  its length a.
+@*/
+void RigidTurnRate(const double turn[3], double spin[3][3])
+{
+  double second, third;
+
+  MoveFactors(sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]), &second, &third);
+  for (int k = 0; k < 3; k++) {
+    const double unit[3] = {k == 0, k == 1, k == 2};
+    double       once[3], twice[3];
+
+    Cross(turn, unit, once);
+    Cross(turn, once, twice);
+    for (int d = 0; d < 3; d++) spin[k][d] = unit[d] + second * once[d] + third * twice[d];
+  }
+}
+
+/*@
+  RigidTurnRateChange - computes how the spins of RigidTurnRate() change with the rotation vector.
+
+  Not collective
+
+  Input Parameter:
+. turn - rotation vector (radians)
+
+  Output Parameter:
+. change - change[l][k]: derivative of spin[k] by component l of the rotation vector
+@*/
+void RigidTurnRateChange(const double turn[3], double change[3][3][3])
+{
+  const double angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
+  double       second, third, second_rate, third_rate;
+
+  MoveFactors(angle, &second, &third);
+  MoveFactorRates(angle, &second_rate, &third_rate);
+  for (int l = 0; l < 3; l++) {
+    const double by[3] = {l == 0, l == 1, l == 2};
+
+    for (int k = 0; k < 3; k++) {
+      const double unit[3] = {k == 0, k == 1, k == 2};
+      double       once[3], twice[3], once_by[3], left[3], right[3];
+
+      Cross(turn, unit, once);
+      Cross(turn, once, twice);
+      Cross(by, unit, once_by);
+      Cross(by, once, left);
+      Cross(turn, once_by, right);
+      for (int d = 0; d < 3; d++)
+        change[l][k][d] = second_rate * turn[l] * once[d] + second * once_by[d] + third_rate * turn[l] * twice[d] +
+                          third * (left[d] + right[d]);
+    }
+  }
+}
+
 /*@
   RigidCholesky - computes Cholesky's factor L of a positive definite matrix, in its lower triangle.
 

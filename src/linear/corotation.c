@@ -228,7 +228,8 @@ PetscErrorCode CorotationFind(Corotation turn)
       for (int e = 0; e < ENTRIES; e++) turn->turn[mesh->cell_nodes[k] * ENTRIES + e] += product[e];
   }
   PetscCall(MeshSumNodes(mesh, ENTRIES, turn->turn));
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) Corotations(mesh->dim, &dof[n * mesh->dim], &turn->turn[n * ENTRIES]);
+  for (PetscInt n = 0; n < mesh->n_body_nodes; n++)
+    Corotations(mesh->dim, &dof[n * mesh->dim], &turn->turn[n * ENTRIES]);
   turn->turned = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -257,7 +258,7 @@ PetscErrorCode CorotationApply(Corotation turn, PetscBool back, Vec x)
   PetscCall(MeshGetGlobalDofs(turn->mesh, &dof));
   PetscCall(VecGetOwnershipRange(x, &first, &end));
   PetscCall(VecGetArray(x, &a));
-  for (PetscInt n = 0; n < turn->mesh->n_nodes; n++) {
+  for (PetscInt n = 0; n < turn->mesh->n_body_nodes; n++) {
     const PetscReal *R    = &turn->turn[n * ENTRIES];
     PetscScalar      v[3] = {0};
 

@@ -68,7 +68,7 @@ static PetscErrorCode MultigridNumberNodes(Multigrid m)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(m->mesh->comm, &rank));
   PetscCall(MeshGetGlobalDofs(m->mesh, &dofs));
-  PetscCall(DMCreateGlobalVector(m->mesh->dm, &m->number));
+  PetscCall(VecCreateMPI(m->mesh->comm, m->mesh->n_free, PETSC_DETERMINE, &m->number));
   PetscCall(VecGetOwnershipRange(m->number, &begin, &end));
   m->n_free = end - begin;
   PetscCall(PetscMalloc1(m->n_free, &m->row));

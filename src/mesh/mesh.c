@@ -3,6 +3,7 @@
 #include "cellfaces.h"
 #include "gmsh.h"
 #include "meshdistribution.h"
+#include "meshtools.h"
 #include "base/refusal.h"
 #include "rootgroups.h"
 #include "rootlinks.h"
@@ -146,6 +147,7 @@ static PetscErrorCode MeshBuild(Scene scene, const char *file, RootMesh *root, M
   PetscCall(CreateTopology(scene, file, root, mesh));
   PetscCall(RootRigidCreate(scene, root, mesh));
   PetscCall(PartitionBodies(scene, root, mesh));
+  PetscCall(MeshToolsList(scene, mesh));
   PetscCall(MeshDistribute(root, mesh));
   PetscCall(FreeAllDofs(mesh));
   PetscCall(DMSetOptionsPrefix(mesh->dm, "mesh_"));
@@ -221,8 +223,8 @@ PetscErrorCode MeshDestroy(Mesh *destroyed)
   }
   PetscCall(PetscFree(mesh->groups));
   PetscCall(RootRigidDestroy(mesh));
-  PetscCall(PetscFree6(mesh->node_id, mesh->node_tag, mesh->node_owner, mesh->node_owner_local, mesh->node_point,
-                       mesh->coords));
+  PetscCall(PetscFree5(mesh->node_id, mesh->node_tag, mesh->node_owner, mesh->node_owner_local, mesh->coords));
+  PetscCall(PetscFree(mesh->tools));
   PetscCall(
     PetscFree6(mesh->cell_id, mesh->cell_type, mesh->cell_ptr, mesh->cell_nodes, mesh->cell_body, mesh->cell_tag));
   PetscCall(PetscFree(mesh->global_dofs));

@@ -2,8 +2,9 @@
    mesh.h.
 
    A node carries degrees of freedom and sits on a point of the Plex: a vertex and, for order 2, also an edge, face or
-   cell. Local nodes are numbered 0..n_nodes-1 in the order of the local section, so that node n has the local dofs
-   n*dim .. n*dim+dim-1. This includes supports: the local section has every dof, the global section only the free ones.
+   cell. Local nodes are numbered 0..n_nodes-1 in the order of these points, so that node n has the local dofs
+   n*dim .. n*dim+dim-1. This includes supports: there is a local dof for every component, a global one only for the
+   free ones. The nodes of tools with free motions come last.
    Cells do not overlap: each belongs to one rank, and local cell c is point c of the Plex. Plex' order of nodes is not
    used anywhere: cells keep gmsh's. */
 #pragma once
@@ -40,11 +41,29 @@ typedef struct {
   PetscInt    *face_ptr, *face_nodes, *face_tag; /* CSR */
 } MeshRigid;
 
+/* Nodes of a tool with free motions: one for its displacement, one for its rotation. */
+enum { TOOL_NODES = 2 };
+
+/* A rigid tool, meshed or analytic, with free components of its motion. It has two nodes, which no cell has. They are
+   the last local nodes of every rank, and rank 0 owns them. The displacement of the first is that of the tool's point;
+   that of the second is the rotation vector times arm, in the plane its first component alone. */
 typedef struct {
-  MPI_Comm  comm;
-  DM        dm; /* DMPlex; its local section is that of the displacement */
-  int       dim, order;
-  PetscInt  n_nodes, n_owned, n_global;
+  const char *name;     /* of the tool's surface, or of the pair whose master it is */
+  char        path[64]; /* in the scene, such as "bodies.1.rigid" */
+  Motion     *motion;
+  int         body, contact; /* in the scene; the other one is -1 */
+  PetscInt    node;          /* the first of its nodes */
+  PetscReal   arm;           /* length by which rotations count as displacements */
+} MeshTool;
+
+typedef struct {
+  MPI_Comm comm;
+  DM       dm; /* DMPlex */
+  int      dim, order;
+  PetscInt n_nodes, n_owned, n_global;
+  PetscInt n_free; /* free dofs that this rank owns, after MeshSetConstraints() */
+  PetscInt n_body_nodes, n_body_owned,
+    n_body_global;            /* nodes of cells, which come first; the others are those of tools */
   PetscInt *node_id;          /* 0..n_global-1 in the order of gmsh's tags, the same on any number of ranks */
   PetscInt *node_tag;         /* gmsh's tag */
   PetscInt *node_owner;       /* rank */
@@ -64,9 +83,10 @@ typedef struct {
   MeshGroup   *groups;
   int          n_rigid;
   MeshRigid   *rigid;
+  int          n_tools;
+  MeshTool    *tools;
   Partition    partition;
   /* The fields below are for the files of this folder only. */
-  PetscInt  *node_point;  /* Plex point of a local node */
   PetscSF    node_sf;     /* from ghost nodes to their owners' nodes */
   PetscInt  *global_dofs; /* NULL until MeshSetConstraints() */
   PetscReal *work;        /* n_nodes*dim */

@@ -1,6 +1,7 @@
 /* Distribution of the mesh: rank 0 packs nodes and cells into sections over the Plex, the sections follow the points to
    their ranks, and each rank unpacks its arrays. */
 #include "meshdistribution.h"
+#include "meshtools.h"
 #include "mesh/meshgroup.h"
 
 /* Entries of a cell's record: id, tag, type, body and number of nodes, then the ids of the nodes, then FACE_ENTRIES
@@ -171,18 +172,19 @@ static PetscErrorCode CreateNodes(Mesh mesh, const Cargo *cargo, PetscInt **poin
     PetscCall(SectionRange(cargo->ids, p, &n, &offset));
     (*point_node)[p] = n ? mesh->n_nodes++ : -1;
   }
-  PetscCall(PetscMalloc6(mesh->n_nodes, &mesh->node_id, mesh->n_nodes, &mesh->node_tag, mesh->n_nodes,
-                         &mesh->node_owner, mesh->n_nodes, &mesh->node_owner_local, mesh->n_nodes, &mesh->node_point,
-                         mesh->n_nodes * mesh->dim, &mesh->coords));
+  mesh->n_body_nodes = mesh->n_nodes;
+  mesh->n_nodes += TOOL_NODES * mesh->n_tools;
+  PetscCall(PetscMalloc5(mesh->n_nodes, &mesh->node_id, mesh->n_nodes, &mesh->node_tag, mesh->n_nodes,
+                         &mesh->node_owner, mesh->n_nodes, &mesh->node_owner_local, mesh->n_nodes * mesh->dim,
+                         &mesh->coords));
   PetscCall(PetscMalloc1(mesh->n_nodes * mesh->dim, &mesh->work));
   for (PetscInt p = 0; p < end; p++) {
     const PetscInt node = (*point_node)[p];
 
     if (node < 0) continue;
     PetscCall(SectionRange(cargo->ids, p, &n, &offset));
-    mesh->node_id[node]    = cargo->id[offset];
-    mesh->node_tag[node]   = cargo->id[offset + 1];
-    mesh->node_point[node] = p;
+    mesh->node_id[node]  = cargo->id[offset];
+    mesh->node_tag[node] = cargo->id[offset + 1];
     PetscCall(SectionRange(cargo->places, p, &n, &offset));
     for (int k = 0; k < mesh->dim; k++) mesh->coords[node * mesh->dim + k] = cargo->place[offset + k];
   }
@@ -208,7 +210,8 @@ static PetscErrorCode OwnersNumbers(PetscSF point_sf, PetscInt n_points, const P
 static PetscErrorCode CreateOwners(Mesh mesh, const PetscInt point_node[])
 {
   PetscSF            point_sf;
-  PetscInt           end, n_leaves, n_ghosts = 0, *owner_node, *leaf;
+  const PetscInt     n_tool_nodes = mesh->n_nodes - mesh->n_body_nodes;
+  PetscInt           end, n_leaves, n_ghosts = 0, first = mesh->n_body_nodes, *owner_node, *leaf;
   const PetscInt    *leaves;
   const PetscSFNode *remotes;
   PetscSFNode       *remote;
@@ -226,8 +229,8 @@ static PetscErrorCode CreateOwners(Mesh mesh, const PetscInt point_node[])
   }
   PetscCall(PetscSFGetGraph(point_sf, NULL, &n_leaves, &leaves, &remotes));
   n_leaves = PetscMax(n_leaves, 0);
-  PetscCall(PetscMalloc1(n_leaves, &leaf));
-  PetscCall(PetscMalloc1(n_leaves, &remote));
+  PetscCall(PetscMalloc1(n_leaves + n_tool_nodes, &leaf));
+  PetscCall(PetscMalloc1(n_leaves + n_tool_nodes, &remote));
   for (PetscInt l = 0; l < n_leaves; l++) {
     const PetscInt point = leaves ? leaves[l] : l, node = point_node[point];
 
@@ -238,7 +241,18 @@ static PetscErrorCode CreateOwners(Mesh mesh, const PetscInt point_node[])
     remote[n_ghosts].rank        = remotes[l].rank;
     remote[n_ghosts++].index     = owner_node[point];
   }
-  mesh->n_owned = mesh->n_nodes - n_ghosts;
+  PetscCallMPI(MPI_Bcast(&first, 1, MPIU_INT, 0, mesh->comm));
+  for (PetscInt k = 0; k < n_tool_nodes && rank; k++) {
+    const PetscInt node = mesh->n_body_nodes + k;
+
+    mesh->node_owner[node]       = 0;
+    mesh->node_owner_local[node] = first + k;
+    leaf[n_ghosts]               = node;
+    remote[n_ghosts].rank        = 0;
+    remote[n_ghosts++].index     = first + k;
+  }
+  mesh->n_owned      = mesh->n_nodes - n_ghosts;
+  mesh->n_body_owned = mesh->n_owned - (rank ? 0 : n_tool_nodes);
   PetscCall(PetscSFCreate(mesh->comm, &mesh->node_sf));
   PetscCall(
     PetscSFSetGraph(mesh->node_sf, mesh->n_nodes, n_ghosts, leaf, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
@@ -389,6 +403,7 @@ PetscErrorCode MeshDistribute(RootMesh *root, Mesh mesh)
   }
   PetscCall(Distribute(&mesh->dm, &cargo));
   PetscCall(CreateNodes(mesh, &cargo, &point_node));
+  PetscCall(MeshToolsPlaceNodes(mesh));
   PetscCall(CreateOwners(mesh, point_node));
   PetscCall(CreateCells(mesh, &cargo));
   for (int g = 0; g < mesh->n_groups; g++) PetscCall(CreateGroupNodes(mesh, &mesh->groups[g], point_node));

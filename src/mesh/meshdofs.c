@@ -1,39 +1,5 @@
-/* Unknowns of a mesh: sections, global numbers, and exchange of nodal values through the SF of the nodes. */
+/* Unknowns of a mesh: global numbers, and exchange of nodal values through the SF of the nodes. */
 #include "mesh/meshdofs.h"
-
-/* Creates the displacement's section with dim dofs on each point with a node. */
-static PetscErrorCode CreateSection(Mesh mesh, const PetscBool constrained[], PetscSection *section)
-{
-  PetscInt which[3], start, end;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetChart(mesh->dm, &start, &end));
-  PetscCall(PetscSectionCreate(mesh->comm, section));
-  PetscCall(PetscSectionSetNumFields(*section, 1)); /* before the chart, which the fields take over */
-  PetscCall(PetscSectionSetChart(*section, start, end));
-  PetscCall(PetscSectionSetFieldName(*section, 0, "displacement"));
-  PetscCall(PetscSectionSetFieldComponents(*section, 0, mesh->dim));
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
-    PetscInt n = 0;
-
-    for (int k = 0; k < mesh->dim; k++) n += constrained[i * mesh->dim + k];
-    PetscCall(PetscSectionSetDof(*section, mesh->node_point[i], mesh->dim));
-    PetscCall(PetscSectionSetFieldDof(*section, mesh->node_point[i], 0, mesh->dim));
-    PetscCall(PetscSectionSetConstraintDof(*section, mesh->node_point[i], n));
-    PetscCall(PetscSectionSetFieldConstraintDof(*section, mesh->node_point[i], 0, n));
-  }
-  PetscCall(PetscSectionSetUp(*section));
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
-    PetscInt n = 0;
-
-    for (int k = 0; k < mesh->dim; k++)
-      if (constrained[i * mesh->dim + k]) which[n++] = k;
-    if (!n) continue;
-    PetscCall(PetscSectionSetConstraintIndices(*section, mesh->node_point[i], which));
-    PetscCall(PetscSectionSetFieldConstraintIndices(*section, mesh->node_point[i], 0, which));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Creates the MPI type of a node's values, `block` reals, to be freed with NodeTypeFree(). The values are reals,
    because MPI would treat two 64-bit integers as its pair type. One value is the basic type itself: PetscSF cannot sum
@@ -84,22 +50,29 @@ static PetscErrorCode AddNodes(Mesh mesh, PetscInt block, const PetscReal *value
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers the free dofs globally. The global section stores -(x + 1) for points of other ranks. */
+/* Numbers the free dofs globally: those of rank 0 come first, and on each rank they have the order of its nodes. */
 static PetscErrorCode NumberDofs(Mesh mesh, const PetscBool constrained[])
 {
-  PetscSection global;
-  PetscInt     offset;
+  const PetscInt n    = mesh->n_nodes * mesh->dim;
+  PetscInt       next = 0;
+  PetscMPIInt    rank;
+  MPI_Datatype   integers;
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetGlobalSection(mesh->dm, &global));
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   PetscCall(PetscFree(mesh->global_dofs));
-  PetscCall(PetscMalloc1(mesh->n_nodes * mesh->dim, &mesh->global_dofs));
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
-    PetscCall(PetscSectionGetOffset(global, mesh->node_point[i], &offset));
-    if (offset < 0) offset = -(offset + 1);
-    for (int k = 0; k < mesh->dim; k++)
-      mesh->global_dofs[i * mesh->dim + k] = constrained[i * mesh->dim + k] ? -1 : offset++;
-  }
+  PetscCall(PetscMalloc1(n, &mesh->global_dofs));
+  mesh->n_free = 0;
+  for (PetscInt i = 0; i < n; i++) mesh->n_free += mesh->node_owner[i / mesh->dim] == rank && !constrained[i];
+  PetscCallMPI(MPI_Exscan(&mesh->n_free, &next, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  if (!rank) next = 0;
+  for (PetscInt i = 0; i < n; i++)
+    mesh->global_dofs[i] = mesh->node_owner[i / mesh->dim] == rank && !constrained[i] ? next++ : -1;
+  PetscCallMPI(MPI_Type_contiguous(mesh->dim, MPIU_INT, &integers));
+  PetscCallMPI(MPI_Type_commit(&integers));
+  PetscCall(PetscSFBcastBegin(mesh->node_sf, integers, mesh->global_dofs, mesh->global_dofs, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(mesh->node_sf, integers, mesh->global_dofs, mesh->global_dofs, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_free(&integers));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,12 +86,11 @@ static PetscErrorCode NumberDofs(Mesh mesh, const PetscBool constrained[])
 - constrained - for each local dof [n_nodes*dim]; a dof is prescribed if any rank that has its node says so
 
   Note:
-  Sets the DM's local section. Call it before vectors and matrices are created, because older ones do not fit any more.
+  Call it before vectors and matrices are created, because older ones do not fit any more.
 @*/
 PetscErrorCode MeshSetConstraints(Mesh mesh, const PetscBool *constrained)
 {
   const PetscInt n = mesh->n_nodes * mesh->dim;
-  PetscSection   section;
   PetscReal     *votes;
   PetscBool     *agreed;
 
@@ -127,10 +99,7 @@ PetscErrorCode MeshSetConstraints(Mesh mesh, const PetscBool *constrained)
   for (PetscInt i = 0; i < n; i++) votes[i] = constrained[i] ? 1 : 0;
   PetscCall(MeshSumNodes(mesh, mesh->dim, votes));
   for (PetscInt i = 0; i < n; i++) agreed[i] = votes[i] > 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(CreateSection(mesh, agreed, &section));
-  PetscCall(DMSetLocalSection(mesh->dm, section));
   PetscCall(NumberDofs(mesh, agreed));
-  PetscCall(PetscSectionDestroy(&section));
   PetscCall(PetscFree2(votes, agreed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -163,7 +132,7 @@ PetscErrorCode MeshGetGlobalDofs(Mesh mesh, const PetscInt **dofs)
 
   Input Parameters:
 + mesh - the mesh, after MeshSetConstraints()
-- x    - from DMCreateGlobalVector()
+- x    - over the free dofs
 
   Output Parameter:
 . u - local values [n_nodes*dim]; constrained entries are not changed
@@ -199,7 +168,7 @@ PetscErrorCode MeshGlobalToLocal(Mesh mesh, Vec x, PetscReal *u)
 - u    - local values [n_nodes*dim]; those of ghost nodes are ignored
 
   Output Parameter:
-. x - from DMCreateGlobalVector(), overwritten
+. x - over the free dofs, overwritten
 @*/
 PetscErrorCode MeshCollectFree(Mesh mesh, const PetscReal *u, Vec x)
 {
@@ -228,7 +197,7 @@ PetscErrorCode MeshCollectFree(Mesh mesh, const PetscReal *u, Vec x)
 - f    - contributions of this rank [n_nodes*dim]
 
   Output Parameter:
-. F - from DMCreateGlobalVector(), overwritten
+. F - over the free dofs, overwritten
 @*/
 PetscErrorCode MeshLocalToGlobal(Mesh mesh, const PetscReal *f, Vec F)
 {

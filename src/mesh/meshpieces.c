@@ -68,8 +68,8 @@ static PetscErrorCode NextLabel(Mesh mesh, const PetscInt label[], PetscInt last
 - piece - piece of each local node [n_nodes]
 
   Note:
-  Pieces are numbered in the order of their lowest gmsh node tag, so that the numbers are the same on any number of
-  ranks.
+  A tool with free motions is a piece of its own. Pieces are numbered in the order of their lowest gmsh node tag, so
+that the numbers are the same on any number of ranks.
 @*/
 PetscErrorCode MeshFindPieces(Mesh mesh, PetscInt *n, PetscInt piece[])
 {
@@ -79,6 +79,7 @@ PetscErrorCode MeshFindPieces(Mesh mesh, PetscInt *n, PetscInt piece[])
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(mesh->n_nodes, &label));
   PetscCall(PetscArraycpy(label, mesh->node_id, mesh->n_nodes));
+  for (int k = 0; k < mesh->n_tools; k++) label[mesh->tools[k].node + 1] = label[mesh->tools[k].node];
   while (changed) {
     changed = SpreadInCells(mesh, label);
     PetscCall(SpreadOverRanks(mesh, label));

@@ -275,7 +275,7 @@ static void PrintReport(Mesh mesh, int n_bodies, const ReportRow bodies[], int n
   for (int s = 0; s < n_surfaces; s++) name = Width(name, surfaces[s].name);
   for (int r = 0; r < mesh->n_rigid; r++) name = Width(name, mesh->rigid[r].name);
   fprintf(stream, "mesh     %" PetscInt_FMT " cells of order %d, %" PetscInt_FMT " nodes, diagonal %g\n",
-          mesh->n_cells_global, mesh->order, mesh->n_global, (double)mesh->size);
+          mesh->n_cells_global, mesh->order, mesh->n_body_global, (double)mesh->size);
   fprintf(stream, "         %-*s %9s %11s  %7s %7s %9s  %s\n", name, "body", "nodes", "volume", "quality", "least",
           "in cell", "cells");
   for (int b = 0; b < n_bodies; b++)

@@ -115,8 +115,8 @@ static PetscErrorCode FieldsWriteNodes(Fields fields, hid_t file)
   PetscReal *items;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(mesh->n_owned * 3, &items));
-  for (PetscInt k = 0; k < mesh->n_owned; k++)
+  PetscCall(PetscCalloc1(mesh->n_body_owned * 3, &items));
+  for (PetscInt k = 0; k < mesh->n_body_owned; k++)
     for (int i = 0; i < mesh->dim; i++)
       items[k * 3 + i] = mesh->coords[fields->owned[k] * mesh->dim + i] + mesh->centre[i];
   PetscCall(Hdf5TableWriteReals(file, "/mesh/nodes", &fields->nodes, 3, items));
@@ -268,7 +268,7 @@ static PetscErrorCode FieldsWriteMesh(Fields fields, hid_t file)
 static PetscErrorCode FieldsWriteNodal(Fields fields, hid_t file, const char *name, const PetscReal *values, int stride,
                                        int first, int width)
 {
-  const PetscInt n = fields->model->mesh->n_owned;
+  const PetscInt n = fields->model->mesh->n_body_owned;
   PetscReal     *items;
   char           path[DATASET_PATH_SIZE];
 
@@ -289,7 +289,7 @@ static PetscErrorCode FieldsWriteDisplacement(Fields fields, hid_t file)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_nodes * 3, &u));
-  for (PetscInt n = 0; n < mesh->n_nodes; n++)
+  for (PetscInt n = 0; n < mesh->n_body_nodes; n++)
     for (int i = 0; i < mesh->dim; i++) u[n * 3 + i] = fields->model->u[n * mesh->dim + i];
   PetscCall(FieldsWriteNodal(fields, file, "displacement", u, 3, 0, 3));
   PetscCall(PetscFree(u));
@@ -313,7 +313,7 @@ static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
   PetscCall(ElasticityNodalStress(fields->model->problem->elasticity, fields->model->u, stress, weight));
   PetscCall(MeshSumNodes(mesh, 6, stress));
   PetscCall(MeshSumNodes(mesh, 1, weight));
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+  for (PetscInt n = 0; n < mesh->n_body_nodes; n++) {
     for (int i = 0; i < 6; i++) stress[n * 6 + i] /= weight[n];
     equivalent[n] = VonMises(&stress[n * 6]);
     pressure[n]   = -(stress[n * 6] + stress[n * 6 + 1] + stress[n * 6 + 2]) / 3;
@@ -336,7 +336,7 @@ static PetscErrorCode FieldsWritePlasticStrain(Fields fields, hid_t file)
   PetscCall(ElasticityNodalPlasticStrain(fields->model->problem->elasticity, strain, weight));
   PetscCall(MeshSumNodes(mesh, PLASTIC_FIELDS, strain));
   PetscCall(MeshSumNodes(mesh, 1, weight));
-  for (PetscInt k = 0; k < mesh->n_nodes * PLASTIC_FIELDS; k++) strain[k] /= weight[k / PLASTIC_FIELDS];
+  for (PetscInt k = 0; k < mesh->n_body_nodes * PLASTIC_FIELDS; k++) strain[k] /= weight[k / PLASTIC_FIELDS];
   PetscCall(FieldsWriteNodal(fields, file, "plastic_strain", strain, PLASTIC_FIELDS, 0, 1));
   PetscCall(FieldsWriteNodal(fields, file, "plastic_strain_tensor", strain, PLASTIC_FIELDS, 1, 6));
   PetscCall(PetscFree2(strain, weight));
@@ -459,7 +459,7 @@ static PetscErrorCode FieldsWriteContact(Fields fields, hid_t file)
   PetscCall(MeshSumNodes(mesh, COLUMNS, nodal));
   for (int p = 0; p < fields->n_pairs; p++) PetscCall(FieldsFillCorners(fields, p, nodal, fill));
   PetscCall(MeshSumNodes(mesh, COLUMNS, fill));
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+  for (PetscInt n = 0; n < mesh->n_body_nodes; n++) {
     PetscReal      *value  = &nodal[n * COLUMNS];
     const PetscReal weight = fill[n * COLUMNS + COLUMN_PRESENT];
 
@@ -515,7 +515,7 @@ static PetscErrorCode FieldsPrepareXdmf(Fields fields)
 
   PetscFunctionBeginUser;
   xdmf->name  = fields->scene->name;
-  xdmf->nodes = fields->model->mesh->n_global;
+  xdmf->nodes = fields->model->mesh->n_body_global;
   PetscCall(PetscCalloc1(fields->scene->n_bodies * ELEMENT_TYPES, &xdmf->blocks));
   xdmf->n_arrays = COUNT(shown);
   xdmf->arrays   = shown;
@@ -551,14 +551,14 @@ PetscErrorCode FieldsCreate(Model model, Scene scene, const char *directory, Fie
   fields->n_pairs = model->contact ? ContactPairs(model->contact) : 0;
   PetscCall(PetscCalloc1(fields->n_pairs, &fields->pairs));
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
-  PetscCall(PetscMalloc1(mesh->n_owned, &fields->owned));
-  PetscCall(PetscMalloc1(mesh->n_owned, &id));
-  for (PetscInt k = 0; k < mesh->n_nodes; k++) {
+  PetscCall(PetscMalloc1(mesh->n_body_owned, &fields->owned));
+  PetscCall(PetscMalloc1(mesh->n_body_owned, &id));
+  for (PetscInt k = 0; k < mesh->n_body_nodes; k++) {
     if (mesh->node_owner[k] != rank) continue;
     fields->owned[n] = k;
     id[n++]          = mesh->node_id[k];
   }
-  PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_global, n, id, &fields->nodes));
+  PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_body_global, n, id, &fields->nodes));
   PetscCall(PetscFree(id));
   PetscCall(FieldsPrepareXdmf(fields));
   *result = fields;

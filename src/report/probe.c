@@ -112,7 +112,7 @@ static void ProbesLookAround(Probes probes, const PetscReal point[3], const Mesh
                              PetscInt *at)
 {
   const Mesh     mesh = probes->model->mesh;
-  const PetscInt n    = within ? within->n_nodes : mesh->n_nodes;
+  const PetscInt n    = within ? within->n_nodes : mesh->n_body_nodes;
 
   *nearby = (Nearby){.distance = PETSC_MAX_REAL, .nearest = PETSC_MAX_INT, .id = PETSC_MAX_INT};
   for (PetscInt k = 0; k < n; k++) {
@@ -306,6 +306,36 @@ static PetscErrorCode EvaluateContactForce(Probes probes, Probe *probe, PetscRea
   PetscFunctionBeginUser;
   PetscCall(ContactMasterForce(probes->model->contact, probe->pair, force));
   *value = force[probe->scene->component];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The motion of the tool that is the master of the probe's pair: six components, lengths and radians. */
+static void ToolComponents(Probes probes, const Probe *probe, PetscReal q[MOTION_COMPONENTS])
+{
+  const Scene         scene   = probes->model->scene;
+  const SceneContact *contact = &scene->contacts[probe->pair];
+  const int           body    = contact->master ? MeshFindBody(scene, contact->master, PETSC_TRUE) : -1;
+
+  MotionComponents(body < 0 ? &contact->motion : &scene->bodies[body].motion, probes->model->t, q);
+}
+
+static PetscErrorCode EvaluateToolMotion(Probes probes, Probe *probe, PetscReal *value)
+{
+  PetscReal q[MOTION_COMPONENTS];
+
+  PetscFunctionBeginUser;
+  ToolComponents(probes, probe, q);
+  *value = q[probe->scene->component];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateToolRotation(Probes probes, Probe *probe, PetscReal *value)
+{
+  PetscReal q[MOTION_COMPONENTS];
+
+  PetscFunctionBeginUser;
+  ToolComponents(probes, probe, q);
+  *value = q[3 + probe->scene->component] * 180 / PETSC_PI;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -581,6 +611,8 @@ static const ProbeType types[PROBE_KINDS] = {
   [PROBE_FRICTION_TORQUE]    = {"friction_torque", NAMES_PAIR, 0, NULL, EvaluateFrictionTorque},
   [PROBE_SLIPPED_AREA]       = {"slipped_area", NAMES_PAIR, 0, NULL, EvaluateSlippedArea},
   [PROBE_ELASTIC_SLIP]       = {"elastic_slip", NAMES_PAIR, 0, NULL, EvaluateElasticSlip},
+  [PROBE_TOOL_MOTION]        = {"tool_motion", NAMES_PAIR, 0, NULL, EvaluateToolMotion},
+  [PROBE_TOOL_ROTATION]      = {"tool_rotation", NAMES_PAIR, 0, NULL, EvaluateToolRotation},
   [PROBE_FLUID_FRONT]        = {"fluid_front", NAMES_SURFACE, 0, NULL, EvaluateFluidFront},
   [PROBE_FLUID_AREA]         = {"fluid_area", NAMES_SURFACE, 0, NULL, EvaluateFluidArea},
   [PROBE_SEAL_PRESSURE]      = {"seal_pressure", NAMES_SURFACE, 0, NULL, EvaluateSealPressure},

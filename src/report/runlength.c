@@ -10,16 +10,23 @@
 /* Attempts that fail cut dt. From this part of the steps on they are the reason for many steps. */
 #define RUN_FAILED 0.05
 
+/* Number of load parameters within the run at which a motion changes its rate. */
+static PetscInt MotionLandings(const Motion *motion)
+{
+  PetscInt n = motion->history.n ? motion->history.n - 2 : 0;
+
+  for (int m = 0; m < motion->n; m++) n += motion->components[m].history.n - 2;
+  return n;
+}
+
 /* Number of load parameters on which steps must end. */
 static PetscInt Landings(Scene scene)
 {
   PetscInt n = scene->stepping.n_at;
 
   for (int l = 0; l < scene->n_loads; l++) n += scene->loads[l].history.n - 2;
-  for (int b = 0; b < scene->n_bodies; b++)
-    for (int m = 0; m < scene->bodies[b].motion.n; m++) n += scene->bodies[b].motion.components[m].history.n - 2;
-  for (int c = 0; c < scene->n_contacts; c++)
-    for (int m = 0; m < scene->contacts[c].motion.n; m++) n += scene->contacts[c].motion.components[m].history.n - 2;
+  for (int b = 0; b < scene->n_bodies; b++) n += MotionLandings(&scene->bodies[b].motion);
+  for (int c = 0; c < scene->n_contacts; c++) n += MotionLandings(&scene->contacts[c].motion);
   return n;
 }
 

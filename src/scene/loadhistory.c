@@ -71,19 +71,98 @@ double HistorySlope(const History *history, double t)
   return (history->v[i + 1] - history->v[i]) / (history->t[i + 1] - history->t[i]);
 }
 
+/*@
+  MotionComponents - gives the translation and the rotation vector of a motion at the load parameter t.
+
+  Not collective
+
+  Input Parameters:
++ motion - of the body
+- t      - load parameter
+
+  Output Parameter:
+. q - ux, uy, uz (length) and the rotation vector rx, ry, rz (radians)
+
+  Note:
+  Free components have the values of MotionSet(); at the load parameter of MotionAccept() those of the accepted state,
+  unless the iterate is there too.
+@*/
+void MotionComponents(const Motion *motion, double t, double q[MOTION_COMPONENTS])
+{
+  const double          origin[3] = {0, 0, 0};
+  const FreeComponents *state     = t == motion->accepted.t && t != motion->now.t ? &motion->accepted : &motion->now;
+
+  for (int c = 0; c < MOTION_COMPONENTS; c++) q[c] = motion->free[c] ? state->value[c] : 0;
+  for (int m = 0; m < motion->n; m++) {
+    const MotionComponent *c = &motion->components[m];
+    const double           value =
+      c->expression ? ExpressionValue(c->expression, origin, t) : c->value * HistoryValue(&c->history, t);
+
+    q[c->component] += c->component < 3 ? value : value * M_PI / 180;
+  }
+}
+
 /* Gives the translation (length) and the rotation vector (radians) at t. */
 static void MotionAt(const Motion *motion, double t, double shift[3], double turn[3])
 {
-  for (int d = 0; d < 3; d++) shift[d] = turn[d] = 0;
-  for (int m = 0; m < motion->n; m++) {
-    const MotionComponent *c     = &motion->components[m];
-    const double           value = c->value * HistoryValue(&c->history, t);
+  double q[MOTION_COMPONENTS];
 
-    if (c->component < 3)
-      shift[c->component] += value;
-    else
-      turn[c->component - 3] += value * M_PI / 180;
+  MotionComponents(motion, t, q);
+  for (int d = 0; d < 3; d++) {
+    shift[d] = q[d];
+    turn[d]  = q[3 + d];
   }
+}
+
+/*@
+  MotionSet - sets the free components of a motion at the iterate.
+
+  Not collective
+
+  Input Parameters:
++ motion - of the body
+. t      - load parameter of the iterate
+- q      - lengths and radians; only free components are read
+@*/
+void MotionSet(Motion *motion, double t, const double q[MOTION_COMPONENTS])
+{
+  motion->now.t = t;
+  for (int c = 0; c < MOTION_COMPONENTS; c++) motion->now.value[c] = motion->free[c] ? q[c] : 0;
+}
+
+/*@
+  MotionAccept - makes values of the free components those of the accepted state, and of the iterate.
+
+  Not collective
+
+  Input Parameters:
++ motion - of the body
+. t      - load parameter of the accepted state
+- q      - lengths and radians; only free components are read
+@*/
+void MotionAccept(Motion *motion, double t, const double q[MOTION_COMPONENTS])
+{
+  MotionSet(motion, t, q);
+  motion->accepted = motion->now;
+}
+
+/*@
+  MotionForce - returns the force (or moment) on a rigid body along a component of its motion at the load parameter t.
+
+  Not collective
+
+  Input Parameters:
++ motion    - of the body
+. t         - load parameter
+- component - 0 to 2 for forces, 3 to 5 for moments
+@*/
+double MotionForce(const Motion *motion, double t, int component)
+{
+  const double     origin[3] = {0, 0, 0};
+  const Expression formula   = motion->force_expression[component];
+
+  if (formula) return ExpressionValue(formula, origin, t);
+  return motion->force[component] * (motion->history.n ? HistoryValue(&motion->history, t) : 0);
 }
 
 /* Computes v = R(turn) V by Rodrigues' formula. */

@@ -8,7 +8,12 @@
 #include "base/refusal.h"
 #include <string.h>
 
-static const char *const Displacements[] = {"ux", "uy", "uz"}, *const Rotations[] = {"rx", "ry", "rz"};
+static const char *const Displacements[] = {"ux", "uy", "uz"}, *const Components[] = {
+                                                                 "ux", "uy", "uz",
+                                                                 "rx", "ry", "rz"}; /* of a rigid motion */
+
+/* Load parameters, spread evenly from 0 to 1, at which expressions of t are tried when they are read. */
+enum { SCENE_SAMPLES = 16 };
 
 /* Reads a list of breakpoints and factors; n is 0 where the scene has none. */
 static PetscErrorCode SceneReadFactors(Scene scene, const char *path, const char *key, History *history)
@@ -84,9 +89,114 @@ static PetscErrorCode SceneReadMesh(Scene scene)
 static PetscErrorCode MotionFree(Motion *motion)
 {
   PetscFunctionBeginUser;
-  for (int k = 0; k < motion->n; k++)
+  for (int k = 0; k < motion->n; k++) {
     PetscCall(PetscFree2(motion->components[k].history.t, motion->components[k].history.v));
+    PetscCall(ExpressionDestroy(&motion->components[k].expression));
+  }
+  for (int c = 0; c < MOTION_COMPONENTS; c++) PetscCall(ExpressionDestroy(&motion->force_expression[c]));
+  PetscCall(PetscFree2(motion->history.t, motion->history.v));
   PetscCall(PetscFree(motion->components));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads a number or an expression of t alone; a tool has no place at which x, y or z could be taken. */
+static PetscErrorCode SceneReadOfTime(Scene scene, const char *path, const char *key, double *value,
+                                      Expression *expression)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SceneReadValue(scene, path, key, value, expression));
+  for (int k = EXPRESSION_X; k <= EXPRESSION_THETA; k++)
+    if (ExpressionUses(*expression, (ExpressionVariable)k))
+      PetscCall(SceneRefuse(scene, path, key,
+                            "differs from place to place, but a tool is rigid; allowed: a number or an expression of t",
+                            NULL));
+  for (int k = 0; *expression && k <= SCENE_SAMPLES; k++) {
+    static const PetscReal origin[3] = {0, 0, 0};
+
+    if (!isfinite(ExpressionValue(*expression, origin, (PetscReal)k / SCENE_SAMPLES)))
+      PetscCall(SceneRefuse(scene, path, key,
+                            "is not finite for some t between 0 and 1; allowed: an expression that is finite there",
+                            NULL));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads one component of an entry of a motion. */
+static PetscErrorCode SceneReadComponent(Scene scene, const char *path, int k, MotionComponent *component)
+{
+  const char *key = Components[k];
+
+  PetscFunctionBeginUser;
+  component->component = k;
+  PetscCall(SceneReadOfTime(scene, path, key, &component->value, &component->expression));
+  if (component->expression && SceneHas(scene, path, "history"))
+    PetscCall(SceneRefuse(scene, path, "history",
+                          "stands beside an expression, which is the value at t itself; allowed: one of them", NULL));
+  PetscCall(SceneReadHistory(scene, path, &component->history));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether the geometry has a component of a motion: ux to rz. */
+static int SceneHasComponent(Scene scene, int k)
+{
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC) return k == 1;
+  return scene->dim == 3 || k < 2 || k == 5;
+}
+
+/* Reads the free components of a tool. */
+static PetscErrorCode SceneReadFree(Scene scene, const char *tool, Motion *motion)
+{
+  const int n = SchemaCount(SceneDocument(scene), "%s.free", tool);
+  char      index[KEY_PATH_LENGTH];
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < n; i++) {
+    const char *word;
+    int         k = 0;
+
+    snprintf(index, sizeof index, "free.%d", i);
+    word = SceneNode(scene, tool, index)->text;
+    while (k < MOTION_COMPONENTS - 1 && strcmp(word, Components[k]) != 0) k++;
+    if (!SceneHasComponent(scene, k))
+      PetscCall(SceneRefuse(scene, tool, index,
+                            scene->dim == 3 || scene->geometry == GEOMETRY_AXISYMMETRIC
+                              ? "would break the symmetry about the axis; allowed: uy"
+                              : "leads out of the plane; allowed: ux, uy, rz",
+                            word));
+    if (motion->free[k]++) PetscCall(SceneRefuse(scene, tool, index, "is named twice; allowed: once", word));
+    motion->n_free++;
+  }
+  for (int m = 0; m < motion->n; m++)
+    if (motion->free[motion->components[m].component])
+      PetscCall(SceneRefuse(scene, tool, "free", "is moved by motion as well; allowed: one of both",
+                            Components[motion->components[m].component]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads force and moment on a tool. They may act along free components only: the others take them without any effect.
+ */
+static PetscErrorCode SceneReadForces(Scene scene, const char *tool, Motion *motion)
+{
+  static const char *const keys[] = {"0", "1", "2", "x", "y", "z"};
+  char                     path[KEY_PATH_LENGTH];
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < MOTION_COMPONENTS; k++) {
+    KeyPathJoin(path, tool, k < 3 ? "force" : "moment");
+    if (!SceneNode(scene, path, keys[k])) continue;
+    PetscCall(SceneReadOfTime(scene, path, keys[k], &motion->force[k], &motion->force_expression[k]));
+    if ((motion->force[k] != 0 || motion->force_expression[k]) && !motion->free[k])
+      PetscCall(SceneRefuse(scene, path, keys[k],
+                            "acts along a component that is not free and has no effect; allowed: 0, or this component "
+                            "under free",
+                            Components[k]));
+  }
+  if (motion->n_free)
+    PetscCall(SceneReadHistory(scene, tool, &motion->history));
+  else if (SceneHas(scene, tool, "history"))
+    PetscCall(SceneRefuse(scene, tool, "history",
+                          "is a factor on force and moment, but nothing is free; allowed: with free, or under motion",
+                          NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -97,25 +207,24 @@ static PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *mot
   char      path[KEY_PATH_LENGTH];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(6 * n, &motion->components));
+  PetscCall(PetscCalloc1(MOTION_COMPONENTS * n, &motion->components));
   for (int i = 0; i < n; i++) {
     const int before = motion->n;
 
     snprintf(path, sizeof path, "%s.motion.%d", tool, i);
-    for (int k = 0; k < 6; k++) {
-      const char *key = k < 3 ? Displacements[k] : Rotations[k - 3];
-
-      if (!SceneHas(scene, path, key)) continue;
+    for (int k = 0; k < MOTION_COMPONENTS; k++) {
+      if (!SceneHas(scene, path, Components[k])) continue;
       if (scene->geometry == GEOMETRY_AXISYMMETRIC && k != 1)
-        PetscCall(SceneRefuse(scene, path, key, "would break the symmetry about the axis; allowed: uy", NULL));
-      motion->components[motion->n].component = k;
-      motion->components[motion->n].value     = SchemaReal(SceneDocument(scene), "%s.%s", path, key);
-      PetscCall(SceneReadHistory(scene, path, &motion->components[motion->n++].history));
+        PetscCall(
+          SceneRefuse(scene, path, Components[k], "would break the symmetry about the axis; allowed: uy", NULL));
+      PetscCall(SceneReadComponent(scene, path, k, &motion->components[motion->n++]));
     }
     if (motion->n == before)
       PetscCall(SceneRefuse(scene, path, "",
                             "moves nothing; allowed: at least one displacement (ux ...) or rotation (rz ...)", NULL));
   }
+  PetscCall(SceneReadFree(scene, tool, motion));
+  PetscCall(SceneReadForces(scene, tool, motion));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -733,6 +842,11 @@ static PetscErrorCode SceneReadStepping(Scene scene)
   scene->stepping.dt_min           = SchemaReal(document, "stepping.dt_min");
   scene->stepping.dt_max           = SchemaReal(document, "stepping.dt_max");
   scene->stepping.growth           = SchemaReal(document, "stepping.growth");
+  if (SchemaHas(document, "stepping.plastic_strain"))
+    scene->stepping.plastic_strain = SchemaReal(document, "stepping.plastic_strain");
+  if (scene->stepping.plastic_strain > 0 && !SceneIsPlastic(scene))
+    PetscCall(SceneRefuse(scene, "stepping", "plastic_strain",
+                          "bounds plastic strains, but no body is plastic; allowed: with law: von_mises", NULL));
   if (scene->stepping.dt_min > scene->stepping.dt_max)
     PetscCall(SceneRefuse(scene, "stepping", "dt_min", "is above dt_max; allowed: dt_min <= initial <= dt_max", NULL));
   if (SchemaHas(document, "stepping.initial") &&
@@ -1103,7 +1217,7 @@ static PetscBool MotionBreaks(const Motion *motion, PetscReal t)
 {
   for (int m = 0; m < motion->n; m++)
     if (HistoryBreaks(&motion->components[m].history, t)) return PETSC_TRUE;
-  return PETSC_FALSE;
+  return HistoryBreaks(&motion->history, t) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /*@

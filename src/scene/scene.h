@@ -125,6 +125,8 @@ typedef enum {
   PROBE_CONTACT_EDGE,
   PROBE_PRESSURE_MAX,
   PROBE_PRESSURE_MEAN,
+  PROBE_TOOL_MOTION,
+  PROBE_TOOL_ROTATION,
   PROBE_PRESSURE_DEVIATION,
   PROBE_FRICTION_FORCE, /* from here on the target is a pair with friction */
   PROBE_FRICTION_TORQUE,
@@ -187,6 +189,7 @@ typedef struct {
     int             N_c;              /* of control contact: new nodes per step, or 0 if N_c_fraction is given */
     double          N_c_fraction;     /* of control contact: new part of the slave area per step */
     int             predict_linearly; /* of control contact: 1 if one linear solve predicts, 0 if the solution does */
+    double          plastic_strain;   /* largest growth of the equivalent plastic strain in a step; 0: no bound */
     int             n_at;
     double         *at; /* load parameters at which a step must end [n_at] */
   } stepping;

@@ -24,6 +24,8 @@ static const struct {
   [PROBE_FRICTION_TORQUE]    = {"friction_torque", "", "axis at"},
   [PROBE_SLIPPED_AREA]       = {"slipped_area", "", ""},
   [PROBE_ELASTIC_SLIP]       = {"elastic_slip", "", ""},
+  [PROBE_TOOL_MOTION]        = {"tool_motion", "component", ""},
+  [PROBE_TOOL_ROTATION]      = {"tool_rotation", "", "component"},
   [PROBE_FLUID_FRONT]        = {"fluid_front", "axis side", ""},
   [PROBE_FLUID_AREA]         = {"fluid_area", "", ""},
   [PROBE_SEAL_PRESSURE]      = {"seal_pressure", "", ""},
@@ -127,6 +129,20 @@ static PetscErrorCode SceneReadProbeTorque(Scene scene, SceneProbe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Refuses a probe of a tool whose target is a pair with a deformable master. */
+static PetscErrorCode SceneRefuseProbeTool(Scene scene, SceneProbe *probe)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < scene->n_contacts; i++) {
+    const SceneContact *contact = &scene->contacts[i];
+
+    if (!strcmp(contact->name, probe->target) && contact->master && !SceneFindBody(scene, contact->master, 1))
+      PetscCall(SceneRefuse(scene, probe->path, ProbeForms[probe->kind].kind,
+                            "has a deformable master; allowed: a pair whose master is a rigid tool", probe->target));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Refuses a probe whose target is not a surface on which a fluid acts. */
 static PetscErrorCode SceneRefuseProbeFluid(Scene scene, SceneProbe *probe)
 {
@@ -213,10 +229,21 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
       PetscCall(SceneRefuseProbeTarget(scene, probe));
     if (probe->kind >= PROBE_FRICTION_FORCE && probe->kind < PROBE_FLUID_FRONT)
       PetscCall(SceneRefuseProbeFriction(scene, probe));
+    if (probe->kind == PROBE_TOOL_MOTION || probe->kind == PROBE_TOOL_ROTATION)
+      PetscCall(SceneRefuseProbeTool(scene, probe));
   }
   probe->component = PetscMax(0, SchemaChoice(document, "%s.component", path));
-  probe->axis      = PetscMax(0, SchemaChoice(document, "%s.axis", path));
-  probe->max_side  = SchemaChoice(document, "%s.side", path) == 1;
+  if (probe->kind == PROBE_TOOL_ROTATION) {
+    if (scene->dim == 3 && !SceneHas(scene, path, "component"))
+      PetscCall(
+        SceneRefuse(scene, path, "component", "is missing; needed by tool_rotation in 3D; allowed: x | y | z", NULL));
+    if (scene->dim == 2 && SceneHas(scene, path, "component"))
+      PetscCall(
+        SceneRefuse(scene, path, "component", "has no place here; in the plane a tool turns about z alone", NULL));
+    if (scene->dim == 2) probe->component = 2;
+  }
+  probe->axis     = PetscMax(0, SchemaChoice(document, "%s.axis", path));
+  probe->max_side = SchemaChoice(document, "%s.side", path) == 1;
   PetscCall(SceneReadProbeAt(scene, probe));
   PetscCall(SceneReadText(scene, path, "body", &probe->body));
   if (probe->body && !SceneFindBody(scene, probe->body, 0))

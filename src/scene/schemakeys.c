@@ -9,15 +9,34 @@
 
 /* clang-format would align the table in columns, and is therefore off here. */
 // clang-format off
-/* The keys of the prescribed motion of a rigid tool or of an analytic master */
+/* The keys of the motion of a rigid tool or of an analytic master */
 #define MOTION_KEYS(tool) \
-  {tool ".motion", LIST, .help = "prescribed motions, which are added"}, \
+  {tool ".motion", LIST, \
+   .help = "prescribed motions, which are added. A component may be an expression of t, which is the value at t itself " \
+           "and takes no history"}, \
   {tool ".motion.*", MAP, .help = "displacement components, rotation components or both"}, \
-  {tool ".motion.*.ux|uy", REAL, .unit = "length", .help = "displacement component, multiplied by the history"}, \
-  {tool ".motion.*.uz", REAL, SOLID, .unit = "length", .help = "displacement component, multiplied by the history"}, \
-  {tool ".motion.*.rx|ry", REAL, SOLID, .unit = "degrees", .help = "rotation component, multiplied by the history"}, \
-  {tool ".motion.*.rz", REAL, .unit = "degrees", .help = "rotation component, multiplied by the history"}, \
-  {tool ".motion.*.history", HISTORY, .preset = "[[0, 0], [1, 1]]", .help = "factor over the load parameter t"}
+  {tool ".motion.*.ux|uy", REAL | FORMULA, .unit = "length", \
+   .help = "displacement component, multiplied by the history"}, \
+  {tool ".motion.*.uz", REAL | FORMULA, SOLID, .unit = "length", \
+   .help = "displacement component, multiplied by the history"}, \
+  {tool ".motion.*.rx|ry", REAL | FORMULA, SOLID, .unit = "degrees", \
+   .help = "rotation component, multiplied by the history"}, \
+  {tool ".motion.*.rz", REAL | FORMULA, .unit = "degrees", .help = "rotation component, multiplied by the history"}, \
+  {tool ".motion.*.history", HISTORY, .preset = "[[0, 0], [1, 1]]", .help = "factor over the load parameter t"}, \
+  {tool ".free", CHOICES, .values = "ux | uy | uz | rx | ry | rz", \
+   .help = "components of the motion that are unknowns: the tool moves along them until its contact balances force " \
+           "and moment. In the plane ux, uy and rz, axisymmetric uy alone"}, \
+  {tool ".force", POINT | FORMULA, .unit = "force", \
+   .help = "force on the tool at its point, in the plane per thickness, axisymmetric on the whole tool; it acts along " \
+           "the free displacements. Numbers are multiplied by the history, expressions are of t; the default is no " \
+           "force"}, \
+  {tool ".moment", MAP, .help = "moment on the tool along its free rotations; the default is none"}, \
+  {tool ".moment.x|y", REAL | FORMULA, SOLID, .unit = "force times length", \
+   .help = "moment on the tool, which does its work along the rotation vector (rx, ry, rz), as force"}, \
+  {tool ".moment.z", REAL | FORMULA, .unit = "force times length", \
+   .help = "moment on the tool, which does its work along the rotation vector (rx, ry, rz), as force"}, \
+  {tool ".history", HISTORY, .preset = "[[0, 0], [1, 1]]", \
+   .help = "factor on force and moment over the load parameter t"}
 
 const SchemaKey SchemaKeys[] = {
   {"name", NAME, .help = "name of the run and of its results; the default is the name of the scene file"},
@@ -260,6 +279,9 @@ const SchemaKey SchemaKeys[] = {
    .help = "smallest step of the load parameter; the run ends if it needs a smaller one"},
   {"stepping.dt_max", REAL, .range = "(0, 1]", .preset = "1", .help = "largest step of the load parameter"},
   {"stepping.growth", REAL, .range = "[1, inf)", .preset = "4", .help = "largest factor from one step to the next"},
+  {"stepping.plastic_strain", REAL, .range = "(0, inf)",
+   .help = "largest growth of the equivalent plastic strain of a quadrature point in a step; a step with more is "
+           "repeated with a smaller dt, down to dt_min. Without the key there is no bound"},
   {"stepping.at", REALS, .range = "(0, 1]", .help = "load parameters at which a step must end"},
   {"solver", MAP, .help = "nonlinear and linear solver"},
   {"solver.type", CHOICE, .values = "direct | iterative | auto", .preset = "auto",
@@ -274,6 +296,10 @@ const SchemaKey SchemaKeys[] = {
   {"probes.*.reaction", TEXT,
    .help = "force on this surface through supports and imposed displacements; needs component"},
   {"probes.*.contact_force", TEXT, .help = "force of this contact pair on its master; needs component"},
+  {"probes.*.tool_motion", TEXT, .unit = "length",
+   .help = "displacement of the point of the rigid tool that is this pair's master; needs component"},
+  {"probes.*.tool_rotation", TEXT, .unit = "degrees",
+   .help = "component of the rotation vector of the rigid tool that is this pair's master; needs component in 3D"},
   {"probes.*.displacement", POINT, .unit = "length",
    .help = "displacement of the node at this reference point; needs component"},
   {"probes.*.distance", POINTS, .unit = "length", .help = "distance of the nodes at two reference points"},

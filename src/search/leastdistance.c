@@ -76,6 +76,7 @@ PetscErrorCode SearchLeastDistance(ContactSearch s, const PetscReal *u, PetscRea
   BoxTree        tree;
 
   PetscFunctionBeginUser;
+  ToolsPlace(s->mesh, u, t);
   PetscCall(SlavePointsMove(s->slaves, u));
   PetscCall(GatherPoints(s, &n, &points));
   PetscCall(PetscMalloc3(n_nodes * dim, &x, master->n_faces * dim, &lower, master->n_faces * dim, &upper));

@@ -19,18 +19,27 @@ typedef struct {
   NodeKey *keys, *tool;
 } ContactKeys;
 
+/* The key of a local node. */
+static NodeKey ToolKey(Mesh mesh, PetscInt node)
+{
+  NodeKey key = {mesh->node_id[node], mesh->node_owner[node], mesh->node_owner_local[node], {0, 0, 0}};
+
+  for (int d = 0; d < mesh->dim; d++) key.X[d] = mesh->coords[node * mesh->dim + d];
+  return key;
+}
+
 /* Collects the keys of the slave nodes, of the records' nodes and of the nodes of which live offsets are made. */
 static PetscErrorCode CollectKeys(ContactSearch s, const SearchField *field, ContactKeys *all)
 {
   const PetscBool rigid     = (PetscBool)(s->master && s->master->rigid);
   const PetscInt  n_records = field->n_records, n_slaves = s->slaves ? s->slaves->n_nodes : 0;
   const FaceMaps  none = {0}, *maps[] = {&field->maps, s->slaves ? &s->slaves->maps : &none};
-  PetscInt        n = n_slaves, n_rigid = 0, n_mapped = 0;
+  PetscInt        n = n_slaves, n_rigid = 0, n_mapped = 0, n_tool = s->tool ? TOOL_NODES : 0;
 
   PetscFunctionBeginUser;
   for (int m = 0; m < 2; m++) n_mapped += maps[m]->n ? maps[m]->ptr[maps[m]->n] : 0;
-  PetscCall(
-    PetscMalloc2(n_slaves + n_mapped + FACE_MAX_NODES * n_records, &all->keys, FACE_MAX_NODES * n_records, &all->tool));
+  PetscCall(PetscMalloc2(n_slaves + n_mapped + n_tool + FACE_MAX_NODES * n_records, &all->keys,
+                         FACE_MAX_NODES * n_records, &all->tool));
   for (PetscInt i = 0; i < n_slaves; i++) all->keys[i] = s->slaves->nodes[i];
   for (PetscInt r = 0; r < n_records; r++) {
     PetscInt *count = rigid ? &n_rigid : &n;
@@ -40,6 +49,7 @@ static PetscErrorCode CollectKeys(ContactSearch s, const SearchField *field, Con
   }
   for (int m = 0; m < 2; m++)
     for (PetscInt k = 0; maps[m]->n && k < maps[m]->ptr[maps[m]->n]; k++) all->keys[n++] = maps[m]->entry[k].node;
+  for (PetscInt k = 0; k < n_tool; k++) all->keys[n++] = ToolKey(s->mesh, s->tool->node + k);
   all->n       = NodeKeysUnique(n, all->keys);
   all->n_rigid = NodeKeysUnique(n_rigid, all->tool);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -94,6 +104,7 @@ PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, Ne
   PetscCall(CollectKeys(s, field, &all));
   lists->n_deformable = all.n;
   lists->n_nodes      = all.n + all.n_rigid;
+  lists->tool         = s->tool ? all.n - TOOL_NODES : -1; /* their ids are the largest */
   for (PetscInt r = 0; r < field->n_records; r++) {
     FaceRecord *record = &field->records[r];
 
@@ -132,7 +143,8 @@ PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, Ne
 - t_next - load parameter to which it is counted
 
   Output Parameter:
-. values - values[lists n_nodes*dim]; nodes of a rigid tool get their motion (length) from t to t_next
+. values - values[lists n_nodes*dim]; nodes of a rigid tool get their motion (length) from t to t_next, or 0 where the
+           tool has nodes of its own
 @*/
 PetscErrorCode NeighbourListsBroadcast(ContactSearch s, NeighbourLists lists, const PetscReal *x, PetscReal t,
                                        PetscReal t_next, PetscReal *values)
@@ -145,7 +157,7 @@ PetscErrorCode NeighbourListsBroadcast(ContactSearch s, NeighbourLists lists, co
 
     SearchRigidPosition(s, lists->node_id[i], t, from);
     SearchRigidPosition(s, lists->node_id[i], t_next, to);
-    for (int d = 0; d < lists->dim; d++) values[i * lists->dim + d] = to[d] - from[d];
+    for (int d = 0; d < lists->dim; d++) values[i * lists->dim + d] = s->tool ? 0 : to[d] - from[d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -190,6 +202,7 @@ PetscErrorCode NeighbourListsUpdateNodes(ContactSearch s, NeighbourLists lists, 
   PetscFunctionBeginUser;
   PetscCall(PetscSFBcastBegin(lists->sf, lists->block, u, lists->u, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(lists->sf, lists->block, u, lists->u, MPI_REPLACE));
+  if (s->tool) ToolMove(s->mesh, s->tool, &lists->u[lists->tool * lists->dim], t);
   for (PetscInt i = lists->n_deformable; i < lists->n_nodes; i++) {
     PetscReal x[3];
 

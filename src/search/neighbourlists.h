@@ -29,6 +29,7 @@ enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_DEGREE_2 = 6, RUNG_
 typedef struct {
   int          dim;
   PetscInt     n_nodes, n_deformable;
+  PetscInt     tool;    /* first of the two nodes of a tool with unknowns, the last deformable ones; -1: no such tool */
   PetscInt    *node_id; /* deformable: the mesh's rank-independent id; rigid: node of the tool */
   PetscReal   *X, *u;   /* n_nodes*dim: reference coordinates, and displacement at the last update (length) */
   PetscReal    t;       /* load parameter of the last update, NaN before */

@@ -376,6 +376,7 @@ PetscErrorCode NodeDepthsMeasure(NodeDepths depths, const PetscReal *u, PetscRea
 
   PetscFunctionBeginUser;
   *depth = (NodeDepth){.tag = -1};
+  ToolsPlace(depths->mesh, u, t);
   PetscCall(PetscMalloc2(depths->n, &nodes, depths->n, &own));
   PetscCall(NearNodes(depths, u, t, &n, nodes, box));
   PetscCall(PetscNew(&lists));

@@ -189,6 +189,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   PetscFunctionBeginUser;
   *field     = (SearchField){0};
   lists->dim = mesh->dim;
+  ToolsPlace(mesh, u, t);
   if (s->fit->fitted) {
     PetscCall(PetscMalloc1(s->master->rigid ? s->master->rigid->n_nodes : mesh->n_nodes, &geometry));
     PetscCall(SurfaceNodeGeometry(s->master, s->scene->geometry, s->loads, u, t, geometry));
@@ -437,6 +438,20 @@ void SearchAllSides(ContactSearch s, PetscBool one_body)
 }
 
 /*@
+  SearchSetTool - makes the nodes of a tool, whose surface is the master, contact nodes of all lists.
+
+  Not collective
+
+  Input Parameters:
++ s    - the search
+- tool - with free components of its motion; borrowed
+@*/
+void SearchSetTool(ContactSearch s, const MeshTool *tool)
+{
+  s->tool = tool;
+}
+
+/*@
   SearchLists - lists for every slave point of this rank the facets near it and the points of which these are made, from
   whatever rank.
 
@@ -515,6 +530,7 @@ PetscErrorCode SearchDistance(ContactSearch s, const PetscReal *u, PetscReal t, 
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
+  ToolsPlace(mesh, u, t);
   PetscCall(PetscMalloc1(n * dim, &relative));
   for (PetscInt i = 0; i < n; i++) {
     PetscReal y[3] = {0, 0, 0};

@@ -12,6 +12,7 @@
 #pragma once
 #include "search/neighbourlists.h"
 #include "bodies/loads.h"
+#include "bodies/tools.h"
 #include "search/slavepoints.h"
 
 /* Where any side of the bodies may meet any other one: part of the element's height below a slave point, and of the
@@ -41,6 +42,7 @@ PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface master, PetscReal
 PetscErrorCode SearchDestroy(ContactSearch *);
 void           SearchKeepFaces(ContactSearch);
 void           SearchAllSides(ContactSearch, PetscBool one_body);
+void           SearchSetTool(ContactSearch, const MeshTool *);
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
 PetscErrorCode SearchLeastDistance(ContactSearch, const PetscReal *u, PetscReal t, PetscReal *distance);
 PetscErrorCode SearchDistance(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap);

@@ -170,6 +170,8 @@ static PetscBool ToolCrosses(const Motion *motion, int axis)
 {
   for (int k = 0; k < motion->n; k++)
     if (motion->components[k].component == axis || motion->components[k].component >= 3) return PETSC_TRUE;
+  for (int k = 0; k < MOTION_COMPONENTS; k++)
+    if (motion->free[k] && (k == axis || k >= 3)) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 

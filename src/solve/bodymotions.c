@@ -5,24 +5,19 @@
 /* A load drives a motion if its force along it is above this part of the sum of the amounts. */
 #define FREE_BODIES_DRIVEN 1e-6
 
-/* Position of a node from the centre of its piece, in units of the piece's size. */
-void FreeBodiesPlace(FreeBodies b, PetscInt node, const PetscReal *u, double x[3])
+/* The velocity of a node under a motion of its piece, in units of the piece's size. */
+static void NodeVelocity(FreeBodies b, PetscInt node, const PetscReal *u, const double motion[RIGID_MODES], double v[3])
 {
-  const int        dim   = b->mesh->dim;
-  const FreePiece *piece = &b->pieces[b->piece[node]];
-
-  for (int d = 0; d < 3; d++)
-    x[d] = d < dim ? (b->mesh->coords[node * dim + d] + u[node * dim + d] - piece->centre[d]) / piece->size : 0;
+  FreeModesNodeVelocity(b->mesh, &b->pieces[b->piece[node]], node, u, motion, v);
 }
 
 /* The displacement row[m] (length) of component d of a node under the motions first to first + m - 1 of its piece. */
 void FreeBodiesRow(FreeBodies b, PetscInt node, const PetscReal *u, int d, int first, int m, double row[])
 {
-  double x[3], v[3];
+  double v[3];
 
-  FreeBodiesPlace(b, node, u, x);
   for (int k = 0; k < m; k++) {
-    RigidVelocity(b->motion[first + k], x, v);
+    NodeVelocity(b, node, u, b->motion[first + k], v);
     row[k] = b->pieces[b->piece[node]].size * v[d];
   }
 }
@@ -48,36 +43,37 @@ void FreeBodiesVelocity(FreeBodies b, const PetscReal *u, const double a[], Pets
 {
   const int dim  = b->mesh->dim;
   PetscInt  last = -1;
-  double    q[RIGID_MODES], x[3], v[3];
+  double    q[RIGID_MODES], v[3];
 
   for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
     if (b->piece[i] != last) FreeBodiesPieceMotion(b, b->piece[i], a, q);
     last = b->piece[i];
-    FreeBodiesPlace(b, i, u, x);
-    RigidVelocity(q, x, v);
+    NodeVelocity(b, i, u, q, v);
     for (int d = 0; d < dim; d++) du[i * dim + d] = b->pieces[last].size * v[d];
   }
 }
 
-/* Moves the bodies by a[n]: adds it to the displacements u. */
+/* Moves the bodies by a[n]: adds it to the displacements u. The nodes of a tool add its rotation vectors. */
 void FreeBodiesMove(FreeBodies b, const double a[], PetscReal *u)
 {
   const int dim  = b->mesh->dim;
   PetscInt  last = -1;
-  double    q[RIGID_MODES], x[3], from[3];
+  double    q[RIGID_MODES], x[3], by[3];
 
   for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
+    const FreePiece *piece = &b->pieces[b->piece[i]];
+
     if (b->piece[i] != last) FreeBodiesPieceMotion(b, b->piece[i], a, q);
     last = b->piece[i];
-    FreeBodiesPlace(b, i, u, from);
-    for (int d = 0; d < 3; d++) x[d] = from[d];
-    if (b->scene->kinematics == KINEMATICS_FINITE)
+    NodeVelocity(b, i, u, q, by);
+    if (b->scene->kinematics == KINEMATICS_FINITE && !(piece->tool && i != piece->tool->node)) {
+      for (int d = 0; d < 3; d++)
+        x[d] = d < dim ? (b->mesh->coords[i * dim + d] + u[i * dim + d] - piece->centre[d]) / piece->size : 0;
+      for (int d = 0; d < 3; d++) by[d] = -x[d];
       RigidMove(q, x);
-    else {
-      RigidVelocity(q, from, x);
-      for (int d = 0; d < 3; d++) x[d] += from[d];
+      for (int d = 0; d < 3; d++) by[d] += x[d];
     }
-    for (int d = 0; d < dim; d++) u[i * dim + d] += b->pieces[last].size * (x[d] - from[d]);
+    for (int d = 0; d < dim; d++) u[i * dim + d] += piece->size * by[d];
   }
 }
 
@@ -91,18 +87,15 @@ PetscErrorCode FreeBodiesGram(FreeBodies b, const PetscReal *u, double gram[])
   PetscCall(PetscCalloc1(b->n_pieces, &volume));
   PetscCall(PetscArrayzero(gram, n * n));
   for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
-    double x[3];
-
-    FreeBodiesPlace(b, i, u, x);
     volume[b->piece[i]] += b->weight[i];
     for (int k = 0; k < n; k++) {
       double v[3], w[3];
 
       if (b->owner[k] != b->piece[i]) continue;
-      RigidVelocity(b->motion[k], x, v);
+      NodeVelocity(b, i, u, b->motion[k], v);
       for (int l = 0; l < n; l++) {
         if (b->owner[l] != b->piece[i]) continue;
-        RigidVelocity(b->motion[l], x, w);
+        NodeVelocity(b, i, u, b->motion[l], w);
         for (int d = 0; d < b->mesh->dim; d++) gram[k * n + l] += b->weight[i] * v[d] * w[d];
       }
     }
@@ -182,14 +175,13 @@ PetscErrorCode FreeBodiesMeanMotion(FreeBodies b, const PetscReal *u, Vec x, int
   PetscCall(MeshGlobalToLocal(b->mesh, x, z));
   PetscCall(FreeBodiesGram(b, u, gram));
   for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
-    double place[3], v[3];
+    double v[3];
 
     if (b->piece[i] != b->owner[k]) continue;
-    FreeBodiesPlace(b, i, u, place);
     volume += b->weight[i];
     for (int l = 0; l < n; l++) {
       if (b->owner[l] != b->owner[k]) continue;
-      RigidVelocity(b->motion[l], place, v);
+      NodeVelocity(b, i, u, b->motion[l], v);
       for (int d = 0; d < dim; d++) a[l] += b->weight[i] * b->pieces[b->owner[k]].size * v[d] * z[i * dim + d];
     }
   }

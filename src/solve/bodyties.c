@@ -9,41 +9,59 @@
    against the unevenness of meshes, and bodies that roll on it at their place. */
 #define FREE_BODIES_TIE 1e-2
 
-/* A tie that measures coordinate k of the motions at displacements u, in lengths, by the cell at the middle of its
-   piece: the motion nearest to that of the cell's nodes. */
+/* The nodes by which a piece is tied, on the rank that ties it: those of the cell at its middle, or a tool's own.
+   Returns their number, 0 on other ranks. */
+static PetscInt TieNodes(FreeBodies b, PetscInt p, PetscMPIInt rank, PetscInt nodes[ELEMENT_MAX_NODES])
+{
+  const Mesh      mesh = b->mesh;
+  const MeshTool *tool = b->pieces[p].tool;
+  const PetscInt  cell = b->cell[p];
+  PetscInt        n    = 0;
+
+  for (int i = 0; tool && i < TOOL_NODES && mesh->node_owner[tool->node] == rank; i++) nodes[n++] = tool->node + i;
+  for (PetscInt c = cell < 0 ? 0 : mesh->cell_ptr[cell]; cell >= 0 && c < mesh->cell_ptr[cell + 1]; c++)
+    nodes[n++] = mesh->cell_nodes[c];
+  return n;
+}
+
+/* A tie that measures coordinate k of the motions at displacements u, in lengths, by some nodes of its piece: the
+   motion nearest to that of these nodes. */
 static PetscErrorCode MakeTie(FreeBodies b, const PetscReal *u, int k, SpringTie *tie)
 {
-  const Mesh       mesh = b->mesh;
-  const PetscInt   p = b->owner[k], cell = b->cell[p];
+  const Mesh       mesh  = b->mesh;
+  const PetscInt   p     = b->owner[k];
   const FreePiece *piece = &b->pieces[p];
   const PetscInt  *dofs;
+  PetscInt         nodes[ELEMENT_MAX_NODES], n;
   double           gram[RIGID_MODES * RIGID_MODES] = {0}, factor[RIGID_MODES * RIGID_MODES], row[RIGID_MODES];
   int              first = k, m = piece->n_free;
-  PetscMPIInt      owner = -1;
+  PetscMPIInt      owner;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &owner));
+  n    = TieNodes(b, p, owner, nodes);
   *tie = (SpringTie){.motion = k, .stiffness = FREE_BODIES_TIE * b->stiffness[p]};
   PetscCall(MeshGetGlobalDofs(mesh, &dofs));
   while (first > 0 && b->owner[first - 1] == p) first--;
-  if (cell >= 0) {
-    PetscCallMPI(MPI_Comm_rank(mesh->comm, &owner));
-    for (PetscInt c = mesh->cell_ptr[cell]; c < mesh->cell_ptr[cell + 1]; c++)
+  if (n) {
+    for (PetscInt c = 0; c < n; c++)
       for (int d = 0; d < mesh->dim; d++) {
-        FreeBodiesRow(b, mesh->cell_nodes[c], u, d, first, m, row);
+        FreeBodiesRow(b, nodes[c], u, d, first, m, row);
         RigidAddRow(m, row, 1, gram);
       }
     RigidCholesky(m, gram, factor);
-    for (PetscInt c = mesh->cell_ptr[cell]; c < mesh->cell_ptr[cell + 1]; c++)
+    for (PetscInt c = 0; c < n; c++)
       for (int d = 0; d < mesh->dim; d++) {
-        const PetscInt dof = dofs[mesh->cell_nodes[c] * mesh->dim + d];
+        const PetscInt dof = dofs[nodes[c] * mesh->dim + d];
 
         if (dof < 0) continue;
-        FreeBodiesRow(b, mesh->cell_nodes[c], u, d, first, m, row);
+        FreeBodiesRow(b, nodes[c], u, d, first, m, row);
         RigidSolve(m, factor, row);
         tie->dof[tie->n]     = dof;
         tie->value[tie->n++] = piece->size * row[k - first];
       }
-  }
+  } else
+    owner = -1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &owner, 1, MPI_INT, MPI_MAX, mesh->comm));
   PetscCallMPI(MPI_Bcast(&tie->n, 1, MPIU_INT, owner, mesh->comm));
   PetscCallMPI(MPI_Bcast(tie->dof, (PetscMPIInt)tie->n, MPIU_INT, owner, mesh->comm));

@@ -361,6 +361,7 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
       PetscCall(ModelJudgeDrift(model, report));
       break;
     }
+    if (more && times == EQUILIBRIUM_MAX_RELAX) PetscCall(ModelJudgeDrift(model, report));
     if (again || times == EQUILIBRIUM_MAX_RELAX) break;
     if (tied)
       PetscCall(

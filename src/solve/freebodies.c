@@ -21,7 +21,7 @@ static PetscErrorCode FindStabilised(FreeBodies b)
     const SceneContact *contact = &b->scene->contacts[side / 2];
 
     if (contact->stabilise == STABILISE_FALSE) continue;
-    PetscCall(FreeModesOnSurface(b->modes, side % 2 ? contact->master : contact->slave, on));
+    PetscCall(FreeModesOnSide(b->modes, side / 2, (PetscBool)(side % 2), on));
     for (PetscInt p = 0; p < b->n_pieces; p++)
       if (on[p] && (b->pieces[p].n_free || contact->stabilise == STABILISE_TRUE)) b->stabilised[p] = PETSC_TRUE;
   }
@@ -43,12 +43,14 @@ static PetscErrorCode ListMotions(FreeBodies b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Measures the volumes at the nodes and the faces of the slaves. */
+/* Measures the volumes at the nodes and the faces of the slaves. The nodes of a tool have equal parts of it. */
 static PetscErrorCode Measure(FreeBodies b)
 {
-  const Mesh mesh = b->mesh;
+  const Mesh  mesh = b->mesh;
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   PetscCall(PetscCalloc1(mesh->n_nodes, &b->weight));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const PetscInt first = mesh->cell_ptr[c], n = mesh->cell_ptr[c + 1] - first;
@@ -58,6 +60,9 @@ static PetscErrorCode Measure(FreeBodies b)
     volume = CellVolume(mesh->cell_type[c], mesh->dim, b->scene->geometry, X);
     for (PetscInt k = 0; k < n; k++) b->weight[mesh->cell_nodes[first + k]] += volume / (PetscReal)n;
   }
+  for (int k = 0; k < mesh->n_tools; k++)
+    for (int i = 0; i < TOOL_NODES; i++)
+      b->weight[mesh->tools[k].node + i] = mesh->node_owner[mesh->tools[k].node] == rank;
   for (int p = 0; p < ContactPairs(b->contact); p++) {
     const MeshGroup *slave;
     PetscReal        size;
@@ -77,11 +82,10 @@ static PetscErrorCode FindStiffness(FreeBodies b)
   PetscCall(PetscCalloc1(b->n_pieces, &b->stiffness));
   PetscCall(PetscMalloc1(b->n_pieces, &on));
   for (int side = 0; side < 2 * b->scene->n_contacts; side++) {
-    const SceneContact *contact = &b->scene->contacts[side / 2];
-    PetscReal           term;
+    PetscReal term;
 
     PetscCall(ContactPairTermStiffness(b->contact, side / 2, &term));
-    PetscCall(FreeModesOnSurface(b->modes, side % 2 ? contact->master : contact->slave, on));
+    PetscCall(FreeModesOnSide(b->modes, side / 2, (PetscBool)(side % 2), on));
     for (PetscInt p = 0; p < b->n_pieces; p++)
       if (on[p]) b->stiffness[p] = PetscMax(b->stiffness[p], term);
   }
@@ -265,7 +269,7 @@ PetscErrorCode FreeBodiesAccept(FreeBodies b, ContactSprings springs)
 }
 
 /*@
-  FreeBodiesArchive - saves or loads what is tied in the accepted state.
+  FreeBodiesArchive - saves or loads what is tied in the accepted state, and what FreeBodiesMoved() says.
 
   Collective
 
@@ -277,6 +281,7 @@ PetscErrorCode FreeBodiesArchive(FreeBodies b, Archive archive)
 {
   PetscFunctionBeginUser;
   if (b->n) PetscCall(ArchiveIntegers(archive, "bodies/tied", b->n, b->state));
+  PetscCall(ArchiveString(archive, "bodies/moved", sizeof(b->moved), b->moved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

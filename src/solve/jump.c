@@ -36,7 +36,7 @@ PetscErrorCode ModelFindJump(Model model, SolveReport *report)
   PetscFunctionBeginUser;
   if (!report->turned || !(work->rate > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+  for (PetscInt n = 0; n < mesh->n_body_nodes; n++) {
     PetscReal square = 0;
 
     for (int d = 0; d < dim; d++) square += PetscSqr(model->u[n * dim + d] - work->accepted_u[n * dim + d]);

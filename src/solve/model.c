@@ -199,6 +199,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscBool       ok;
 
   PetscFunctionBeginUser;
+  ToolsAccept(model->mesh, model->u, model->t);
   PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t));
   if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u));
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
@@ -244,6 +245,7 @@ PetscErrorCode ModelRestore(Model model)
   PetscCall(VecCopy(work->accepted_x, model->x));
   PetscCall(LinearSolverRenew(work->solver)); /* a step that starts from a look-ahead would not do so itself */
   model->t = work->accepted_t;
+  ToolsAccept(model->mesh, model->u, model->t);
   PetscCall(ElasticityRestore(model->problem->elasticity));
   PetscCall(FluidRestore(model->problem->fluids, model->u, model->t));
   if (model->contact) {
@@ -289,7 +291,8 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
     PetscCall(PetscArraycpy(model->u, work->accepted_u, mesh->n_nodes * mesh->dim));
     PetscCall(MeshCollectFree(mesh, model->u, model->x));
     PetscCall(VecCopy(model->x, work->accepted_x));
-    model->t      = work->accepted_t;
+    model->t = work->accepted_t;
+    ToolsAccept(mesh, model->u, model->t);
     work->settled = (PetscBool)(work->accepted_t == 0);
   }
   PetscCall(ElasticityArchive(model->problem->elasticity, archive));

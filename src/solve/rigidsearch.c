@@ -182,7 +182,7 @@ static PetscErrorCode Untouched(FreeBodies b, PetscBool *any)
     PetscInt sum = 0;
 
     PetscCall(ContactPairClosed(b->contact, c, b->piece, b->n_pieces, closed));
-    PetscCall(FreeModesOnSurface(b->modes, b->scene->contacts[c].master, on));
+    PetscCall(FreeModesOnSide(b->modes, c, PETSC_TRUE, on));
     for (PetscInt p = 0; p < b->n_pieces; p++) sum += closed[p];
     for (PetscInt p = 0; p < b->n_pieces; p++) touched[p] += closed[p] + (on[p] ? sum : 0);
   }

@@ -4,6 +4,8 @@
 
 /* Load parameters that are closer than this are the same one; t runs from 0 to 1. */
 #define STEPPER_SAME_T 1e-12
+/* Steps aim at this part of the bound on the growth of plastic strains, so that few are taken back. */
+#define STEPPER_STRAIN 0.8
 /* A failed step is tried again with this part of its dt. */
 #define STEPPER_CUT 0.5
 /* A step stretches to the next landing point if that is at most this many dt away. At sqrt(2) the one longer step
@@ -93,13 +95,14 @@ static PetscErrorCode AddMotion(const Motion *motion, PetscInt *n, PetscReal *la
 {
   PetscFunctionBeginUser;
   for (int m = 0; m < motion->n; m++) PetscCall(AddHistory(&motion->components[m].history, n, landings));
+  PetscCall(AddHistory(&motion->history, n, landings));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Number of breakpoints of a motion, for the length of the array. */
 static PetscInt MotionBreakpoints(const Motion *motion)
 {
-  PetscInt n = 0;
+  PetscInt n = motion->history.n;
 
   for (int m = 0; m < motion->n; m++) n += motion->components[m].history.n;
   return n;
@@ -290,10 +293,10 @@ static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Accepts a converged step of dt: fills its record, lets the control choose the next dt, which it must not shrink below
-   dt_min, and accepts the state. */
-static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscBool clipped, const SolveReport *solve,
-                                        StepRecord *record)
+/* Accepts a converged step of dt: fills its record, lets the control choose the next dt, which is at most `most` and
+   which it must not shrink below dt_min, and accepts the state. */
+static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscReal most, PetscBool clipped,
+                                        const SolveReport *solve, StepRecord *record)
 {
   Model          model  = stepper->model;
   StepperReport *report = &stepper->report;
@@ -304,6 +307,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   record->residual = solve->residual;
   if (model->contact) PetscCall(ContactSummarise(model->contact, &record->contact));
   PetscCall(stepper->control->next(model, dt, clipped, solve->newton, &stepper->size));
+  stepper->size.dt = PetscMin(stepper->size.dt, most);
   stepper->size.dt = PetscMin(stepper->size.dt_max, PetscMax(stepper->size.dt, PetscMin(dt, stepper->size.dt_min)));
   record->beta     = stepper->size.beta;
   record->tied     = stepper->size.tied;
@@ -344,6 +348,24 @@ static PetscErrorCode ReportFailure(StepperReport *report, PetscReal t, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether plastic strains grow by no more than the scene allows in the step to the present solution, or dt is the
+   smallest one. A step that is taken back is followed by a shorter one, one that stays bounds the next dt. */
+static PetscErrorCode LoadStepperBoundStrain(LoadStepper stepper, PetscReal dt, PetscReal *most, PetscBool *within)
+{
+  const Model     model = stepper->model;
+  const PetscReal bound = model->scene->stepping.plastic_strain;
+  PetscReal       growth;
+
+  PetscFunctionBeginUser;
+  *most = stepper->size.dt_max;
+  if (!(bound > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ElasticityPlasticGrowth(model->problem->elasticity, model->u, &growth));
+  if (growth > 0) *most = PetscMax(stepper->size.dt_min, STEPPER_STRAIN * bound / growth * dt);
+  *within = (PetscBool)(growth <= bound || dt <= stepper->size.dt_min);
+  if (!*within) stepper->size.dt = PetscMin(STEPPER_STRAIN * dt, *most);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Tries one step, and repeats it with smaller dt until it converges and the control accepts it, or dt falls below
    dt_min. A step whose first linear solve is singular is not repeated, because the tangent at its start is singular for
    any dt. A fluid that leaks
@@ -354,6 +376,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   StepperReport  *report = &stepper->report;
   const PetscReal t = model->t, first = stepper->size.dt;
   SolveReport     solve;
+  PetscReal       most;
   PetscBool       clipped;
 
   PetscFunctionBeginUser;
@@ -369,8 +392,9 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     if (solve.result == SOLVE_CONVERGED) {
       *advanced = PETSC_TRUE;
       if (stepper->control->judge) PetscCall(stepper->control->judge(model, dt, &stepper->size, advanced));
+      if (*advanced) PetscCall(LoadStepperBoundStrain(stepper, dt, &most, advanced));
       if (*advanced) {
-        PetscCall(LoadStepperAccept(stepper, dt, clipped, &solve, record));
+        PetscCall(LoadStepperAccept(stepper, dt, most, clipped, &solve, record));
         PetscFunctionReturn(PETSC_SUCCESS);
       }
       PetscCall(ModelRestore(model));

@@ -381,7 +381,7 @@ static PetscErrorCode SolveLinear(Mesh mesh, Elasticity e, PetscReal *f, PetscRe
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &du));
-  PetscCall(DMCreateGlobalVector(mesh->dm, &R));
+  PetscCall(VecCreateMPI(mesh->comm, mesh->n_free, PETSC_DETERMINE, &R));
   PetscCall(VecDuplicate(R, &dx));
   PetscCall(ElasticityResidual(e, u, f, NULL, NULL, &ok));
   PetscCall(MeshLocalToGlobal(mesh, f, R));

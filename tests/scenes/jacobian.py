@@ -111,6 +111,27 @@ CASES["rubber ring, fluid up to the contact"] = (RUNS / "o_ring_pressure.yaml", 
     "mesh.parameters.n=4", "loads.0.pressure=1", "stepping={control: fixed, initial: 0.5}",
     "contact.0.penalty.scale=1", "contact.1.penalty.scale=1"
 ])
+TOOL = ["mesh.parameters={lx: 10, ly: 5, nx: 6, ny: 3, skew: 0}", "stepping.initial=1"]
+PUSHED = [
+    "loads=[]", "stepping.initial=0.5", "mesh.parameters.overlap=-0.1", "supports.1={surface: block_top, ux: 0, uy: 0}",
+    "probes=[]"
+]
+CASES["analytic tool that is pushed and turned, sticks"] = (SCENES / "tool.yaml", TOOL + [
+    "contact.0.friction.mu=0.3", "contact.0.master={cylinder: {point: [5, 8], radius: 3, free: [uy, rz], force: "
+    "[0, -300], moment: {z: 10}}}"
+])
+CASES["plane that is turned by a moment"] = (SCENES / "tool.yaml", TOOL + [
+    "contact.0.master={plane: {point: [4, 5.45], normal: [0.1, -1], free: [rz], moment: {z: 200}, motion: "
+    "[{uy: -0.9}]}}"
+])
+CASES["meshed tool with four unknowns, sticks"] = (RUNS / "slide_cylinder.yaml", PUSHED + [
+    "contact.0.friction.mu=0.5", "bodies.1.rigid={point: [0, -20, 0], free: [uy, rx, ry, rz], force: [0, 30, 0], "
+    "moment: {x: 3, y: 2, z: 5}}"
+])
+CASES["meshed tool, diffuse, far turned"] = (RUNS / "slide_cylinder.yaml", PUSHED + [
+    "contact.0.smoother=diffuse", "bodies.1.rigid={point: [0, -20, 0], free: [uy, rx], force: [0, 30, 0], moment: "
+    "{x: 3}, motion: [{rz: 70}]}"
+])
 
 args = arguments()
 check = Check()

@@ -85,6 +85,7 @@ FULL = {
     f"{PYTHON} scripts/friction_table.py --record runs/records/friction.csv": printed("friction_table", "friction"),
     f"{PYTHON} scripts/plot.py out/press_fit": None,
     f"{PYTHON} scripts/ball_table.py": printed("ball_table", "ball"),
+    f"{PYTHON} scripts/forming_table.py": printed("forming_table", "forming"),
     f"{PYTHON} scripts/michell_table.py": printed("michell_table", "michell"),
     f"{PYTHON} scripts/penalty_table.py --record runs/records/penalty.csv": printed("penalty_table", "penalty"),
     f"{PYTHON} scripts/hertz_table.py": printed("hertz_table", "hertz"),

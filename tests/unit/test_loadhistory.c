@@ -25,11 +25,30 @@ static void ValueIsLinearBetweenAndConstantBeyond(void **state)
   assert_true(HistoryValue(&Press, 2) == -0.5);
 }
 
+/* A free component has the iterate's value, at the accepted load parameter the accepted one; forces follow their
+   history. */
+static void FreeComponentsHaveTheirState(void **state)
+{
+  const double before[MOTION_COMPONENTS] = {0, -1}, now[MOTION_COMPONENTS] = {5, -2}, X[3] = {1, 1, 0};
+  Motion       motion = {.n_free = 1, .free = {0, 1}, .force = {0, -10}, .history = Press};
+  double       x[3];
+
+  (void)state;
+  MotionAccept(&motion, 0.2, before);
+  MotionSet(&motion, 0.7, now);
+  MotionPlace(&motion, 0.2, X, x);
+  assert_true(x[0] == 1 && x[1] == 0);
+  MotionPlace(&motion, 0.7, X, x);
+  assert_true(x[0] == 1 && x[1] == -1);
+  assert_float_equal(MotionForce(&motion, 0.85, 1), -2.5, 1e-14);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(ValueIsExactAtBreakpoints),
     cmocka_unit_test(ValueIsLinearBetweenAndConstantBeyond),
+    cmocka_unit_test(FreeComponentsHaveTheirState),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

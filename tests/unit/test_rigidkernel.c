@@ -131,12 +131,55 @@ static void test_solve(void **state)
   assert_float_equal(x[1], 1.5, RoundOff);
 }
 
+/* Turns a point by a rotation vector. */
+static void Turn(const double turn[3], const double X[3], double x[3])
+{
+  const double motion[N] = {turn[0], turn[1], turn[2], 0, 0, 0};
+
+  for (int d = 0; d < 3; d++) x[d] = X[d];
+  RigidMove(motion, x);
+}
+
+/* The spins of a rotation vector are the differences of a turned point, and their changes the differences of the
+   spins: small, large and across the angle below which series are taken. */
+static void test_turn_rate(void **state)
+{
+  static const double turns[][3] = {{0, 0, 0}, {1e-3, -2e-3, 3e-3}, {0.6, 0.3, -1.1}, {0.02, 0.01, 0}};
+  const double        X[3] = {0.3, -0.7, 1.1}, step = 1e-6;
+
+  (void)state;
+  for (int i = 0; i < 4; i++) {
+    double spin[3][3], change[3][3][3], x[3];
+
+    RigidTurnRate(turns[i], spin);
+    RigidTurnRateChange(turns[i], change);
+    Turn(turns[i], X, x);
+    for (int k = 0; k < 3; k++) {
+      double up[3], down[3], ahead[3], behind[3], spin_up[3][3], spin_down[3][3], velocity[3];
+
+      for (int d = 0; d < 3; d++) {
+        up[d]   = turns[i][d] + step * (d == k);
+        down[d] = turns[i][d] - step * (d == k);
+      }
+      Turn(up, X, ahead);
+      Turn(down, X, behind);
+      RigidVelocity((const double[N]){spin[k][0], spin[k][1], spin[k][2], 0, 0, 0}, x, velocity);
+      for (int d = 0; d < 3; d++) assert_float_equal(velocity[d], (ahead[d] - behind[d]) / (2 * step), 1e-8);
+      RigidTurnRate(up, spin_up);
+      RigidTurnRate(down, spin_down);
+      for (int l = 0; l < 3; l++)
+        for (int d = 0; d < 3; d++)
+          assert_float_equal(change[k][l][d], (spin_up[l][d] - spin_down[l][d]) / (2 * step), 1e-7);
+    }
+  }
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_move),    cmocka_unit_test(test_solve),
-                                     cmocka_unit_test(test_nothing), cmocka_unit_test(test_point),
-                                     cmocka_unit_test(test_line),    cmocka_unit_test(test_oblique_plane),
-                                     cmocka_unit_test(test_all_held)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_turn_rate),     cmocka_unit_test(test_move),
+                                     cmocka_unit_test(test_solve),         cmocka_unit_test(test_nothing),
+                                     cmocka_unit_test(test_point),         cmocka_unit_test(test_line),
+                                     cmocka_unit_test(test_oblique_plane), cmocka_unit_test(test_all_held)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -70,11 +70,13 @@ static const char Everything[] =
   "  - {name: p5, contact_edge: crown, axis: x, side: max, at: {z: 100}}\n"
   "  - {name: p6, pressure_max: other, at: {y: 10}}\n"
   "  - {name: p7, pressure_mean: crown}\n"
-  "  - {name: p8, pressure_deviation: crown, measure: rms, excluding: 2}\n"
-  "  - {name: p9, pressure_deviation: crown, measure: max, only: 1.5}\n"
-  "  - {name: p10, fluid_front: plate_bottom, axis: y, side: min}\n"
-  "  - {name: p11, fluid_area: plate_bottom}\n"
-  "  - {name: p12, seal_pressure: plate_bottom}\n"
+  "  - {name: p8, tool_motion: crown, component: z}\n"
+  "  - {name: p9, tool_rotation: crown, component: y}\n"
+  "  - {name: p10, pressure_deviation: crown, measure: rms, excluding: 2}\n"
+  "  - {name: p11, pressure_deviation: crown, measure: max, only: 1.5}\n"
+  "  - {name: p12, fluid_front: plate_bottom, axis: y, side: min}\n"
+  "  - {name: p13, fluid_area: plate_bottom}\n"
+  "  - {name: p14, seal_pressure: plate_bottom}\n"
   "output: {every: 0, fields: [stress, contact], checkpoint: 0}\n"
   "petsc: {snes_monitor: , -pc_type: lu, ksp_rtol: 1e-9}\n";
 
@@ -232,10 +234,10 @@ static void ProbesOfEveryKindArrive(void **state)
 
   (void)state;
   ReadOrFail(Everything, 0, NULL, &scene);
-  assert_int_equal(scene->n_probes, 13);
+  assert_int_equal(scene->n_probes, 15);
   probe = scene->probes;
   for (int i = 0; i < PROBE_FLUID_FRONT; i++) assert_int_equal(probe[i].kind, i);
-  for (int i = PROBE_FLUID_FRONT; i < PROBE_KINDS; i++) assert_int_equal(probe[i + 1].kind, i); /* p8 and p9 are one */
+  for (int i = PROBE_FLUID_FRONT; i < PROBE_KINDS; i++) assert_int_equal(probe[i + 1].kind, i); /* p10 and p11 are one */
   assert_string_equal(probe[0].target, "top");
   assert_true(probe[0].component == 1 && probe[0].absolute && probe[0].factor == 1);
   assert_string_equal(probe[1].target, "crown");
@@ -252,10 +254,11 @@ static void ProbesOfEveryKindArrive(void **state)
               probe[5].at_value == 100);
   assert_true(probe[6].has_at && probe[6].at_axis == 1 && probe[6].at_value == 10);
   assert_false(probe[7].has_at);
-  assert_true(probe[8].rms && probe[8].edge_filter == 1 && probe[8].edge_faces == 2);
-  assert_true(!probe[9].rms && probe[9].edge_filter == 2 && probe[9].edge_faces == 1.5);
-  assert_true(probe[10].axis == 1 && !probe[10].max_side);
-  assert_string_equal(probe[12].target, "plate_bottom");
+  assert_true(probe[8].component == 2 && probe[9].component == 1);
+  assert_true(probe[10].rms && probe[10].edge_filter == 1 && probe[10].edge_faces == 2);
+  assert_true(!probe[11].rms && probe[11].edge_filter == 2 && probe[11].edge_faces == 1.5);
+  assert_true(probe[12].axis == 1 && !probe[12].max_side);
+  assert_string_equal(probe[14].target, "plate_bottom");
   Free(&scene);
 }
 

@@ -6,9 +6,9 @@
    (contactfaces.c): they press and have stiffness as others do, but what is counted and shown is that of the nodes.
 
    The files call each other downwards in this order: contactwork (room), contactpair, contactfaces and contactterm (a
-   pair, the terms of its faces, one of its terms), contactpoint (one slave point), contactvariation (first variations
-   that are kept), contactprojection (gaps of all points), contactvectors (first variations over dofs), friction,
-   frictionstep, frictiontangent, contactresidual, contacttangent, contactlists,
+   pair, the terms of its faces, one of its terms), contacttool (a tool with unknowns), contactpoint (one slave point),
+   contactvariation (first variations that are kept), contactprojection (gaps of all points), contactvectors (first
+   variations over dofs), friction, frictionstep, frictiontangent, contactresidual, contacttangent, contactlists,
    contact. */
 #pragma once
 #include "matrix/blockmatrix.h"
@@ -58,6 +58,7 @@ typedef struct {
   PairFormulation     formulation;
   FitSettings         fit;           /* fit.fitted: the master is fitted, so lists hold fits and timings count as fit */
   ContactSurface      slave, master; /* master NULL: analytic, in scene */
+  const MeshTool     *tool;          /* the master, where its motion has free components; else NULL */
   int                 n_images;
   SurfaceImage        images[SURFACE_MAX_IMAGES];
   const Smoother     *smoother; /* the scene's */
@@ -172,12 +173,19 @@ void           ContactSecondEnd(const ContactPair *);
 PetscErrorCode ContactPointsToNodes(const ContactPair *, PetscInt first, PetscInt end);
 PetscErrorCode ContactOwnToNodes(const ContactPair *, PetscInt nodes, PetscInt first, PetscInt end,
                                  const double (*own)[FIT_DERIVATIVES_OWN]);
+/* contacttool.c */
+PetscErrorCode ContactToolVariation(const ContactPair *, PetscInt n, const PetscInt nodes[], const PetscReal *N,
+                                    PetscReal *own);
+PetscErrorCode ContactToolForces(const ContactPair *, PetscReal *values);
+PetscErrorCode ContactToolBlock(const ContactPair *, PetscInt n, const PetscInt nodes[], const PetscReal *force,
+                                PetscReal *M);
 /* contactvariation.c */
 PetscErrorCode ContactVariationsCreate(int dim, PetscInt n_points, ContactVariations **);
 PetscErrorCode ContactVariationsDestroy(ContactVariations **);
 void           ContactVariationsReset(ContactVariations *);
 PetscErrorCode ContactVariationsKeep(const ContactPair *, PetscInt q, PetscBool found);
 PetscErrorCode ContactVariationsNeed(const ContactPair *, PetscInt q);
+PetscInt       ContactVariationsOwn(const ContactPair *, PetscInt q);
 PetscErrorCode ContactVariationsNodes(const ContactPair *, PetscInt n, const PetscInt points[]);
 void           ContactTermVary(const ContactPair *, PetscInt term, PetscReal scale, PetscReal *v);
 /* contactprojection.c */

@@ -25,6 +25,7 @@ struct _n_ContactSearch {
   SlavePoints         slaves;
   const PetscReal    *offset; /* of the quadrature points of this rank's master faces, where fits use these points */
   const FaceMaps     *maps;   /* or these points as combinations of nodes */
+  const MeshTool     *tool;   /* the master, where its motion has free components; else NULL */
   PetscBool           keeps_faces;   /* lists keep all faces, not only those of each slave point */
   PetscBool           listed;        /* any side of the bodies may meet any other one */
   PetscBool           one_body;      /* slave and master have faces of one body */

@@ -40,7 +40,6 @@ struct _n_FreeBodies {
 };
 
 /* bodymotions.c */
-void           FreeBodiesPlace(FreeBodies, PetscInt node, const PetscReal *u, double x[3]);
 void           FreeBodiesRow(FreeBodies, PetscInt node, const PetscReal *u, int d, int first, int m, double row[]);
 void           FreeBodiesPieceMotion(FreeBodies, PetscInt piece, const double a[], double q[RIGID_MODES]);
 void           FreeBodiesVelocity(FreeBodies, const PetscReal *u, const double a[], PetscReal *du);

@@ -1,0 +1,225 @@
+/* Rigid tools with free motions, see tools.h. */
+#include "bodies/tools.h"
+#include <string.h>
+
+/*@
+  ToolDof - returns the place of a component of a tool's motion among the dofs of its nodes.
+
+  Not collective
+
+  Input Parameters:
++ mesh      - the mesh
+- component - 0 to 5: ux, uy, uz, rx, ry, rz
+
+  Note:
+  It is counted from the first dof of the first node. -1: the plane has no such component. Rotations count times the
+  tool's arm.
+@*/
+int ToolDof(Mesh mesh, int component)
+{
+  if (component < 3) return component < mesh->dim ? component : -1;
+  if (mesh->dim == 3) return component;
+  return component == 5 ? mesh->dim : -1;
+}
+
+/*@
+  ToolOfPair - finds the tool with free motions that is the master of a contact pair.
+
+  Not collective
+
+  Input Parameters:
++ mesh    - the mesh
+. scene   - the scene
+- contact - number of the pair in the scene
+
+  Note:
+  It returns NULL where the master is no such tool.
+@*/
+const MeshTool *ToolOfPair(Mesh mesh, Scene scene, int contact)
+{
+  const char *master = scene->contacts[contact].master;
+
+  for (int k = 0; k < mesh->n_tools; k++) {
+    const MeshTool *tool = &mesh->tools[k];
+
+    if (tool->contact == contact) return tool;
+    if (tool->body >= 0 && master && !strcmp(master, tool->name)) return tool;
+  }
+  return NULL;
+}
+
+/* The components of a tool's motion in the displacements of its nodes: lengths and radians. */
+static void Components(Mesh mesh, const MeshTool *tool, const PetscReal *own, PetscReal q[MOTION_COMPONENTS])
+{
+  for (int c = 0; c < MOTION_COMPONENTS; c++) {
+    const int dof = ToolDof(mesh, c);
+
+    q[c] = dof < 0 ? 0 : own[dof] / (c < 3 ? 1 : tool->arm);
+  }
+}
+
+/*@
+  ToolGetPlace - gives the place of a tool's point and the tool's rotation vector.
+
+  Not collective
+
+  Input Parameters:
++ mesh - the mesh
+. tool - one of its tools
+- own  - displacements of its two nodes (length)
+
+  Output Parameters:
++ point - the tool's point, relative to the mesh's centre (length)
+- turn  - rotation vector (radians)
+@*/
+void ToolGetPlace(Mesh mesh, const MeshTool *tool, const PetscReal *own, PetscReal point[3], PetscReal turn[3])
+{
+  PetscReal q[MOTION_COMPONENTS];
+
+  Components(mesh, tool, own, q);
+  for (int d = 0; d < 3; d++) {
+    point[d] = d < mesh->dim ? mesh->coords[tool->node * mesh->dim + d] + q[d] : 0;
+    turn[d]  = q[3 + d];
+  }
+}
+
+/*@
+  ToolsConstrain - marks the dofs of tools that are not free.
+
+  Not collective
+
+  Input Parameter:
+. mesh - the mesh
+
+  Output Parameter:
+. constrained - of each local dof [n_nodes*dim]; those of the tools' nodes are written
+@*/
+void ToolsConstrain(Mesh mesh, PetscBool *constrained)
+{
+  for (int k = 0; k < mesh->n_tools; k++) {
+    const MeshTool *tool = &mesh->tools[k];
+
+    for (int i = 0; i < 2 * mesh->dim; i++) constrained[tool->node * mesh->dim + i] = PETSC_TRUE;
+    for (int c = 0; c < MOTION_COMPONENTS; c++)
+      if (tool->motion->free[c]) constrained[tool->node * mesh->dim + ToolDof(mesh, c)] = PETSC_FALSE;
+  }
+}
+
+/*@
+  ToolsPrescribe - writes the components of tools that are not free.
+
+  Not collective
+
+  Input Parameters:
++ mesh - the mesh
+- t    - load parameter
+
+  Output Parameter:
+. u - local displacements u[n_nodes*dim] (length)
+@*/
+void ToolsPrescribe(Mesh mesh, PetscReal t, PetscReal *u)
+{
+  for (int k = 0; k < mesh->n_tools; k++) {
+    const MeshTool *tool = &mesh->tools[k];
+    PetscReal       q[MOTION_COMPONENTS];
+
+    MotionComponents(tool->motion, t, q);
+    for (int c = 0; c < MOTION_COMPONENTS; c++) {
+      const int dof = ToolDof(mesh, c);
+
+      if (dof >= 0 && !tool->motion->free[c]) u[tool->node * mesh->dim + dof] = q[c] * (c < 3 ? 1 : tool->arm);
+    }
+  }
+}
+
+/*@
+  ToolMove - moves a tool to the displacements of an iterate.
+
+  Not collective
+
+  Input Parameters:
++ mesh - the mesh
+. tool - one of its tools
+. own  - displacements of its two nodes (length)
+- t    - load parameter
+@*/
+void ToolMove(Mesh mesh, const MeshTool *tool, const PetscReal *own, PetscReal t)
+{
+  PetscReal q[MOTION_COMPONENTS];
+
+  Components(mesh, tool, own, q);
+  MotionSet(tool->motion, t, q);
+}
+
+/*@
+  ToolsPlace - moves the tools to the displacements of an iterate.
+
+  Not collective
+
+  Input Parameters:
++ mesh - the mesh
+. u    - local displacements u[n_nodes*dim] (length), ghosts included
+- t    - load parameter
+@*/
+void ToolsPlace(Mesh mesh, const PetscReal *u, PetscReal t)
+{
+  for (int k = 0; k < mesh->n_tools; k++) ToolMove(mesh, &mesh->tools[k], &u[mesh->tools[k].node * mesh->dim], t);
+}
+
+/*@
+  ToolsAccept - moves the tools to displacements that become those of the accepted state.
+
+  Not collective
+
+  Input Parameters:
++ mesh - the mesh
+. u    - local displacements u[n_nodes*dim] (length), ghosts included
+- t    - load parameter
+@*/
+void ToolsAccept(Mesh mesh, const PetscReal *u, PetscReal t)
+{
+  PetscReal q[MOTION_COMPONENTS];
+
+  for (int k = 0; k < mesh->n_tools; k++) {
+    Components(mesh, &mesh->tools[k], &u[mesh->tools[k].node * mesh->dim], q);
+    MotionAccept(mesh->tools[k].motion, t, q);
+  }
+}
+
+/*@
+  ToolsResidual - subtracts the forces and moments on the tools from the residual.
+
+  Not collective
+
+  Input Parameters:
++ mesh - the mesh
+. t    - load parameter
+- u    - local displacements u[n_nodes*dim] (length)
+
+  Output Parameters:
++ f      - [n_nodes*dim], from which the forces are subtracted
+. energy - their potential is added
+- force2 - their squares are added
+
+  Note:
+  f, energy and force2 may be NULL; each is this rank's part. A moment does its work along the rotation vector.
+@*/
+void ToolsResidual(Mesh mesh, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2)
+{
+  PetscMPIInt rank;
+
+  (void)MPI_Comm_rank(mesh->comm, &rank);
+  for (int k = 0; k < mesh->n_tools && !rank; k++) {
+    const MeshTool *tool = &mesh->tools[k];
+
+    for (int c = 0; c < MOTION_COMPONENTS; c++) {
+      const PetscInt  dof   = tool->node * mesh->dim + ToolDof(mesh, c);
+      const PetscReal force = tool->motion->free[c] ? MotionForce(tool->motion, t, c) / (c < 3 ? 1 : tool->arm) : 0;
+
+      if (!tool->motion->free[c]) continue;
+      if (f) f[dof] -= force;
+      if (energy) *energy -= force * u[dof];
+      if (force2) *force2 += PetscSqr(force);
+    }
+  }
+}
