@@ -39,7 +39,7 @@ enum { PLASTIC_FIELDS = 7 };
 void           ElasticitySetTime(Elasticity, PetscReal t);
 PetscErrorCode ElasticityAcceptPlastic(Elasticity, const PetscReal *u, PetscReal t);
 PetscErrorCode ElasticityArchivePlastic(Elasticity, Archive);
-PetscErrorCode ElasticityPlasticGrowth(Elasticity, const PetscReal *u, PetscReal *growth);
+PetscErrorCode ElasticityPlasticGrowth(Elasticity, const PetscReal *u, PetscReal t, PetscReal *growth);
 PetscErrorCode ElasticityNodalPlasticStrain(Elasticity, PetscReal *strain, PetscReal *weight);
 PetscInt64     ElasticityPlasticPoints(Elasticity, PetscInt64 *bytes);
 PetscErrorCode ElasticityPlasticWork(Elasticity, PetscReal *work, PetscReal *strain);

@@ -60,7 +60,8 @@ static PetscReal GroupGrowth(const CellGroup *g, const PetscReal *before)
 
   Input Parameters:
 + e - the elasticity
-- u - local displacements (length) [n_nodes*dim]
+. u - local displacements (length) [n_nodes*dim]
+- t - load parameter at u
 
   Output Parameter:
 . growth - over all quadrature points of all ranks
@@ -68,7 +69,7 @@ static PetscReal GroupGrowth(const CellGroup *g, const PetscReal *before)
   Note:
   The accepted state stays what it is.
 @*/
-PetscErrorCode ElasticityPlasticGrowth(Elasticity e, const PetscReal *u, PetscReal *growth)
+PetscErrorCode ElasticityPlasticGrowth(Elasticity e, const PetscReal *u, PetscReal t, PetscReal *growth)
 {
   PetscReal **before;
 
@@ -82,7 +83,7 @@ PetscErrorCode ElasticityPlasticGrowth(Elasticity e, const PetscReal *u, PetscRe
     PetscCall(PetscMalloc1(n, &before[k]));
     PetscCall(PetscArraycpy(before[k], g->state, n));
   }
-  PetscCall(ElasticityAcceptPlastic(e, u));
+  PetscCall(ElasticityAcceptPlastic(e, u, t));
   *growth = 0;
   for (int k = 0; k < e->n_groups; k++) {
     CellGroup   *g = &e->groups[k];

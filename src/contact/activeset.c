@@ -215,7 +215,7 @@ static PetscReal Negligible(ActiveSet p)
   for (PetscInt i = 0; i < p->n && p->parts > 1; i++) {
     const PetscReal pressure = -p->terms[i].penalty * (p->terms[i].opening + p->end[i]);
 
-    if (p->pressed[i]) most = PetscMax(most, p->terms[i].friction.law.coefficient * pressure);
+    if (p->pressed[i]) most = PetscMax(most, FrictionBound(&p->terms[i].friction.law, pressure));
   }
   return ACTIVE_SET_FRICTION * most;
 }

@@ -161,6 +161,28 @@ static double Bound(const FrictionInput *in, double *slope)
 }
 
 /*@
+  FrictionBound - gives the largest traction that sticks at a pressure (force per area).
+
+  Not collective
+
+  Input Parameters:
++ in       - the node; its own pressure does not count, and its coefficient stays
+- pressure - force per area; the bound is 0 where it is not positive
+
+  Note:
+  Plain C.
+@*/
+double FrictionBound(const FrictionInput *in, double pressure)
+{
+  FrictionInput at = *in;
+  double        slope;
+
+  at.pressure = pressure;
+  at.state    = FRICTION_DECIDES;
+  return Bound(&at, &slope);
+}
+
+/*@
   FrictionEvaluate - evaluates Coulomb's law at a node.
 
   Not collective

@@ -43,5 +43,6 @@ typedef struct {
   double        by_normal[3][3], by_slip[3][3], by_along[3][3], by_gap[3]; /* derivatives of the traction */
 } FrictionTraction;
 
-void FrictionComponents(const double normal[3], const double along[3], const double v[3], double component[2]);
-void FrictionEvaluate(const FrictionInput *, FrictionTraction *);
+void   FrictionComponents(const double normal[3], const double along[3], const double v[3], double component[2]);
+double FrictionBound(const FrictionInput *, double pressure);
+void   FrictionEvaluate(const FrictionInput *, FrictionTraction *);

@@ -359,7 +359,7 @@ static PetscErrorCode LoadStepperBoundStrain(LoadStepper stepper, PetscReal dt, 
   PetscFunctionBeginUser;
   *most = stepper->size.dt_max;
   if (!(bound > 0)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ElasticityPlasticGrowth(model->problem->elasticity, model->u, &growth));
+  PetscCall(ElasticityPlasticGrowth(model->problem->elasticity, model->u, model->t, &growth));
   if (growth > 0) *most = PetscMax(stepper->size.dt_min, STEPPER_STRAIN * bound / growth * dt);
   *within = (PetscBool)(growth <= bound || dt <= stepper->size.dt_min);
   if (!*within) stepper->size.dt = PetscMin(STEPPER_STRAIN * dt, *most);
