@@ -50,7 +50,7 @@ static void LookAtSlips(ActiveSet p)
       p->slip[2 * i + a] = slip;
     }
     p->sticks[i]  = (PetscBool)(p->slipped[i] && along < 0);
-    p->slipped[i] = (PetscBool)(!p->sticks[i] && law->stiffness * PetscSqrtReal(square) > law->coefficient * pressure);
+    p->slipped[i] = (PetscBool)(!p->sticks[i] && law->stiffness * PetscSqrtReal(square) > FrictionBound(law, pressure));
   }
 }
 

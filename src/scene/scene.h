@@ -32,7 +32,7 @@ typedef struct {
   /* 1 if its volume is stiff or plastic flow keeps it, and cells of first order with full integration lock.
      MeshCheckFormulations() sets it. */
   int    locks;
-  Motion      motion;      /* of a rigid tool */
+  Motion motion; /* of a rigid tool */
 } SceneBody;
 
 typedef struct {
