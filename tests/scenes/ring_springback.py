@@ -1,12 +1,15 @@
 """A steel ring is flattened between two plates by 40 % of its height and let go: force, place of its top and of its side
-under load, and the shape that remains, against CalculiX on the same mesh, and with finer elements of first order.
+under load, and the shape that remains, against CalculiX on the same mesh, with mixed elements, and with finer elements of
+first order. With twice as many elements the force is 77.18 (full) and 77.02 (mixed).
 
 References: jobs/ring_calculix.py (CPE8, surface to surface penalty contact)."""
 from harness import Check, arguments, run, SCENES
 
 FORCE, TOP, SIDE = 77.796, -20.4506, 14.6611  # under load
 TOP_AFTER, SIDE_AFTER = -18.9638, 14.0466
-CASES = {"second order": (["stepping.dt_max=0.02"], 0.005, 0.02), "default steps": ([], 0.005, 0.02),
+FULL = "bodies.0.formulation=full"
+CASES = {"second order": ([FULL, "stepping.dt_max=0.02"], 0.005, 0.02), "default steps": ([FULL], 0.005, 0.02),
+         "mixed": (["bodies.0.formulation=mixed"], 0.02, 0.05),
          "fbar": (["mesh.order=1", "mesh.parameters={form: 0, r_in: 46, r_out: 50, n_arc: 96, n_wall: 6}"], 0.02, 0.05)}
 args = arguments()
 check = Check()
