@@ -236,8 +236,9 @@ static void ProbesOfEveryKindArrive(void **state)
   ReadOrFail(Everything, 0, NULL, &scene);
   assert_int_equal(scene->n_probes, 15);
   probe = scene->probes;
-  for (int i = 0; i < PROBE_FLUID_FRONT; i++) assert_int_equal(probe[i].kind, i);
-  for (int i = PROBE_FLUID_FRONT; i < PROBE_KINDS; i++) assert_int_equal(probe[i + 1].kind, i); /* p10 and p11 are one */
+  for (int i = 0; i < PROBE_FRICTION_FORCE; i++) assert_int_equal(probe[i].kind, i);
+  for (int i = PROBE_FLUID_FRONT; i < PROBE_KINDS; i++) /* p10 and p11 are one; none is of friction */
+    assert_int_equal(probe[PROBE_FRICTION_FORCE + 1 + i - PROBE_FLUID_FRONT].kind, i);
   assert_string_equal(probe[0].target, "top");
   assert_true(probe[0].component == 1 && probe[0].absolute && probe[0].factor == 1);
   assert_string_equal(probe[1].target, "crown");
