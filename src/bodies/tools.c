@@ -124,6 +124,7 @@ void ToolsPrescribe(Mesh mesh, PetscReal t, PetscReal *u)
     PetscReal       q[MOTION_COMPONENTS];
 
     MotionComponents(tool->motion, t, q);
+    if (mesh->dim == 2) u[tool->node * mesh->dim + mesh->dim + 1] = 0; /* the plane has one rotation */
     for (int c = 0; c < MOTION_COMPONENTS; c++) {
       const int dof = ToolDof(mesh, c);
 
