@@ -74,7 +74,7 @@ CASES["coarse pinched pipe, live offsets"] = (RUNS / "pipe_pinch.yaml", COARSE_P
 
 for form in ("node_to_surface", "surface_to_surface"):
     CASES[f"tube on its own mirror image, {form}"] = (
-        SCENES / "mirrored_tube.yaml", ["mesh.parameters.n_arc=10", f"contact.1.formulation={form}"])
+        SCENES / "mirrored_tube.yaml", ["mesh.parameters.n_arc=16", f"contact.1.formulation={form}"])
 
 SLIPPING = ["contact.0.friction.mu=0.2"]
 STICKING = ["contact.0.friction.mu=2"]
