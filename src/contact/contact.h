@@ -35,7 +35,7 @@ typedef struct {
 
 /* All pairs together, in the present state. */
 typedef struct {
-  PetscInt  nodes;                  /* closed slave nodes */
+  PetscInt  nodes;                  /* closed slave nodes; where faces press between open nodes, these faces */
   PetscInt  in, out;                /* nodes that closed and that opened since the accepted state */
   PetscReal max_penetration;        /* length */
   PetscReal min_penetration;        /* over nodes whose force is above 1e-3 of the largest nodal force (length) */

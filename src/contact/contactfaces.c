@@ -122,18 +122,17 @@ void ContactFacesPoints(ContactPair *pair)
 }
 
 /*@
-  ContactTermPenalty - returns the penalty that counts for a term (force per length and area).
+  ContactTermPenalty - returns what counts of the penalty of a term (force per length and area).
 
   Not collective
 
   Input Parameters:
-+ pair - the pair
-- c    - the term
++ pair    - the pair
+. c       - the term
+- penalty - its penalty in some state
 @*/
-PetscReal ContactTermPenalty(const ContactPair *pair, PetscInt c)
+PetscReal ContactTermPenalty(const ContactPair *pair, PetscInt c, PetscReal penalty)
 {
-  const PetscReal penalty = pair->now.penalty[c];
-
   return c < pair->n_nodes ? penalty : PetscMin(penalty, FACE_STIFFEST * pair->automatic);
 }
 

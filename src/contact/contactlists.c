@@ -135,7 +135,8 @@ static PetscErrorCode PairTakeNext(ContactPair *pair)
 /* Pressure of a term at a gap (force per area); negative: the term is open. */
 static PetscReal TermPressure(const ContactPair *pair, PetscInt c, PetscReal gap, PetscReal t)
 {
-  return pair->now.multiplier[c] + pair->now.penalty[c] * (ContactTermOffset(pair, c, t) - gap);
+  return pair->now.multiplier[c] +
+         ContactTermPenalty(pair, c, pair->now.penalty[c]) * (ContactTermOffset(pair, c, t) - gap);
 }
 
 /* Largest penetration and largest pressure of the pair at the last residual, over all ranks. */

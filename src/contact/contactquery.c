@@ -62,9 +62,11 @@ static PetscErrorCode Dissipated(Contact contact, PetscReal *energy)
 @*/
 PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
 {
-  PetscInt  count[3] = {0, 0, 0};
-  PetscReal most[5]  = {0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0}; /* penetration, over h, -penalty_min, penalty_max,
-                                                                     force of a term */
+  PetscInt  count[4] = {0, 0, 0, 0}; /* the last one: faces */
+  PetscReal most[7]  = {0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0,
+                        0, 0}; /* penetration, over h, -penalty_min,
+                                  penalty_max, force of a term; penetration of
+                                  faces, over h */
   PetscReal total[3] = {0, 0, 0}, least, dissipated;
   PetscInt  outside;
 
@@ -85,19 +87,27 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
       most[3] = PetscMax(most[3], pair->now.penalty[c]);
       most[4] = PetscMax(most[4], ContactTermForce(pair, c));
     }
+    for (PetscInt c = pair->n_nodes; c < pair->n; c++) {
+      const PetscReal penetration = ContactTermOffset(pair, c, pair->t) - pair->now.gap[c];
+
+      if (pair->now.status[c] != CONTACT_CLOSED) continue;
+      count[3]++;
+      most[5] = PetscMax(most[5], penetration);
+      most[6] = PetscMax(most[6], penetration / pair->size[c]);
+    }
     for (int d = 0; d < 3; d++) total[d] += pair->total[d];
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 5, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 4, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 7, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, total, 3, MPIU_REAL, MPI_SUM, contact->mesh->comm));
   PetscCall(Dissipated(contact, &dissipated));
   PetscCall(LeastPenetration(contact, most[4], &least));
   PetscCall(CountOutside(contact, &outside));
-  *summary = (ContactSummary){.nodes                  = count[0],
+  *summary = (ContactSummary){.nodes                  = count[0] ? count[0] : count[3],
                               .in                     = count[1],
                               .out                    = count[2],
-                              .max_penetration        = most[0],
-                              .max_penetration_over_h = most[1],
+                              .max_penetration        = count[0] ? most[0] : most[5],
+                              .max_penetration_over_h = count[0] ? most[1] : most[6],
                               .min_penetration        = count[0] && least < PETSC_MAX_REAL ? least : 0,
                               .penalty_min            = -most[2],
                               .penalty_max            = most[3],

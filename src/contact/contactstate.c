@@ -17,7 +17,8 @@
 PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, PetscBool friction, ContactState *state)
 {
   PetscFunctionBeginUser;
-  state->n = n;
+  state->n        = n;
+  state->friction = friction;
   PetscCall(
     PetscCalloc5(n, &state->penalty, n, &state->status, n, &state->gap, n, &state->offset, n, &state->multiplier));
   for (PetscInt c = 0; c < n; c++) {
@@ -47,7 +48,7 @@ PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to)
   PetscCall(PetscArraycpy(to->gap, from->gap, from->n));
   PetscCall(PetscArraycpy(to->offset, from->offset, from->n));
   PetscCall(PetscArraycpy(to->multiplier, from->multiplier, from->n));
-  if (from->traction) {
+  if (from->friction) {
     PetscCall(PetscArraycpy(to->traction, from->traction, 3 * from->n));
     PetscCall(PetscArraycpy(to->slid, from->slid, from->n));
     PetscCall(PetscArraycpy(to->slips, from->slips, from->n));
@@ -145,7 +146,7 @@ PetscErrorCode ContactStateArchive(ContactState *state, Archive archive, const c
   }
   for (PetscInt c = 0; c < state->n; c++) state->status[c] = (ContactStatus)status[c];
   PetscCall(PetscFree(status));
-  if (state->traction) PetscCall(ArchiveFriction(state, archive, name, nodes));
+  if (state->friction) PetscCall(ArchiveFriction(state, archive, name, nodes));
   PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)nodes->sf), &rank));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(updates); k++) all[k] = *updates[k];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, PETSC_STATIC_ARRAY_LENGTH(updates), MPIU_INT, MPI_SUM,

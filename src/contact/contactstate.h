@@ -15,6 +15,7 @@ typedef struct {
   PetscInt       raised, lowered, clamped, light; /* what the adjustment of the penalty did so far, on this rank */
   /* Of friction, NULL without it: traction against the slip (three components, force per area), whether the node slips,
      and the length that it has slipped so far. */
+  PetscBool  friction; /* there is room for these; without nodes they are NULL on a rank */
   PetscReal *traction, *slid;
   PetscBool *slips;
   PetscReal  dissipated; /* energy that friction has taken so far on this rank */

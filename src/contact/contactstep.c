@@ -69,7 +69,7 @@ static PetscErrorCode AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
                                             .pressure  = value.pressure,
                                             .stiffness = pair->stiffness[c],
                                             .penalty   = state.penalty};
-  if (pair->friction)
+  if (pair->friction && !pair->tool) /* the slip against a tool with unknowns is left out */
     PetscCall(FrictionStepTerm(pair, c, t, &step->terms[step->mine].friction, step->tangent[step->mine]));
   step->pair[step->mine]   = p;
   step->term[step->mine++] = c;

@@ -11,7 +11,8 @@ static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscR
   if (!pair->holding) return value->pressure;
   if (pair->touching) return 0;
   return accepted->status[c] == CONTACT_CLOSED
-           ? accepted->multiplier[c] + accepted->penalty[c] * (ContactTermOffset(pair, c, t) - accepted->gap[c])
+           ? accepted->multiplier[c] +
+               ContactTermPenalty(pair, c, accepted->penalty[c]) * (ContactTermOffset(pair, c, t) - accepted->gap[c])
            : 0;
 }
 

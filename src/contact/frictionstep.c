@@ -109,6 +109,7 @@ PetscErrorCode FrictionStepTerm(const ContactPair *pair, PetscInt c, PetscReal t
   FrictionComponents(in.normal, in.along, in.slip, slip);
   friction->law         = in;
   friction->law.kept[0] = friction->law.kept[1] = 0;
+  friction->law.steepness                       = 0; /* the coefficient stays in the step */
   for (int d = 0; d < 3; d++) {
     friction->law.normal[d] = unit[2][d];
     friction->law.along[d]  = unit[0][d];

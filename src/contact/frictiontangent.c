@@ -56,10 +56,13 @@ static PetscErrorCode PointTurns(const ContactPair *pair, PetscInt q, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The face on which slave point q is anchored; NULL: the tool is analytic. */
+/* The face on which slave point q is anchored; NULL: the tool is analytic, or the point came to the master in this step
+   and has no anchor. */
 static const Facet *AnchorFace(const ContactPair *pair, PetscInt q)
 {
-  return pair->master ? &pair->lists->face[pair->friction->at[q]] : NULL;
+  const PetscInt at = pair->friction->at[q];
+
+  return pair->master && at >= 0 ? &pair->lists->face[at] : NULL;
 }
 
 /* Adds the nodes of the anchor's face of slave point q to the list of nodes. */

@@ -13,8 +13,8 @@ static const double largest_kappa = 1e4;
    an element that the projection does not see by their shear alone. One shear modulus more keeps Newton's method from
    long ways there: a bonded bush takes 27 iterations with it, 37 and a failed step without. It costs little accuracy,
    as a solid with this modulus has nu = 0.125 and does not lock; 20 shear moduli cost 2 to 7 times the error. A tenth
-   keeps moderate moduli projected too. Plastic laws have no such part: their mean stress is far below the shear modulus,
-   and where they flow, it would lock. */
+   keeps moderate moduli projected too. Plastic laws have no such part: their mean stress is far below the shear
+   modulus, and where they flow, it would lock. */
 static const double largest_local = 1, local_share = 0.1;
 
 /* Numbers of the state of a point, of any law */
@@ -395,6 +395,8 @@ void ElementDilatation(const KernelCase *kernel, const double *X, const double *
     call.X          = X + part;
     call.u          = u + part;
     call.J          = J;
+    call.part       = part;
+    call.state      = kernel->plastic ? kernel->plastic->state + part : NULL;
     call.multiplier = multiplier ? multiplier + part : NULL;
     call.theta      = theta + part;
     GetBatch(kernel)(&call);
@@ -434,6 +436,8 @@ void ElementFollow(const KernelCase *kernel, const double *X, const double *u, c
     call.X          = X + part;
     call.u          = u + part;
     call.u_0        = reference->u + part;
+    call.part       = part;
+    call.state      = kernel->plastic ? kernel->plastic->state + part : NULL;
     call.J          = J;
     call.multiplier = multiplier + part;
     call.follow     = next + part;

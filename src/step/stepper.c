@@ -362,7 +362,7 @@ static PetscErrorCode LoadStepperBoundStrain(LoadStepper stepper, PetscReal dt, 
   PetscCall(ElasticityPlasticGrowth(model->problem->elasticity, model->u, model->t, &growth));
   if (growth > 0) *most = PetscMax(stepper->size.dt_min, STEPPER_STRAIN * bound / growth * dt);
   *within = (PetscBool)(growth <= bound || dt <= stepper->size.dt_min);
-  if (!*within) stepper->size.dt = PetscMin(STEPPER_STRAIN * dt, *most);
+  if (!*within) stepper->size.dt = PetscMin(STEPPER_CUT * dt, *most); /* a landing may stretch it by STEPPER_STRETCH */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -490,24 +490,24 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   StepperReport *report  = &stepper->report;
   StepSize       size    = ArchiveLoads(archive) ? stepper->size : stepper->start;
   PetscReal      initial = size.initial, dt = size.dt;
-  PetscReal *real[]    = {&initial,       &dt,           &size.beta,     &size.together, &size.shortfall, &size.planned,
-                          &report->taken, &report->left, &report->share, &report->tied,
-                          &size.last_dt,  &size.last_iterations};
-  PetscInt  *integer[] = {&report->steps,
-                          &report->steps_failed,
-                          &report->steps_repeated,
-                          &report->newton_iterations,
-                          &report->newton_accepted,
-                          &report->krylov_iterations,
-                          &report->regathered,
-                          &report->adjusted,
-                          &report->wetted,
-                          &report->turned,
-                          &report->relaxed,
-                          &report->cycles,
-                          &report->cycles_cut,
-                          &report->jumps,
-                          &size.tied};
+  PetscReal     *real[]    = {&initial,        &dt,           &size.beta,     &size.together,
+                              &size.shortfall, &size.planned, &report->taken, &report->left,
+                              &report->share,  &report->tied, &size.last_dt,  &size.last_iterations};
+  PetscInt      *integer[] = {&report->steps,
+                              &report->steps_failed,
+                              &report->steps_repeated,
+                              &report->newton_iterations,
+                              &report->newton_accepted,
+                              &report->krylov_iterations,
+                              &report->regathered,
+                              &report->adjusted,
+                              &report->wetted,
+                              &report->turned,
+                              &report->relaxed,
+                              &report->cycles,
+                              &report->cycles_cut,
+                              &report->jumps,
+                              &size.tied};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));

@@ -148,7 +148,7 @@ PetscBool      ContactFacesServe(const ContactPair *, Scene, int order);
 PetscErrorCode ContactFacesAdd(ContactPair *, const PetscReal turn[]);
 PetscReal      ContactFacesShare(const ContactPair *);
 void           ContactFacesPoints(ContactPair *);
-PetscReal      ContactTermPenalty(const ContactPair *, PetscInt term);
+PetscReal      ContactTermPenalty(const ContactPair *, PetscInt term, PetscReal penalty);
 PetscInt       ContactTermId(const ContactPair *, PetscInt term);
 /* contactterm.c */
 LawState  ContactTermState(const ContactPair *, PetscInt term, PetscReal t, PetscReal most);
