@@ -42,14 +42,6 @@ PetscBool ContactFacesServe(const ContactPair *pair, Scene scene, int order)
                      !contact->friction);
 }
 
-/* Number of the first slave node of a face, on the rank that owns it. */
-static PetscInt FirstNode(const ContactPair *pair, PetscInt f)
-{
-  const SlavePoints slaves = pair->slaves;
-
-  return slaves->nodes[slaves->faces[f].nodes[0]].local;
-}
-
 /*@
   ContactFacesAdd - adds the terms of faces to those of nodes. A face's term is on the rank that owns its first node.
 
@@ -70,9 +62,9 @@ PetscErrorCode ContactFacesAdd(ContactPair *pair, const PetscReal turn[])
   for (PetscInt f = 0; f < slaves->n_faces; f++) {
     PetscInt c = pair->n;
 
-    if (slaves->nodes[slaves->faces[f].nodes[0]].owner != rank) continue;
+    if (!SlavePointIsOwn(slaves, slaves->first[f], rank)) continue;
     pair->face[c - pair->n_nodes] = f;
-    pair->node[c]                 = FirstNode(pair, f);
+    pair->node[c]                 = slaves->nodes[slaves->faces[f].nodes[0]].local;
     pair->size[c]                 = slaves->size[slaves->first[f]];
     pair->turn[c]                 = turn[pair->node[c]];
     pair->area[c]                 = 0;

@@ -48,6 +48,23 @@ static PetscErrorCode Dissipated(Contact contact, PetscReal *energy)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Counts the closed terms from number first to end - 1, and makes most[2] as large as their largest penetration
+   (length) and the largest one over the face size. */
+static PetscInt FindDeepest(const ContactPair *pair, PetscInt first, PetscInt end, PetscReal most[2])
+{
+  PetscInt closed = 0;
+
+  for (PetscInt c = first; c < end; c++) {
+    const PetscReal penetration = ContactTermOffset(pair, c, pair->t) - pair->now.gap[c];
+
+    if (pair->now.status[c] != CONTACT_CLOSED) continue;
+    closed++;
+    most[0] = PetscMax(most[0], penetration);
+    most[1] = PetscMax(most[1], penetration / pair->size[c]);
+  }
+  return closed;
+}
+
 /*@
   ContactSummarise - counts contact and collects penetrations (length), penalties and the total force of all pairs in
   the present state.
@@ -62,11 +79,10 @@ static PetscErrorCode Dissipated(Contact contact, PetscReal *energy)
 @*/
 PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
 {
-  PetscInt  count[4] = {0, 0, 0, 0}; /* the last one: faces */
-  PetscReal most[7]  = {0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0,
-                        0, 0}; /* penetration, over h, -penalty_min,
-                                  penalty_max, force of a term; penetration of
-                                  faces, over h */
+  /* Closed nodes, nodes that closed, that opened, closed faces. */
+  PetscInt count[4] = {0, 0, 0, 0};
+  /* Penetration and that over h, of nodes and of faces; -penalty_min, penalty_max, force of a term. */
+  PetscReal most[7]  = {0, 0, 0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0};
   PetscReal total[3] = {0, 0, 0}, least, dissipated;
   PetscInt  outside;
 
@@ -74,26 +90,14 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
   for (int p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
+    count[0] += FindDeepest(pair, 0, pair->n_nodes, &most[0]);
+    count[3] += FindDeepest(pair, pair->n_nodes, pair->n, &most[2]);
     for (PetscInt c = 0; c < pair->n_nodes; c++) {
-      const PetscReal penetration =
-        pair->now.status[c] == CONTACT_CLOSED ? ContactTermOffset(pair, c, pair->t) - pair->now.gap[c] : 0;
-
-      count[0] += pair->now.status[c] == CONTACT_CLOSED;
       count[1] += pair->now.status[c] == CONTACT_CLOSED && pair->accepted.status[c] == CONTACT_OPEN;
       count[2] += pair->now.status[c] == CONTACT_OPEN && pair->accepted.status[c] == CONTACT_CLOSED;
-      most[0] = PetscMax(most[0], penetration);
-      most[1] = PetscMax(most[1], penetration / pair->size[c]);
-      most[2] = PetscMax(most[2], -pair->now.penalty[c]);
-      most[3] = PetscMax(most[3], pair->now.penalty[c]);
-      most[4] = PetscMax(most[4], ContactTermForce(pair, c));
-    }
-    for (PetscInt c = pair->n_nodes; c < pair->n; c++) {
-      const PetscReal penetration = ContactTermOffset(pair, c, pair->t) - pair->now.gap[c];
-
-      if (pair->now.status[c] != CONTACT_CLOSED) continue;
-      count[3]++;
-      most[5] = PetscMax(most[5], penetration);
-      most[6] = PetscMax(most[6], penetration / pair->size[c]);
+      most[4] = PetscMax(most[4], -pair->now.penalty[c]);
+      most[5] = PetscMax(most[5], pair->now.penalty[c]);
+      most[6] = PetscMax(most[6], ContactTermForce(pair, c));
     }
     for (int d = 0; d < 3; d++) total[d] += pair->total[d];
   }
@@ -101,16 +105,16 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 7, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, total, 3, MPIU_REAL, MPI_SUM, contact->mesh->comm));
   PetscCall(Dissipated(contact, &dissipated));
-  PetscCall(LeastPenetration(contact, most[4], &least));
+  PetscCall(LeastPenetration(contact, most[6], &least));
   PetscCall(CountOutside(contact, &outside));
   *summary = (ContactSummary){.nodes                  = count[0] ? count[0] : count[3],
                               .in                     = count[1],
                               .out                    = count[2],
-                              .max_penetration        = count[0] ? most[0] : most[5],
-                              .max_penetration_over_h = count[0] ? most[1] : most[6],
+                              .max_penetration        = count[0] ? most[0] : most[2],
+                              .max_penetration_over_h = count[0] ? most[1] : most[3],
                               .min_penetration        = count[0] && least < PETSC_MAX_REAL ? least : 0,
-                              .penalty_min            = -most[2],
-                              .penalty_max            = most[3],
+                              .penalty_min            = -most[4],
+                              .penalty_max            = most[5],
                               .outside_window         = outside,
                               .dissipated             = dissipated,
                               .force = PetscSqrtReal(PetscSqr(total[0]) + PetscSqr(total[1]) + PetscSqr(total[2]))};

@@ -105,7 +105,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscCall(PetscArrayzero(pair->total, 3));
   PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
   PetscCall(PairForces(pair, values));
-  if (pair->reaction) PetscCall(PairReaction(pair, values));
+  if (pair->scene->share < 1) PetscCall(PairReaction(pair, values));
   if (pair->friction) PetscCall(FrictionResidual(pair, t, values));
   if (pair->tool) PetscCall(ContactToolForces(pair, values));
   PetscCall(NeighbourListsReduce(pair->lists, values, f));
