@@ -4,6 +4,9 @@
 
 /* A load drives a motion if its force along it is above this part of the sum of the amounts. */
 #define FREE_BODIES_DRIVEN 1e-6
+/* A rotation whose mean motion is below this part of the body's size is about its middle. Less is round-off, as in
+   RigidReduce(). */
+#define FREE_BODIES_CENTRED 1e-9
 
 /* The velocity of a node under a motion of its piece, in units of the piece's size. */
 static void NodeVelocity(FreeBodies b, PetscInt node, const PetscReal *u, const double motion[RIGID_MODES], double v[3])
@@ -105,6 +108,46 @@ PetscErrorCode FreeBodiesGram(FreeBodies b, const PetscReal *u, double gram[])
   for (int k = 0; k < n; k++)
     for (int l = 0; l < n; l++) gram[k * n + l] *= PetscSqr(b->pieces[b->owner[k]].size) / volume[b->owner[k]];
   PetscCall(PetscFree(volume));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes the translations, numbers which[m] of the motions, out of motion k: as much of each as it has in the mean over
+   its body. gram[n][n]: the products of all; factor: Cholesky's factor of those of the translations. */
+static void TakeTranslations(FreeBodies b, int m, const int which[], const double gram[], const double factor[], int k)
+{
+  double part[m > 0 ? m : 1];
+
+  for (int i = 0; i < m; i++) part[i] = gram[which[i] * b->n + k];
+  RigidSolve(m, factor, part);
+  for (int i = 0; i < m; i++)
+    for (int j = 0; j < RIGID_MODES && PetscAbsReal(part[i]) > FREE_BODIES_CENTRED; j++)
+      b->motion[k][j] -= part[i] * b->motion[which[i]][j];
+}
+
+/* Writes the motions of bodies at displacements u. Rotations are about the middle of the body, as far as its
+   translations are free. About a point far away a rotation is nearly a translation, and what holds the one seems to
+   hold the other. */
+PetscErrorCode FreeBodiesCentre(FreeBodies b, const PetscReal *u)
+{
+  const int n = b->n;
+  int       m = 0, *which;
+  double   *gram, *factor;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n, &which, n * n, &gram, n * n, &factor));
+  for (int k = 0, i = 0; k < n; k++) {
+    i = k > 0 && b->owner[k] == b->owner[k - 1] ? i + 1 : 0;
+    PetscCall(PetscArraycpy(b->motion[k], &b->pieces[b->owner[k]].free[i * RIGID_MODES], RIGID_MODES));
+  }
+  PetscCall(FreeBodiesGram(b, u, gram));
+  for (int k = 0; k < n; k++)
+    if (!FreeBodiesTurns(b, k)) which[m++] = k;
+  for (int i = 0; i < m; i++)
+    for (int j = 0; j < m; j++) factor[i * m + j] = gram[which[i] * n + which[j]];
+  RigidCholesky(m, factor, factor);
+  for (int k = 0; k < n; k++)
+    if (FreeBodiesTurns(b, k)) TakeTranslations(b, m, which, gram, factor, k);
+  PetscCall(PetscFree3(which, gram, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -149,6 +149,7 @@ PetscErrorCode FreeBodiesTie(FreeBodies b, const PetscReal *u, PetscReal t, Pets
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
   if (!b->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeBodiesCentre(b, u));
   PetscCall(PetscMalloc2(b->n, &ties, b->n, &tied));
   for (int k = 0; k < b->n; k++)
     tied[k] = begins ? (PetscBool)(b->state[k] == MOTION_TIED) : ContactSpringsHaveTie(springs, k);
@@ -240,6 +241,7 @@ PetscErrorCode FreeBodiesRelease(FreeBodies b, const PetscReal *u, PetscReal sca
   PetscReal *stiffness, *largest;
 
   PetscFunctionBeginUser;
+  PetscCall(FreeBodiesCentre(b, u));
   PetscCall(PetscMalloc3(b->n, &motion, b->n, &stiffness, b->n_pieces, &largest));
   PetscCall(FindMotionStiffness(b, u, ksp, springs, stiffness, largest));
   for (int k = 0; k < b->n; k++) {

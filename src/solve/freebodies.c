@@ -29,17 +29,13 @@ static PetscErrorCode FindStabilised(FreeBodies b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Lists the free motions of the stabilised pieces. */
+/* Counts the free motions of the stabilised pieces and says whose they are. FreeBodiesCentre() writes them. */
 static PetscErrorCode ListMotions(FreeBodies b)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(RIGID_MODES * b->n_pieces, &b->owner, RIGID_MODES * b->n_pieces, &b->motion));
-  for (PetscInt p = 0; p < b->n_pieces; p++) {
-    for (int i = 0; i < b->pieces[p].n_free && b->stabilised[p]; i++) {
-      b->owner[b->n]    = (int)p;
-      b->motion[b->n++] = &b->pieces[p].free[i * RIGID_MODES];
-    }
-  }
+  for (PetscInt p = 0; p < b->n_pieces; p++)
+    for (int i = 0; i < b->pieces[p].n_free && b->stabilised[p]; i++) b->owner[b->n++] = (int)p;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

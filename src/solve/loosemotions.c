@@ -199,6 +199,7 @@ PetscErrorCode FreeBodiesFall(FreeBodies b, const PetscReal *u, PetscReal t, Pet
 
   PetscFunctionBeginUser;
   *falls = PETSC_FALSE;
+  PetscCall(FreeBodiesCentre(b, u));
   PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
   PetscCall(FreeBodiesContactGram(b, u, t, PETSC_TRUE, gram));
   PetscCall(FreeBodiesBasis(b, gram, FREE_BODIES_HELD, &m, free, pivot));
@@ -254,6 +255,7 @@ PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   PetscFunctionBeginUser;
   text[0] = '\0';
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeBodiesCentre(b, u));
   PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
   PetscCall(FreeBodiesContactGram(b, u, t, PETSC_FALSE, gram));
   if (!driven) ScaleTied(b, FREE_BODIES_HIDDEN, gram);

@@ -253,6 +253,7 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
   for (PetscInt it = 0; rests < SEARCH_RESTS && touched < SEARCH_PASSES; it++) {
     PetscReal most = 0, work = 0, wished = 0;
 
+    PetscCall(FreeBodiesCentre(b, u));
     if (ContactHasFriction(b->contact)) PetscCall(ContactGather(b->contact, u, t, t, move));
     PetscCall(Wish(b, u, t, t_loads, move, heavy, &pass, &any));
     if (!any) break;

@@ -1,7 +1,7 @@
 """Bodies that only contact holds start by themselves, from any gap, without failed steps and without a force left in
 springs: a cylinder in a vee, which may roll, a ball in a cone, three balls in a row, a pin in a bore with much clearance,
-a cord that a lid pushes to the floor, a load that comes later. What stays free to move is named. A restart goes on as if
-nothing had happened."""
+a cord that a lid pushes to the floor, a load that comes later. What stays free to move is named, how far a body may
+have come. A restart goes on as if nothing had happened."""
 import math
 import subprocess
 
@@ -39,6 +39,9 @@ def scene(kind, gap, balls=1, geometry="axisymmetric", load="loads=[{volume: bod
 
 # The force of a vee's flank is half the weight; polygons weigh a little less than circles.
 vee = held("vee", (), 30, -math.pi / 2, 0.02, ("'body1': rotation in the plane",))
+far = held("far", ("mesh.parameters.gap=16",), 30, -math.pi / 2, 0.02, ("'body1': rotation in the plane",))
+told = far.summary()["stabilisation"]["held_by_springs"]
+check.holds("far: the vee holds translations", "translation" not in told, told)
 held("cone", scene(1, 0.3), 30, -4 / 3 * math.pi, 0.03)
 held("row", scene(2, 0.7, 3, load="loads=[{surface: up3, traction: [0, -1]}]"), 40, -2 * math.pi, 0.03)
 held("pin", scene(3, 0.3, geometry="plane_strain"), 30, -math.pi, 0.03, ("'body1': rotation in the plane",))

@@ -2,7 +2,8 @@
    motions that nothing holds, bodyties.c ties some of these, and rigidsearch.c moves bodies into contact.
 
    Coordinates a[n] of all free motions together describe how the bodies move: those of a piece times its motions are a
-   motion of six numbers (rigidkernel.h), in units of the piece's size. */
+   motion of six numbers (rigidkernel.h), in units of the piece's size. A rotation turns a body about its middle, where
+   it is now, as far as its translations are free: FreeBodiesCentre() comes before all others. */
 #pragma once
 #include "solve/freebodies.h"
 
@@ -19,6 +20,8 @@ enum { FREE_BODIES_TEXT = 1000 };
 /* A motion that was never tied or is loose again, one that is tied, one that contact has come to hold. */
 typedef enum { MOTION_CONTACT = -1, MOTION_PLAIN, MOTION_TIED } MotionState;
 
+typedef double RigidMotion[RIGID_MODES];
+
 struct _n_FreeBodies {
   Mesh             mesh;
   Scene            scene;
@@ -30,7 +33,7 @@ struct _n_FreeBodies {
   const PetscInt  *piece;      /* of each local node */
   PetscBool       *stabilised; /* n_pieces */
   int              n, *owner;  /* free motions of the stabilised pieces, and their pieces */
-  const double   **motion;     /* n: six numbers each */
+  RigidMotion     *motion;     /* n */
   PetscReal       *weight;     /* n_nodes: volume of this rank's cells at the node */
   PetscReal       *stiffness;  /* n_pieces: of the elements below one slave node (force per length) */
   PetscInt        *cell;       /* n_pieces: local cell at the middle of the piece, or -1 */
@@ -40,6 +43,7 @@ struct _n_FreeBodies {
 };
 
 /* bodymotions.c */
+PetscErrorCode FreeBodiesCentre(FreeBodies, const PetscReal *u);
 void           FreeBodiesRow(FreeBodies, PetscInt node, const PetscReal *u, int d, int first, int m, double row[]);
 void           FreeBodiesPieceMotion(FreeBodies, PetscInt piece, const double a[], double q[RIGID_MODES]);
 void           FreeBodiesVelocity(FreeBodies, const PetscReal *u, const double a[], PetscReal *du);
