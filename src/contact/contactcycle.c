@@ -106,7 +106,7 @@ static PetscErrorCode TakeSet(ContactCycle cycle, PetscInt slot)
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++) {
-      const uint64_t  id = (uint64_t)ContactTermId(pair, c) * (uint64_t)contact->n_pairs + (uint64_t)p;
+      const uint64_t  id    = (uint64_t)ContactTermId(pair, c) * (uint64_t)contact->n_pairs + (uint64_t)p;
       const PetscBool slips = (PetscBool)(pair->friction && pair->now.slips[c]);
 
       *state = pair->now.status[c] != CONTACT_CLOSED ? TERM_OPEN : slips ? TERM_SLIPS : TERM_STICKS;
@@ -162,9 +162,45 @@ PetscErrorCode ContactCycleLook(ContactCycle cycle, PetscReal residual, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether term i of this rank, of all pairs, changes within the last cycle. */
+static PetscBool Changes(ContactCycle cycle, PetscInt period, PetscInt i)
+{
+  for (PetscInt back = 1; back < period; back++)
+    if (cycle->state[Slot(cycle, back) * cycle->n + i] != cycle->state[Slot(cycle, 0) * cycle->n + i])
+      return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Gathers the terms of all ranks that change within the last cycle: twice the pair, plus 1 for terms of faces, and
+   gmsh's tag of the node or face. */
+static PetscErrorCode GatherChanges(ContactCycle cycle, PetscInt period, GatherTable *table)
+{
+  const Contact contact = cycle->contact;
+  PetscReal    *rows;
+  PetscInt      n = 0, i = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * cycle->n, &rows));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt c = 0; c < pair->n; c++, i++) {
+      const PetscBool face = (PetscBool)(c >= pair->n_nodes);
+
+      if (!Changes(cycle, period, i)) continue;
+      rows[2 * n]       = 2 * p + (face ? 1 : 0);
+      rows[2 * n++ + 1] = face ? (PetscReal)pair->slaves->faces[pair->face[c - pair->n_nodes]].tag
+                               : (PetscReal)contact->mesh->node_tag[pair->node[c]];
+    }
+  }
+  PetscCall(GatherTableCreate(contact->mesh->comm, 2, n, rows, table));
+  PetscCall(PetscFree(rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  ContactCycleLocate - writes the nodes (gmsh's tags) that come and go in a cycle, such as "the contact set repeats
-  every 3 iterations, 2 nodes come and go: node 17 of 'crown', node 21 of 'crown'".
+  ContactCycleLocate - writes the nodes and faces (gmsh's tags) that come and go in a cycle, such as "the contact set
+  repeats every 3 iterations, 2 nodes come and go: node 17 of 'crown', node 21 of 'crown'".
 
   Collective
 
@@ -178,35 +214,24 @@ PetscErrorCode ContactCycleLook(ContactCycle cycle, PetscReal residual, PetscInt
 @*/
 PetscErrorCode ContactCycleLocate(ContactCycle cycle, PetscInt period, char *text, size_t size)
 {
-  const Contact contact = cycle->contact;
-  PetscReal    *rows;
-  PetscInt      n = 0, i = 0;
-  GatherTable   table;
-  size_t        used;
+  PetscInt    faces     = 0;
+  char        count[64] = "";
+  GatherTable table;
+  size_t      used;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * cycle->n, &rows));
-  for (int p = 0; p < contact->n_pairs; p++) {
-    for (PetscInt c = 0; c < contact->pairs[p].n; c++, i++) {
-      PetscBool changes = PETSC_FALSE;
-
-      for (PetscInt back = 1; back < period; back++)
-        changes = (PetscBool)(changes || cycle->state[Slot(cycle, back) * cycle->n + i] !=
-                                           cycle->state[Slot(cycle, 0) * cycle->n + i]);
-      if (!changes) continue;
-      rows[2 * n]       = p;
-      rows[2 * n++ + 1] = contact->mesh->node_tag[contact->pairs[p].node[c]];
-    }
-  }
-  PetscCall(GatherTableCreate(contact->mesh->comm, 2, n, rows, &table));
-  PetscCall(PetscFree(rows));
+  PetscCall(GatherChanges(cycle, period, &table));
+  for (PetscInt k = 0; k < table.n; k++) faces += (PetscInt)table.row[2 * k] % 2;
+  if (faces) PetscCall(PetscSNPrintf(count, sizeof(count), " and %" PetscInt_FMT " faces", faces));
   PetscCall(PetscSNPrintf(
-    text, size, "the contact set repeats every %" PetscInt_FMT " iterations, %" PetscInt_FMT " nodes come and go:",
-    period, table.n));
+    text, size, "the contact set repeats every %" PetscInt_FMT " iterations, %" PetscInt_FMT " nodes%s come and go:",
+    period, table.n - faces, count));
   for (PetscInt k = 0; k < PetscMin(table.n, CYCLE_NAMED); k++) {
+    const int kind = (int)table.row[2 * k];
+
     PetscCall(PetscStrlen(text, &used));
-    PetscCall(PetscSNPrintf(text + used, size - used, "%s node %.0f of '%s'", k ? "," : "",
-                            (double)table.row[2 * k + 1], ContactPairName(contact, (int)table.row[2 * k])));
+    PetscCall(PetscSNPrintf(text + used, size - used, "%s %s %.0f of '%s'", k ? "," : "", kind % 2 ? "face" : "node",
+                            (double)table.row[2 * k + 1], ContactPairName(cycle->contact, kind / 2)));
   }
   PetscCall(GatherTableDestroy(&table));
   PetscFunctionReturn(PETSC_SUCCESS);

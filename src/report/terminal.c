@@ -7,6 +7,10 @@
 #include <math.h>
 #include <stdio.h>
 
+/* Ties that hold more than this part of the forces are told with what lowers that. It is a tenth of the error that a
+   run without any settings may have. */
+#define TERMINAL_TIED 1e-3
+
 enum {
   EFFECTS_SIZE  = 2 * PETSC_MAX_PATH_LEN, /* characters of the list of a run's effects */
   DURATION_SIZE = 32                      /* characters of a duration */
@@ -454,8 +458,11 @@ static void PrintFreeBodies(const RunFigures *figures)
 
   if (figures->moved[0]) printf("moved into contact, without force: %s\n", figures->moved);
   if (figures->loose[0])
-    printf("held where it is, as neither contact nor a load acts that way: %s; by up to %.2g of the forces\n",
-           figures->loose, (double)report->tied);
+    printf("held where it is, as neither contact nor a load acts that way: %s; by up to %.2g of the forces%s\n",
+           figures->loose, (double)report->tied,
+           report->tied > TERMINAL_TIED ? ", which finer faces where they touch lower, unless a load acts a little "
+                                          "that way"
+                                        : "");
   if (figures->free_bodies)
     printf("weak springs of free bodies: relaxed %lld times, hold %.2g of the forces at the end\n",
            (long long)report->relaxed, (double)report->share);

@@ -11,7 +11,8 @@ BLOCK = ("mesh.parameters={kind: 1, fine: 0.1}", "geometry=plane_strain",
          "loads=[{surface: top, traction: [0, '-20*(1 + 0.03*x)']}]",
          "contact=[{name: contact, slave: skin, master: {plane: {point: [0, -0.01], normal: [0, 1]}}}]")
 
-crossed = run(args, SCENE, out="crossed").summary()
+fine = run(args, SCENE, out="crossed")
+crossed = fine.summary()
 held = crossed["stabilisation"]
 check.holds("crossed: no failed step", crossed["steps_failed"] == 0, str(crossed["steps_failed"]))
 check.holds("crossed: iterations", crossed["newton_iterations"] <= 5 * crossed["steps"],
@@ -22,6 +23,12 @@ check.holds("crossed: names both translations", held["held_by_springs"].count("t
             held["held_by_springs"])
 check.holds("crossed: ties hold what unevenness asks for", held["held_force_share"] < 5e-3,
             str(held["held_force_share"]))
+LOWER = "which finer faces where they touch lower"
+check.holds("crossed: that is little", LOWER not in fine.text, str(held["held_force_share"]))
+crossed = run(args, SCENE, out="coarse", overrides=("mesh.parameters.fine=0.6",))
+held = crossed.summary()["stabilisation"]["held_force_share"]
+check.holds("coarse: ties hold more, and the last screen says what lowers it", held > 1e-3 and LOWER in crossed.text,
+            str(held))
 
 block = run(args, SCENE, out="block", overrides=BLOCK).summary()
 held = block["stabilisation"]
