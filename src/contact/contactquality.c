@@ -34,8 +34,21 @@ static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Overlap before any load that the surfaces' own shapes explain (length): the facets' sagitta, and the distance between
-   the master's facets and its smooth surface. */
+/* Distance of a slave point from its face (length): the offset that brings it onto the surface through the nodes around
+   it. Where the curvature jumps, at the end of a radius, that surface swings by as much. */
+static PetscReal PointOffset(const ContactPair *pair, PetscInt q)
+{
+  const int dim = pair->lists->dim;
+  PetscReal on_face[3], sum = 0;
+
+  SlavePointsPosition(pair->slaves, q, on_face);
+  for (int d = 0; d < dim; d++)
+    sum += PetscSqr(pair->lists->slave_X[q * dim + d] + pair->lists->slave_u[q * dim + d] - on_face[d]);
+  return PetscSqrtReal(sum);
+}
+
+/* Overlap before any load that the surfaces' own shapes explain (length): the facets' sagitta, the offsets of the slave
+   points, and the distance between the master's facets and its smooth surface. */
 static PetscErrorCode TermOverlapExplained(const ContactPair *pair, PetscInt c, PetscReal *explained)
 {
   PetscReal apart = 0;
@@ -46,7 +59,7 @@ static PetscErrorCode TermOverlapExplained(const ContactPair *pair, PetscInt c, 
     PetscBool      found;
 
     if (!pair->lists->fit_n[q] || PetscIsNanReal(pair->point_gap[q])) continue;
-    apart = PetscMax(apart, pair->lists->residual[q]);
+    apart = PetscMax(apart, PetscMax(pair->lists->residual[q], PointOffset(pair, q)));
     PetscCall(ContactPointEvaluate(pair, pair->facets, pair->lists, q, -1, SMOOTHER_GAP, &found));
     if (found) apart = PetscMax(apart, PetscAbsReal(pair->work->result.gap - pair->point_gap[q]));
   }
