@@ -66,7 +66,8 @@ PenaltyError ModelPenaltyError(Model model, int pair)
   return model->work->penalty_error[pair];
 }
 
-/* The derivative of the free residual to ln s at the trial state. The residual is linear in s. */
+/* The derivative of the free residual to ln s at the trial state. The residual is linear in s where what slips goes on
+   slipping. Friction that could choose would stick under twice the pressures. */
 static PetscErrorCode ModelPenaltyForces(Model model, Vec forces)
 {
   const Problem problem = model->problem;
@@ -86,7 +87,8 @@ static PetscErrorCode ModelPenaltyForces(Model model, Vec forces)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -du/d(ln s) of the free displacements at the trial state. *known: the linear solve succeeded. */
+/* -du/d(ln s) of the free displacements at the trial state, whose contact and slip are held. *known: the linear solve
+   succeeded. */
 static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known)
 {
   Vec forces;
@@ -94,6 +96,7 @@ static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &forces));
+  PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, PETSC_FALSE));
   PetscCall(ModelPenaltyForces(model, forces));
   PetscCall(LinearSolverRenew(model->work->solver));
   PetscCall(LinearSolverSetStart(model->work->solver, 0));
@@ -102,6 +105,7 @@ static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known
   PetscCall(KSPSetOperators(ksp, model->problem->A, model->problem->P));
   PetscCall(KSPSolve(ksp, forces, slope));
   *known = (PetscBool)!LinearCheckLost(model->linear);
+  PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(VecDestroy(&forces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
