@@ -19,7 +19,7 @@ PetscErrorCode FrictionCreate(ContactPair *pair)
   PetscCall(PetscNew(&f));
   pair->friction = f;
   f->stiffness = pair->scene->stick_penalty > 0 ? pair->scene->stick_penalty : PetscMin(pair->initial, pair->automatic);
-  PetscCall(PetscCalloc5(q, &f->face, 2 * q, &f->xi, 3 * q, &f->place, q, &f->at, 3 * q, &f->force));
+  PetscCall(PetscCalloc6(q, &f->face, 2 * q, &f->xi, 3 * q, &f->off, 3 * q, &f->place, q, &f->at, 3 * q, &f->force));
   PetscCall(PetscCalloc4(q, &f->foot, q, &f->facet, q, &f->known, q, &f->first));
   PetscCall(PetscCalloc5(n, &f->anchored, 2 * n, &f->kept, 2 * n, &f->heading, n, &f->began, n, &f->axis));
   PetscCall(PetscCalloc4(3 * n, &f->nodal, n, &f->elastic, 3 * n, &f->traction, n, &f->status));
@@ -35,7 +35,7 @@ PetscErrorCode FrictionDestroy(Friction *friction)
 
   PetscFunctionBeginUser;
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree5(f->face, f->xi, f->place, f->at, f->force));
+  PetscCall(PetscFree6(f->face, f->xi, f->off, f->place, f->at, f->force));
   PetscCall(PetscFree4(f->foot, f->facet, f->known, f->first));
   PetscCall(PetscFree5(f->anchored, f->kept, f->heading, f->began, f->axis));
   PetscCall(PetscFree4(f->nodal, f->elastic, f->traction, f->status));
@@ -188,35 +188,25 @@ static void ToolPlace(const ContactPair *pair, PetscReal t, const PetscReal x[3]
   }
 }
 
-/* Anchors slave point q where it is. */
-static PetscErrorCode AnchorPoint(ContactPair *pair, PetscInt q, PetscReal t)
+/* The frame of the face on which slave point q is anchored, at its anchor. */
+void FrictionAnchorFrame(const ContactPair *pair, PetscInt q, FrictionFrame *frame)
 {
-  Friction            f = pair->friction;
-  const FrictionFoot *foot;
-  PetscBool           found = PETSC_FALSE;
+  const NeighbourLists lists = pair->lists;
+  const Facet         *face  = &lists->face[pair->friction->at[q]];
+  const int            dim   = lists->dim;
+  PetscReal            N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2], tangent[2][3] = {{0, 0, 0}, {0, 0, dim == 2}};
 
-  PetscFunctionBeginUser;
-  f->face[q] = f->at[q] = -1;
-  if (pair->factor[q] == 0 || PetscIsNanReal(pair->point_gap[q])) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!pair->master) {
-    PetscReal X[3], u[3];
-
-    PlainPlace(pair, q, X, u);
-    for (int d = 0; d < 3; d++) X[d] += u[d] + (d < pair->mesh->dim ? pair->mesh->centre[d] : 0);
-    ToolPlace(pair, t, X, &f->place[3 * q]);
-    f->face[q] = 0;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
-  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
-  f->face[q] = pair->lists->facet[pair->lists->facet_ptr[q] + f->facet[q]].tag;
-  f->at[q]   = NeighbourListsFindFace(pair->lists, f->face[q]);
-  for (int a = 0; a < 2; a++) f->xi[2 * q + a] = foot->xi[a];
-  PetscFunctionReturn(PETSC_SUCCESS);
+  ElementShape(face->type, &pair->friction->xi[2 * q], N, dN, NULL);
+  for (int k = 0; k < ElementGet(face->type)->nodes; k++)
+    for (int a = 0; a < dim - 1; a++)
+      for (int d = 0; d < dim; d++)
+        tangent[a][d] +=
+          dN[k * (dim - 1) + a] * (lists->point_X[face->nodes[k] * dim + d] + lists->point_u[face->nodes[k] * dim + d]);
+  FrictionFrameMake(tangent, frame);
 }
 
-/* Adds scale times the distance from the anchor of slave point q to the point. */
-static void AddSlip(const ContactPair *pair, PetscInt q, PetscReal t, PetscReal scale, PetscReal slip[3])
+/* The distance from the anchor of slave point q to the point. */
+static void AnchorDistance(const ContactPair *pair, PetscInt q, PetscReal t, PetscReal v[3])
 {
   const NeighbourLists lists = pair->lists;
   const Friction       f     = pair->friction;
@@ -238,7 +228,53 @@ static void AddSlip(const ContactPair *pair, PetscInt q, PetscReal t, PetscReal 
     MotionPlace(&pair->scene->motion, t, &f->place[3 * q], x);
     for (int d = 0; d < dim; d++) X[d] -= x[d] - pair->mesh->centre[d];
   }
-  for (int d = 0; d < dim; d++) slip[d] += scale * (X[d] + u[d]);
+  for (int d = 0; d < 3; d++) v[d] = d < dim ? X[d] + u[d] : 0;
+}
+
+/* Adds scale times the slip of slave point q: its distance to its anchor, less what turns with the master's face. */
+static void AddSlip(const ContactPair *pair, PetscInt q, PetscReal t, PetscReal scale, PetscReal slip[3])
+{
+  PetscReal     v[3], off[3] = {0, 0, 0};
+  FrictionFrame frame;
+
+  AnchorDistance(pair, q, t, v);
+  if (pair->master) {
+    FrictionAnchorFrame(pair, q, &frame);
+    FrictionFrameCarry(&frame, &pair->friction->off[3 * q], off);
+  }
+  for (int d = 0; d < 3; d++) slip[d] += scale * (v[d] - off[d]);
+}
+
+/* Anchors slave point q where it is. */
+static PetscErrorCode AnchorPoint(ContactPair *pair, PetscInt q, PetscReal t)
+{
+  Friction            f = pair->friction;
+  const FrictionFoot *foot;
+  PetscBool           found = PETSC_FALSE;
+  FrictionFrame       frame;
+  PetscReal           v[3];
+
+  PetscFunctionBeginUser;
+  f->face[q] = f->at[q] = -1;
+  if (pair->factor[q] == 0 || PetscIsNanReal(pair->point_gap[q])) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!pair->master) {
+    PetscReal X[3], u[3];
+
+    PlainPlace(pair, q, X, u);
+    for (int d = 0; d < 3; d++) X[d] += u[d] + (d < pair->mesh->dim ? pair->mesh->centre[d] : 0);
+    ToolPlace(pair, t, X, &f->place[3 * q]);
+    f->face[q] = 0;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  f->face[q] = pair->lists->facet[pair->lists->facet_ptr[q] + f->facet[q]].tag;
+  f->at[q]   = NeighbourListsFindFace(pair->lists, f->face[q]);
+  for (int a = 0; a < 2; a++) f->xi[2 * q + a] = foot->xi[a];
+  AnchorDistance(pair, q, t, v);
+  FrictionAnchorFrame(pair, q, &frame);
+  FrictionFrameTake(&frame, v, &f->off[3 * q]);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The direction that turns with the master at the anchor of slave point q: a tangent of the face, or an axis of the
@@ -321,6 +357,19 @@ static int LeastAlong(const ContactPair *pair, PetscReal t, const PetscReal norm
   return best;
 }
 
+/* The components of a term's accepted traction along its tangents. New lists may have turned the normal a little: the
+   traction turns with it and keeps its length. */
+static void AcceptedComponents(const ContactPair *pair, PetscInt c, const FrictionInput *in, PetscReal component[2])
+{
+  const PetscReal *traction = &pair->accepted.traction[3 * c];
+  PetscReal        length   = 0, left;
+
+  FrictionComponents(in->normal, in->along, traction, component);
+  left = PetscSqrtReal(PetscSqr(component[0]) + PetscSqr(component[1]));
+  for (int d = 0; d < 3; d++) length += PetscSqr(traction[d]);
+  for (int k = 0; k < 2 && left > 0; k++) component[k] *= PetscSqrtReal(length) / left;
+}
+
 /* Begins the step of a term: what its accepted traction says besides the slip is kept. */
 static PetscErrorCode BeginTerm(ContactPair *pair, PetscInt c, PetscReal t)
 {
@@ -338,7 +387,7 @@ static PetscErrorCode BeginTerm(ContactPair *pair, PetscInt c, PetscReal t)
   }
   opening     = ContactTermGap(pair, pair->factor, pair->point_gap, c, NULL) - LawOnsetGap(&state);
   f->began[c] = pair->accepted.status[c] == CONTACT_OPEN && opening > 0 ? opening : 0;
-  FrictionComponents(in.normal, in.along, &pair->accepted.traction[3 * c], traction);
+  AcceptedComponents(pair, c, &in, traction);
   FrictionComponents(in.normal, in.along, in.slip, slip);
   for (int k = 0; k < 2; k++) {
     f->kept[2 * c + k]    = traction[k] / f->stiffness - slip[k];

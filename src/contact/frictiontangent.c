@@ -189,6 +189,25 @@ static PetscErrorCode AddVariations(const TermBlock *b, PetscReal *rows, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The derivatives of the traction by the tangents of the face on which slave point q is anchored: what is off the face
+   turns with it. */
+static void TurnOff(const ContactPair *pair, PetscInt q, const FrictionTraction *by, PetscReal turn[2][3][3])
+{
+  FrictionFrame frame;
+  PetscReal     off[2][3][3];
+
+  FrictionAnchorFrame(pair, q, &frame);
+  FrictionFrameVary(&frame, &pair->friction->off[3 * q], off);
+  for (int a = 0; a < 2; a++) {
+    for (int i = 0; i < 3; i++) {
+      for (int j = 0; j < 3; j++) {
+        turn[a][i][j] = 0;
+        for (int d = 0; d < 3; d++) turn[a][i][j] -= by->by_slip[i][d] * off[a][d][j];
+      }
+    }
+  }
+}
+
 /* Adds the derivative of the slip of slave point q, times scale, and of the direction along. */
 static void AddSlipColumns(const TermBlock *b, PetscInt q, PetscReal scale, const FrictionTraction *by, PetscBool along)
 {
@@ -197,10 +216,11 @@ static void AddSlipColumns(const TermBlock *b, PetscInt q, PetscReal scale, cons
   const PetscInt    *node;
   const PetscReal   *S;
   const PetscInt     n = FrictionOwnNodes(pair, q, &node, &S);
-  PetscReal          N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2];
+  PetscReal          N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2], turn[2][3][3];
 
   for (PetscInt a = 0; a < n; a++) AddColumns(b, b->by_node, node[a], scale * S[a], by->by_slip, NULL);
   if (!face) return;
+  TurnOff(pair, q, by, turn);
   ElementShape(face->type, &pair->friction->xi[2 * q], N, dN, NULL);
   for (int k = 0; k < ElementGet(face->type)->nodes; k++) {
     PetscReal sign[3];
@@ -208,6 +228,7 @@ static void AddSlipColumns(const TermBlock *b, PetscInt q, PetscReal scale, cons
 
     FrictionNodeSign(pair, face->nodes[k], &at, sign);
     AddColumns(b, b->by_node, at, -scale * N[k], by->by_slip, sign);
+    for (int a = 0; a < b->dim - 1; a++) AddColumns(b, b->by_node, at, scale * dN[k * (b->dim - 1) + a], turn[a], sign);
     if (along) AddColumns(b, b->by_node, at, dN[k * (b->dim - 1)], by->by_along, sign);
   }
 }

@@ -203,6 +203,7 @@ PetscErrorCode FrictionCreate(ContactPair *);
 PetscErrorCode FrictionDestroy(Friction *);
 void           FrictionForget(const ContactPair *);
 PetscErrorCode FrictionBegin(ContactPair *, PetscReal t);
+void           FrictionAnchorFrame(const ContactPair *, PetscInt q, FrictionFrame *);
 PetscErrorCode FrictionTerm(const ContactPair *, PetscInt term, PetscReal t, FrictionInput *, FrictionTraction *,
                             PetscBool *acts);
 PetscBool      FrictionTermTakes(const ContactPair *, PetscInt k);

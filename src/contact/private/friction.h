@@ -1,14 +1,17 @@
 /* What a pair with friction holds besides its state. Nothing of it is state: FrictionBegin() makes it at the accepted
    displacements, when a step begins.
 
-   The anchor of a slave point is where it was on the master then, a place on a face or in an analytic tool. The slip
-   of a node is the weighted sum over its points of the distances to their anchors. Anchors stay in a step, also
-   through new lists, in which their faces are found by tags. What the accepted tractions say besides is kept as
-   lengths, see FrictionInput. So the accepted state of friction is the tractions alone, and a step that is taken back,
-   or goes on after a restart on other ranks, begins with the same anchors. */
+   The anchor of a slave point is where it was on the master then, a place on a face or in an analytic tool. The slave
+   point is off the face by penetration and by the sagitta of the faces. This distance turns with the face. The slip of
+   a node is the weighted sum over its points of their other distances to their anchors, so that it is 0 then, and stays
+   so where slave and master turn together, whatever the fit makes of the normal. Anchors stay in a step, also through
+   new lists, in which their faces are found by tags. What the accepted tractions say besides is kept as lengths, see
+   FrictionInput. So the accepted state of friction is the tractions alone, and a step that is taken back, or goes on
+   after a restart on other ranks, begins with the same anchors. */
 #pragma once
 #include "base/petsccompat.h"
 #include "frictionfoot.h"
+#include "frictionframe.h"
 #include "contact/frictionlaw.h"
 
 typedef struct {
@@ -16,6 +19,7 @@ typedef struct {
   /* Of each slave point: its anchor. */
   long      *face;  /* tag; -1: it has none */
   PetscReal *xi;    /* 2: on that face */
+  PetscReal *off;   /* 3: from there to the slave point, in the face's frame (length) */
   PetscReal *place; /* 3: in an analytic tool, at its first position (length, in the scene's coordinates) */
   PetscInt  *at;    /* number of the face in the lists in force; -1: not in them */
   /* Of each slave point: its foot at the last projection. */
