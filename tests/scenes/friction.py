@@ -183,7 +183,7 @@ def rings():
 def hold():
     """A die is drawn over a block, rests for ten steps and is drawn on. Nothing changes while it rests: the traction
     that is kept is the one that was. With fits the first two steps of the rest have new lists."""
-    for name, settled in (("facet", 1), ("diffuse", 3)):
+    for name, settled in (("facet", 1), ("diffuse", 0)):
         finished = run(args, SCENES / "die.yaml", out=name, overrides=[
             "loads.0.history=[[0, 0], [0.1, 1], [1, 1]]", "loads.1.ux=1.5",
             "loads.1.history=[[0, 0], [0.1, 0], [0.3, 1], [0.8, 1], [1, 2]]",
