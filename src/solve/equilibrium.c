@@ -244,16 +244,37 @@ static PetscBool ModelAsked(Model model, PetscReal t)
   return asked;
 }
 
+/* Says whether lists are to settle at the solution: friction may rest there, or the load ends and all surfaces in
+   contact stick. Collective. */
+static PetscErrorCode ModelRests(Model model, PetscBool *rests)
+{
+  const PetscBool friction = ContactHasFriction(model->contact);
+
+  PetscFunctionBeginUser;
+  *rests = (PetscBool)(friction && (model->t >= 1 || ModelAsked(model, model->t)));
+  for (int p = 0; *rests && model->t >= 1 && p < ContactPairs(model->contact); p++) {
+    ContactFriction state;
+
+    PetscCall(ContactPairFriction(model->contact, p, &state));
+    *rests = (PetscBool)(state.slipping == 0);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Part of the usual drift by which offsets may lag after the solve and so many updates of them, and gaps with friction.
  */
-static PetscReal ModelLag(Model model, PetscInt times)
+static PetscErrorCode ModelLag(Model model, PetscInt times, PetscReal *lag)
 {
-  if (ContactHasFriction(model->contact) && (model->t >= 1 || ModelAsked(model, model->t)))
-    return times < EQUILIBRIUM_MAX_REST_UPDATES ? EQUILIBRIUM_LAG_AT_REST : 1;
-  if (times >= EQUILIBRIUM_MAX_OFFSET_UPDATES) return 1;
-  if (model->t >= 1) return EQUILIBRIUM_LAG_AT_END;
-  if (SceneBreaks(model->scene, model->t)) return EQUILIBRIUM_LAG_AT_BREAK;
-  return ContactHasFriction(model->contact) ? EQUILIBRIUM_LAG_SLIDING : 1;
+  PetscBool rests;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelRests(model, &rests));
+  *lag = ContactHasFriction(model->contact) ? EQUILIBRIUM_LAG_SLIDING : 1;
+  if (SceneBreaks(model->scene, model->t)) *lag = EQUILIBRIUM_LAG_AT_BREAK;
+  if (model->t >= 1) *lag = EQUILIBRIUM_LAG_AT_END;
+  if (rests) *lag = EQUILIBRIUM_LAG_AT_REST;
+  if (times >= (rests ? EQUILIBRIUM_MAX_REST_UPDATES : EQUILIBRIUM_MAX_OFFSET_UPDATES)) *lag = 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Solves with frozen contact lists until the lists hold at the solution. */
@@ -262,6 +283,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
   ModelWork *work = model->work;
   PetscBool  hold = PETSC_FALSE, lost = PETSC_FALSE;
   PetscInt   times = 0;
+  PetscReal  lag   = 1;
 
   PetscFunctionBeginUser;
   work->renewed = 0;
@@ -270,8 +292,8 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     PetscCall(ModelNewton(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     work->renewed += work->left;
-    PetscCall(ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left,
-                                ModelLag(model, times), &hold));
+    PetscCall(ModelLag(model, times, &lag));
+    PetscCall(ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left, lag, &hold));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
     if (lost) report->result = SOLVE_LOST;
     if (hold || lost) break;

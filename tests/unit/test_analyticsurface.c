@@ -80,12 +80,13 @@ static double Difference(const double value[4], double h)
 static void CheckVariations(const AnalyticSurface *master, int dim)
 {
   const double   h = 1e-4;
-  double         X[3], u[3];
+  double         x[3], X[3], u[3];
   AnalyticResult out, step;
 
+  for (int c = 0; c < 3; c++) x[c] = c < dim ? Random(0.5, 2) : 0;
   for (int c = 0; c < 3; c++) {
-    X[c] = c < dim ? Random(0.5, 1) : 0;
-    u[c] = c < dim ? Random(0, 1) : 0;
+    u[c] = c < dim ? 0.3 * x[(c + 1) % dim] : 0;
+    X[c] = x[c] - u[c];
   }
   assert_true(AnalyticSurfaceEvaluate(master, dim, X, u, &out));
   for (int c = 0; c < dim; c++) {
