@@ -411,8 +411,9 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = next;
-    PetscBool    agrees = PETSC_TRUE;
+    PetscBool    agrees = PETSC_TRUE, late = PETSC_FALSE;
 
+    if (pair->friction) PetscCall(FrictionAnchorLate(pair, t, &late));
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(OffsetsTake(pair->slave_offsets, u, t));
     if (pair->master_offsets) PetscCall(OffsetsTake(pair->master_offsets, u, t));
@@ -422,7 +423,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
     ContactNoteJumps(pair, motion);
     PetscCall(PairNextAgrees(contact, pair, t, lag, &agrees));
     pair->fresh = PETSC_FALSE;
-    agree       = agree && agrees;
+    agree       = agree && agrees && !late;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;

@@ -31,10 +31,11 @@ typedef struct {
   PetscInt  *first, turns_used, turns_room;
   PetscReal *turns;
   /* Of each term, since the step began. */
-  PetscBool *anchored; /* all of its points have anchors */
+  PetscBool *anchored; /* some of its points have anchors */
   PetscReal *kept;     /* 2 lengths */
   PetscReal *heading;  /* 2 components of the slip's direction then; 0 where the node did not slip */
   PetscReal *began;    /* its opening, where it was open (length) */
+  PetscInt  *guide;    /* the slave point whose anchor gives the tangents; -1: none */
   int       *axis;     /* of an analytic tool: that which gives the tangents */
   PetscReal *force;    /* 3 for each slave point, in the last residual */
   PetscReal *nodal;    /* 3 for each term: force on the slave node, that of its neighbours on shared faces included */
