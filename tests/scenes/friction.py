@@ -9,7 +9,8 @@ from harness import Check, arguments, run, SCENES
 RUNS = SCENES.parent.parent / "runs"
 MU = 0.3
 
-args = arguments(("part", "what is shown", ("flat", "bounds", "circle", "shear", "belt", "turn", "bar", "rings", "hold", "die", "paper")))
+args = arguments(("part", "what is shown", ("flat", "bounds", "circle", "shear", "belt", "turn", "bar", "rings", "hold",
+                                             "stiff", "ironing", "die", "paper")))
 check = Check()
 
 
@@ -196,6 +197,34 @@ def hold():
         for column in ("force_x", "force_y", "max_penetration", "dissipated"):
             values = numpy.array([row[column] for row in rest])
             check.near(f"{name}: {column} while it rests", values / values[0], 1, 1e-10)
+
+
+def stiff():
+    """A pad far from the origin on an inclined plane, of stiffer and stiffer materials, sticks and then slips against springs.
+    Gaps keep the digits of its small displacements, and penalties are not raised for friction."""
+    for E in (2e5, 2e7, 2e8):
+        finished = run(args, RUNS / "friction/pad.yaml", out=f"E_{E:g}", overrides=[
+            "mesh.parameters.angle=30", "contact.0.master.plane.normal=[-0.5, 0.866025403784439]",
+            f"bodies.0.material.E={E}"
+        ])
+        fields, friction = contact(finished)
+        check.holds(f"E {E:g}: no failed step", finished.summary()["steps_failed"] == 0)
+        check.holds(f"E {E:g}: all slip", friction["sticking"] == 0 and friction["slipping"] == 17)
+        x, y = (finished.summary()["probes"][name] for name in ("plane_x", "plane_y"))
+        along, across = x * math.cos(math.pi / 6) + y / 2, y * math.cos(math.pi / 6) - x / 2
+        check.near(f"E {E:g}: friction over the load", -along / across, MU, 1e-6)
+        check.holds(f"E {E:g}: penalties are raised once", finished.summary()["contact"][0]["penalty"]["stiffened"] <= 30)
+
+
+def ironing():
+    """A tool with sharp ends is drawn through a soft slab, whose surface it folds before it."""
+    for mu in (0.3, 0.8):
+        finished = run(args, SCENES.parent / "jobs/ironing.yaml", out=f"mu_{mu}",
+                       overrides=[f"contact.0.friction.mu={mu}", "output.every=0"])
+        probes = finished.summary()["probes"]
+        check.holds(f"mu {mu}: the penalty's error is known and small",
+                    finished.summary()["contact"][0]["penalty"]["error_force"] < 0.004)
+        print(f"     mu {mu}: force {probes['fx']:.3f}, {probes['fy']:.3f}")
 
 
 def die():
