@@ -427,19 +427,51 @@ static PetscBool ModelEstimatesAt(Model model, PetscReal t)
   return (PetscBool)(choice && ModelAsked(model, t));
 }
 
-/* Estimates what penetration leaves of error, and stiffens the penalties that the run may choose where that is too
-   much. WINDOW_MISSED: the step must be solved on. */
+/* Goes back to the solution x with the penalties before, as no solution was found with those that are factor[] times as
+   stiff. The step is not to fail for a smaller error; the estimate says what is left. */
+static PetscErrorCode ModelSoften(Model model, const PetscReal factor[], Vec x, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscInfo(model->snes, "no solution with stiffer penalties: they stay as they were\n"));
+  for (int p = 0; p < ContactPairs(model->contact); p++) PetscCall(ContactStiffen(model->contact, p, 1 / factor[p]));
+  PetscCall(VecCopy(x, model->x));
+  PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  model->work->cycling     = PETSC_FALSE;
+  model->problem->inverted = -1;
+  report->detail[0]        = '\0';
+  report->result           = SOLVE_CONVERGED;
+  report->stiffened        = EQUILIBRIUM_MAX_STIFFEN;
+  PetscCall(ModelSolveHeld(model, report));
+  if (report->result == SOLVE_CONVERGED) PetscCall(ModelEstimatePenalty(model));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Estimates what penetration leaves of error, and solves with stiffer penalties, which the run may choose, where that
+   is too much. WINDOW_MISSED: the step must be solved on. */
 static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, ContactWindowState *window)
 {
-  PetscBool stiffened = PETSC_FALSE;
+  PetscBool  stiffened = PETSC_FALSE;
+  PetscReal *factor;
+  Vec        x;
 
   PetscFunctionBeginUser;
   PetscCall(ModelEstimatePenalty(model));
-  if (report->stiffened < EQUILIBRIUM_MAX_STIFFEN) PetscCall(ModelStiffen(model, &stiffened));
-  if (!stiffened) PetscFunctionReturn(PETSC_SUCCESS);
-  report->stiffened++;
-  report->adjusted++;
-  *window = WINDOW_MISSED;
+  if (report->stiffened == EQUILIBRIUM_MAX_STIFFEN) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(ContactPairs(model->contact), &factor));
+  PetscCall(ModelStiffen(model, factor, &stiffened));
+  if (stiffened) {
+    report->stiffened++;
+    report->adjusted++;
+    PetscCall(VecDuplicate(model->x, &x));
+    PetscCall(VecCopy(model->x, x));
+    PetscCall(ModelSolveHeld(model, report));
+    if (report->result == SOLVE_CONVERGED)
+      *window = WINDOW_MISSED;
+    else
+      PetscCall(ModelSoften(model, factor, x, report));
+    PetscCall(VecDestroy(&x));
+  }
+  PetscCall(PetscFree(factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

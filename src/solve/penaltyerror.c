@@ -212,9 +212,9 @@ PetscErrorCode ModelEstimatePenalty(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty().
- *stiffened: some are. */
-PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
+/* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty(). factor:
+   by how much those of each pair. *stiffened: some are. */
+PetscErrorCode ModelStiffen(Model model, PetscReal factor[], PetscBool *stiffened)
 {
   const int    pairs = ContactPairs(model->contact);
   ContactLoad *load;
@@ -227,15 +227,16 @@ PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
   for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
   for (int p = 0; p < pairs; p++) {
     const PenaltyError *error = &model->work->penalty_error[p];
-    const PetscReal     worst = PetscMax(error->displacement, error->force),
-                    factor    = PetscMin(worst / PENALTY_ERROR_WANTED, PENALTY_MOST_STIFFER);
+    const PetscReal     worst = PetscMax(error->displacement, error->force);
 
+    factor[p] = 1;
     if (!ContactPairScene(model->contact, p)->penalty_may_stiffen || !(worst > PENALTY_ERROR_LARGE) ||
         load[p].force < PENALTY_LIGHT_PAIR * most)
       continue;
-    PetscCall(ContactStiffen(model->contact, p, factor));
+    factor[p] = PetscMin(worst / PENALTY_ERROR_WANTED, PENALTY_MOST_STIFFER);
+    PetscCall(ContactStiffen(model->contact, p, factor[p]));
     PetscCall(PetscInfo(model->snes, "contact '%s': estimated error %g, penalties %g times as stiff\n",
-                        ContactPairName(model->contact, p), (double)worst, (double)factor));
+                        ContactPairName(model->contact, p), (double)worst, (double)factor[p]));
     *stiffened = PETSC_TRUE;
   }
   PetscCall(PetscFree(load));

@@ -200,8 +200,8 @@ def hold():
 
 
 def stiff():
-    """A pad far from the origin on an inclined plane, of stiffer and stiffer materials, sticks and then slips against springs.
-    Gaps keep the digits of its small displacements, and penalties are not raised for friction."""
+    """A pad far from the origin on an inclined plane, of stiffer and stiffer materials, sticks and then slips against
+    springs. Gaps keep the digits of its small displacements, and penalties are not raised for friction."""
     for E in (2e5, 2e7, 2e8):
         finished = run(args, RUNS / "friction/pad.yaml", out=f"E_{E:g}", overrides=[
             "mesh.parameters.angle=30", "contact.0.master.plane.normal=[-0.5, 0.866025403784439]",
@@ -213,7 +213,8 @@ def stiff():
         x, y = (finished.summary()["probes"][name] for name in ("plane_x", "plane_y"))
         along, across = x * math.cos(math.pi / 6) + y / 2, y * math.cos(math.pi / 6) - x / 2
         check.near(f"E {E:g}: friction over the load", -along / across, MU, 1e-6)
-        check.holds(f"E {E:g}: penalties are raised once", finished.summary()["contact"][0]["penalty"]["stiffened"] <= 30)
+        check.holds(f"E {E:g}: penalties are raised once",
+                    finished.summary()["contact"][0]["penalty"]["stiffened"] <= 30)
 
 
 def ironing():
