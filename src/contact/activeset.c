@@ -39,8 +39,9 @@ static void LookAtSlips(ActiveSet p)
 {
   for (PetscInt i = 0; i < p->n && p->parts > 1; i++) {
     const FrictionInput *law      = &p->terms[i].friction.law;
-    const PetscReal      pressure = PetscMax(0, -p->terms[i].penalty * (p->terms[i].opening + p->end[i]));
-    PetscReal            along = 0, square = 0;
+    const PetscReal      opening  = p->terms[i].opening + p->end[i];
+    const PetscReal      pressure = PetscMax(0, -p->terms[i].penalty * opening);
+    PetscReal            along = 0, square = 0, most;
 
     for (int a = 0; a < 2; a++) {
       const PetscReal slip = EndSlip(p, i, a);
@@ -49,8 +50,9 @@ static void LookAtSlips(ActiveSet p)
       square += PetscSqr(slip);
       p->slip[2 * i + a] = slip;
     }
+    most          = law->stiffness * FrictionCountedShare(law, opening) * PetscSqrtReal(square);
     p->sticks[i]  = (PetscBool)(p->slipped[i] && along < 0);
-    p->slipped[i] = (PetscBool)(!p->sticks[i] && law->stiffness * PetscSqrtReal(square) > FrictionBound(law, pressure));
+    p->slipped[i] = (PetscBool)(!p->sticks[i] && most > FrictionBound(law, pressure));
   }
 }
 

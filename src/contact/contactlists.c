@@ -255,6 +255,13 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
   return PETSC_TRUE;
 }
 
+/* Says whether the gaps of a pair may drift with its lists: with offsets that are held in a solve, and with friction,
+   where each change of the gaps stays in the tractions. */
+static PetscBool PairDrifts(const ContactPair *pair)
+{
+  return (PetscBool)(pair->formulation.lags || (pair->friction && pair->fit.fitted));
+}
+
 /* Says whether fresh lists find the same of this term as the solve did. An open term must be open. On facets a closed
    gap must agree. On fits the gap changes a little with their frames, so frames and points must agree, and with
    offsets the gap must agree within `drift`. Area factors must agree on both, weighted by the term's pressure over
@@ -284,7 +291,7 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
     if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
   }
   if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(gap - old) <= tolerance);
-  return (PetscBool)(!PetscIsNanReal(gap) && (!pair->formulation.lags || PetscAbsReal(gap - old) <= drift));
+  return (PetscBool)(!PetscIsNanReal(gap) && (!PairDrifts(pair) || PetscAbsReal(gap - old) <= drift));
 }
 
 /* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. */
@@ -294,7 +301,7 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
-  drift   = pair->formulation.lags ? lag * CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
+  drift   = PairDrifts(pair) ? lag * CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
   if (pair->fit.fitted) TimingBegin(TIMING_FIT);
@@ -404,8 +411,9 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = next;
-    PetscBool    agrees = PETSC_TRUE;
+    PetscBool    agrees = PETSC_TRUE, late = PETSC_FALSE;
 
+    if (pair->friction) PetscCall(FrictionAnchorLate(pair, t, &late));
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(OffsetsTake(pair->slave_offsets, u, t));
     if (pair->master_offsets) PetscCall(OffsetsTake(pair->master_offsets, u, t));
@@ -415,7 +423,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
     ContactNoteJumps(pair, motion);
     PetscCall(PairNextAgrees(contact, pair, t, lag, &agrees));
     pair->fresh = PETSC_FALSE;
-    agree       = agree && agrees;
+    agree       = agree && agrees && !late;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;

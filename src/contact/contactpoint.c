@@ -12,13 +12,12 @@ static PetscBool PointEvaluateAnalytic(const ContactPair *pair, NeighbourLists l
   SmootherResult  *result = &pair->work->result;
   AnalyticSurface  master = pair->scene->analytic;
   AnalyticResult   found;
-  PetscReal        point[3], x[3];
+  PetscReal        point[3], X[3];
 
   MotionPlace(&pair->scene->motion, lists->t, pair->scene->motion.point, point);
   MotionTurn(&pair->scene->motion, lists->t, pair->scene->analytic.axis, master.axis);
-  for (int d = 0; d < dim; d++)
-    x[d] = (lists->slave_X[q * dim + d] - (point[d] - centre[d])) + lists->slave_u[q * dim + d];
-  if (!AnalyticSurfaceEvaluate(&master, dim, x, &found)) return PETSC_FALSE;
+  for (int d = 0; d < dim; d++) X[d] = lists->slave_X[q * dim + d] - (point[d] - centre[d]);
+  if (!AnalyticSurfaceEvaluate(&master, dim, X, &lists->slave_u[q * dim], &found)) return PETSC_FALSE;
   result->gap          = found.gap;
   result->beyond       = 0;
   result->seed         = -1;

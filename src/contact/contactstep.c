@@ -256,66 +256,36 @@ static inline PetscReal TermTravel(const int dim, const PetscReal *N, PetscInt n
   return sum[0] + sum[1] + sum[2];
 }
 
-/*@
-  ContactStepTravel - computes how local displacements change the gaps, to first order.
-
-  Collective
-
-  Input Parameters:
-+ step   - the step
-. du     - local displacements, du[n_nodes*dim] (length), prescribed ones included
-. t      - load parameter where the motion of tools begins
-- t_next - load parameter where it ends
-
-  Output Parameter:
-. travel - travel[n] of the terms of all ranks (length)
-@*/
-PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next,
-                                 PetscReal *travel)
+/* What local displacements do to my terms: travel of their gaps, and motion of their sides along each other, slide[3]
+   of each, 0 without friction; slide may be NULL. Each pair is moved once. */
+static PetscErrorCode OwnMotion(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *travel,
+                                PetscReal *slide)
 {
   const int  dim = step->contact->mesh->dim;
-  PetscReal *mine, *values;
-  PetscInt   i = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(step->mine, &mine));
-  for (int p = 0; p < step->contact->n_pairs; p++) {
-    PetscCall(PairMove(step->contact, &step->contact->pairs[p], du, t, t_next, &values));
-    for (; i < step->mine && step->pair[i] == p; i++) {
-      const PetscInt first = step->ptr[i], n = step->ptr[i + 1] - first;
-
-      mine[i] = dim == 3 ? TermTravel(3, &step->N[first * 3], n, &step->node[first], values)
-                         : TermTravel(2, &step->N[first * 2], n, &step->node[first], values);
-    }
-    PetscCall(PetscFree(values));
-  }
-  PetscCall(Gather(step, sizeof(PetscReal), mine, travel));
-  PetscCall(PetscFree(mine));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Motion of the sides of my terms along each other: slide[3] of each, 0 without friction. */
-static PetscErrorCode OwnSlide(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *slide)
-{
   PetscReal *values;
   PetscInt   i = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(slide, 3 * step->mine));
+  if (slide) PetscCall(PetscArrayzero(slide, 3 * step->mine));
   for (int p = 0; p < step->contact->n_pairs; p++) {
-    const ContactPair *pair = &step->contact->pairs[p];
+    ContactPair *pair = &step->contact->pairs[p];
 
-    PetscCall(PairMove(step->contact, &step->contact->pairs[p], du, t, t_next, &values));
-    for (; i < step->mine && step->pair[i] == p; i++)
-      if (pair->friction) PetscCall(FrictionTermMotion(pair, step->term[i], values, &slide[3 * i]));
+    PetscCall(PairMove(step->contact, pair, du, t, t_next, &values));
+    for (; i < step->mine && step->pair[i] == p; i++) {
+      const PetscInt first = step->ptr[i], n = step->ptr[i + 1] - first;
+
+      travel[i] = dim == 3 ? TermTravel(3, &step->N[first * 3], n, &step->node[first], values)
+                           : TermTravel(2, &step->N[first * 2], n, &step->node[first], values);
+      if (slide && pair->friction) PetscCall(FrictionTermMotion(pair, step->term[i], values, &slide[3 * i]));
+    }
     PetscCall(PetscFree(values));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ContactStepSlide - computes how local displacements move the slave against its anchors on the master, where there is
-  friction.
+  ContactStepTravel - computes how local displacements change the gaps, to first order, and how they move the slave
+  against its anchors on the master, where there is friction.
 
   Collective
 
@@ -325,18 +295,21 @@ static PetscErrorCode OwnSlide(ContactStep step, const PetscReal *du, PetscReal 
 . t      - load parameter where the motion of tools begins
 - t_next - load parameter where it ends
 
-  Output Parameter:
-. slide - slide[3*n] of the terms of all ranks (length), 0 without friction
+  Output Parameters:
++ travel - travel[n] of the terms of all ranks (length)
+- slide  - slide[3*n] of the terms of all ranks (length), 0 without friction; may be NULL, on all ranks
 @*/
-PetscErrorCode ContactStepSlide(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *slide)
+PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next,
+                                 PetscReal *travel, PetscReal *slide)
 {
-  PetscReal *mine;
+  PetscReal *mine, *along;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(3 * step->mine, &mine));
-  PetscCall(OwnSlide(step, du, t, t_next, mine));
-  PetscCall(Gather(step, 3 * sizeof(PetscReal), mine, slide));
-  PetscCall(PetscFree(mine));
+  PetscCall(PetscMalloc2(step->mine, &mine, 3 * step->mine, &along));
+  PetscCall(OwnMotion(step, du, t, t_next, mine, slide ? along : NULL));
+  PetscCall(Gather(step, sizeof(PetscReal), mine, travel));
+  if (slide) PetscCall(Gather(step, 3 * sizeof(PetscReal), along, slide));
+  PetscCall(PetscFree2(mine, along));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -361,10 +334,9 @@ PetscErrorCode ContactStepChange(ContactStep step, const PetscReal *du, PetscRea
   PetscReal *slide, *mine;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactStepTravel(step, du, t, t_next, change));
-  if (step->parts == 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(3 * step->mine, &slide, step->mine, &mine));
-  PetscCall(OwnSlide(step, du, t, t_next, slide));
+  PetscCall(OwnMotion(step, du, t, t_next, mine, step->parts > 1 ? slide : NULL));
+  PetscCall(Gather(step, sizeof(PetscReal), mine, change));
   for (PetscInt a = 0; a < step->parts - 1; a++) {
     for (PetscInt i = 0; i < step->mine; i++) {
       mine[i] = 0;

@@ -3,8 +3,8 @@
 
    ContactStepCreate() chooses the terms from the state at its start. The active set (activeset.h) finds out which of
    them press at its end, and which of them stick or slip, from ContactStepChange() and the columns that follow from
-   ContactStepForces(). ContactStepTravel() tells of the gaps alone, ContactStepSlide() how the sides of the terms with
-   friction move along each other. */
+   ContactStepForces(). ContactStepTravel() tells of the gaps, and how the sides of the terms with friction move along
+   each other. */
 #pragma once
 #include "contact/contact.h"
 #include "contact/activeset.h"
@@ -16,8 +16,8 @@ PetscErrorCode ContactStepCreate(Contact, const PetscReal *u, const PetscReal *d
 PetscErrorCode ContactStepDestroy(ContactStep *);
 PetscErrorCode ContactStepGetTerms(ContactStep, PetscInt *n, const ActiveSetTerm **);
 PetscInt       ContactStepParts(ContactStep);
-PetscErrorCode ContactStepTravel(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *travel);
-PetscErrorCode ContactStepSlide(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *slide);
+PetscErrorCode ContactStepTravel(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *travel,
+                                 PetscReal *slide);
 PetscErrorCode ContactStepChange(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *change);
 PetscErrorCode ContactStepWithin(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscBool *within);
 PetscErrorCode ContactStepForces(ContactStep, PetscInt rows, PetscInt m, const PetscInt *which, Mat *B);

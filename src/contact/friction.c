@@ -19,9 +19,10 @@ PetscErrorCode FrictionCreate(ContactPair *pair)
   PetscCall(PetscNew(&f));
   pair->friction = f;
   f->stiffness = pair->scene->stick_penalty > 0 ? pair->scene->stick_penalty : PetscMin(pair->initial, pair->automatic);
-  PetscCall(PetscCalloc5(q, &f->face, 2 * q, &f->xi, 3 * q, &f->place, q, &f->at, 3 * q, &f->force));
+  PetscCall(PetscCalloc6(q, &f->face, 2 * q, &f->xi, 3 * q, &f->off, 3 * q, &f->place, q, &f->at, 3 * q, &f->force));
   PetscCall(PetscCalloc4(q, &f->foot, q, &f->facet, q, &f->known, q, &f->first));
-  PetscCall(PetscCalloc5(n, &f->anchored, 2 * n, &f->kept, 2 * n, &f->heading, n, &f->began, n, &f->axis));
+  PetscCall(
+    PetscCalloc6(n, &f->anchored, 2 * n, &f->kept, 2 * n, &f->heading, n, &f->began, n, &f->axis, n, &f->guide));
   PetscCall(PetscCalloc4(3 * n, &f->nodal, n, &f->elastic, 3 * n, &f->traction, n, &f->status));
   for (PetscInt i = 0; i < q; i++) f->face[i] = f->facet[i] = f->at[i] = f->first[i] = -1;
   SearchKeepFaces(pair->search);
@@ -35,9 +36,9 @@ PetscErrorCode FrictionDestroy(Friction *friction)
 
   PetscFunctionBeginUser;
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree5(f->face, f->xi, f->place, f->at, f->force));
+  PetscCall(PetscFree6(f->face, f->xi, f->off, f->place, f->at, f->force));
   PetscCall(PetscFree4(f->foot, f->facet, f->known, f->first));
-  PetscCall(PetscFree5(f->anchored, f->kept, f->heading, f->began, f->axis));
+  PetscCall(PetscFree6(f->anchored, f->kept, f->heading, f->began, f->axis, f->guide));
   PetscCall(PetscFree4(f->nodal, f->elastic, f->traction, f->status));
   PetscCall(PetscFree(f->turns));
   PetscCall(PetscFree(*friction));
@@ -188,35 +189,25 @@ static void ToolPlace(const ContactPair *pair, PetscReal t, const PetscReal x[3]
   }
 }
 
-/* Anchors slave point q where it is. */
-static PetscErrorCode AnchorPoint(ContactPair *pair, PetscInt q, PetscReal t)
+/* The frame of the face on which slave point q is anchored, at its anchor. */
+void FrictionAnchorFrame(const ContactPair *pair, PetscInt q, FrictionFrame *frame)
 {
-  Friction            f = pair->friction;
-  const FrictionFoot *foot;
-  PetscBool           found = PETSC_FALSE;
+  const NeighbourLists lists = pair->lists;
+  const Facet         *face  = &lists->face[pair->friction->at[q]];
+  const int            dim   = lists->dim;
+  PetscReal            N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2], tangent[2][3] = {{0, 0, 0}, {0, 0, dim == 2}};
 
-  PetscFunctionBeginUser;
-  f->face[q] = f->at[q] = -1;
-  if (pair->factor[q] == 0 || PetscIsNanReal(pair->point_gap[q])) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!pair->master) {
-    PetscReal X[3], u[3];
-
-    PlainPlace(pair, q, X, u);
-    for (int d = 0; d < 3; d++) X[d] += u[d] + (d < pair->mesh->dim ? pair->mesh->centre[d] : 0);
-    ToolPlace(pair, t, X, &f->place[3 * q]);
-    f->face[q] = 0;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
-  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
-  f->face[q] = pair->lists->facet[pair->lists->facet_ptr[q] + f->facet[q]].tag;
-  f->at[q]   = NeighbourListsFindFace(pair->lists, f->face[q]);
-  for (int a = 0; a < 2; a++) f->xi[2 * q + a] = foot->xi[a];
-  PetscFunctionReturn(PETSC_SUCCESS);
+  ElementShape(face->type, &pair->friction->xi[2 * q], N, dN, NULL);
+  for (int k = 0; k < ElementGet(face->type)->nodes; k++)
+    for (int a = 0; a < dim - 1; a++)
+      for (int d = 0; d < dim; d++)
+        tangent[a][d] +=
+          dN[k * (dim - 1) + a] * (lists->point_X[face->nodes[k] * dim + d] + lists->point_u[face->nodes[k] * dim + d]);
+  FrictionFrameMake(tangent, frame);
 }
 
-/* Adds scale times the distance from the anchor of slave point q to the point. */
-static void AddSlip(const ContactPair *pair, PetscInt q, PetscReal t, PetscReal scale, PetscReal slip[3])
+/* The distance from the anchor of slave point q to the point. */
+static void AnchorDistance(const ContactPair *pair, PetscInt q, PetscReal t, PetscReal v[3])
 {
   const NeighbourLists lists = pair->lists;
   const Friction       f     = pair->friction;
@@ -238,7 +229,53 @@ static void AddSlip(const ContactPair *pair, PetscInt q, PetscReal t, PetscReal 
     MotionPlace(&pair->scene->motion, t, &f->place[3 * q], x);
     for (int d = 0; d < dim; d++) X[d] -= x[d] - pair->mesh->centre[d];
   }
-  for (int d = 0; d < dim; d++) slip[d] += scale * (X[d] + u[d]);
+  for (int d = 0; d < 3; d++) v[d] = d < dim ? X[d] + u[d] : 0;
+}
+
+/* Adds scale times the slip of slave point q: its distance to its anchor, less what turns with the master's face. */
+static void AddSlip(const ContactPair *pair, PetscInt q, PetscReal t, PetscReal scale, PetscReal slip[3])
+{
+  PetscReal     v[3], off[3] = {0, 0, 0};
+  FrictionFrame frame;
+
+  AnchorDistance(pair, q, t, v);
+  if (pair->master) {
+    FrictionAnchorFrame(pair, q, &frame);
+    FrictionFrameCarry(&frame, &pair->friction->off[3 * q], off);
+  }
+  for (int d = 0; d < 3; d++) slip[d] += scale * (v[d] - off[d]);
+}
+
+/* Anchors slave point q where it is. */
+static PetscErrorCode AnchorPoint(ContactPair *pair, PetscInt q, PetscReal t)
+{
+  Friction            f = pair->friction;
+  const FrictionFoot *foot;
+  PetscBool           found = PETSC_FALSE;
+  FrictionFrame       frame;
+  PetscReal           v[3];
+
+  PetscFunctionBeginUser;
+  f->face[q] = f->at[q] = -1;
+  if (pair->factor[q] == 0 || PetscIsNanReal(pair->point_gap[q])) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!pair->master) {
+    PetscReal X[3], u[3];
+
+    PlainPlace(pair, q, X, u);
+    for (int d = 0; d < 3; d++) X[d] += u[d] + (d < pair->mesh->dim ? pair->mesh->centre[d] : 0);
+    ToolPlace(pair, t, X, &f->place[3 * q]);
+    f->face[q] = 0;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  f->face[q] = pair->lists->facet[pair->lists->facet_ptr[q] + f->facet[q]].tag;
+  f->at[q]   = NeighbourListsFindFace(pair->lists, f->face[q]);
+  for (int a = 0; a < 2; a++) f->xi[2 * q + a] = foot->xi[a];
+  AnchorDistance(pair, q, t, v);
+  FrictionAnchorFrame(pair, q, &frame);
+  FrictionFrameTake(&frame, v, &f->off[3 * q]);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The direction that turns with the master at the anchor of slave point q: a tangent of the face, or an axis of the
@@ -272,12 +309,25 @@ PetscBool FrictionTermTakes(const ContactPair *pair, PetscInt k)
   return (PetscBool)(pair->term_weight[k] * pair->factor[q] != 0 && !PetscIsNanReal(pair->point_gap[q]));
 }
 
-/* Fills normal, slip and along of a term. *found: all of its slave points have anchors. */
+/* The slave point whose anchor gives the tangents of a term. It stays in a step, as what is kept has its components
+   along them; only where its face is not in the lists any more another point serves. -1: no point has an anchor. */
+PetscInt FrictionTermGuide(const ContactPair *pair, PetscInt c)
+{
+  const Friction f     = pair->friction;
+  const PetscInt guide = f->guide[c];
+
+  if (guide >= 0 && (!pair->master || f->at[guide] >= 0)) return guide;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
+    if (FrictionTermTakes(pair, k) && f->face[pair->term_point[k]] >= 0) return pair->term_point[k];
+  return -1;
+}
+
+/* Fills normal, slip and along of a term. Points without an anchor have not slipped. *found: a point has an anchor. */
 static PetscErrorCode TermSlip(const ContactPair *pair, PetscInt c, PetscReal t, FrictionInput *in, PetscBool *found)
 {
   const int dim   = pair->mesh->dim;
   PetscReal area  = 0;
-  PetscInt  first = -1;
+  PetscInt  guide = FrictionTermGuide(pair, c), anchored = 0;
 
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
@@ -289,16 +339,16 @@ static PetscErrorCode TermSlip(const ContactPair *pair, PetscInt c, PetscReal t,
     const PetscReal share = pair->term_weight[k] * pair->factor[q] / area;
 
     if (!FrictionTermTakes(pair, k)) continue;
-    if (pair->friction->face[q] < 0) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCheck(!pair->master || pair->friction->at[q] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB,
-               "the lists lack the face on which friction is anchored");
     PetscCall(ContactVariationsNeed(pair, q));
     for (int d = 0; d < dim; d++) in->normal[d] += share * pair->variations->own[q * dim + d];
+    if (pair->friction->face[q] < 0) continue;
+    PetscCheck(!pair->master || pair->friction->at[q] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+               "the lists lack the face on which friction is anchored");
     AddSlip(pair, q, t, share, in->slip);
-    if (first < 0) first = q;
+    anchored++;
   }
-  if (first < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  Along(pair, first, pair->friction->axis[c], t, in->along);
+  if (!anchored) PetscFunctionReturn(PETSC_SUCCESS);
+  Along(pair, guide, pair->friction->axis[c], t, in->along);
   *found = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -321,29 +371,54 @@ static int LeastAlong(const ContactPair *pair, PetscReal t, const PetscReal norm
   return best;
 }
 
-/* Begins the step of a term: what its accepted traction says besides the slip is kept. */
+/* The components of a term's accepted traction along its tangents. New lists may have turned the normal a little: the
+   traction turns with it and keeps its length. */
+static void AcceptedComponents(const ContactPair *pair, PetscInt c, const FrictionInput *in, PetscReal component[2])
+{
+  const PetscReal *traction = &pair->accepted.traction[3 * c];
+  PetscReal        length   = 0, left;
+
+  FrictionComponents(in->normal, in->along, traction, component);
+  left = PetscSqrtReal(PetscSqr(component[0]) + PetscSqr(component[1]));
+  for (int d = 0; d < 3; d++) length += PetscSqr(traction[d]);
+  for (int k = 0; k < 2 && left > 0; k++) component[k] *= PetscSqrtReal(length) / left;
+}
+
+/* Keeps what the accepted traction of a term says besides its present slip. */
+static void KeepTraction(ContactPair *pair, PetscInt c, PetscReal t, FrictionInput *in)
+{
+  Friction  f = pair->friction;
+  PetscReal traction[2], slip[2];
+
+  if (!pair->master) {
+    f->axis[c] = LeastAlong(pair, t, in->normal);
+    Along(pair, pair->term_point[pair->term_ptr[c]], f->axis[c], t, in->along);
+  }
+  AcceptedComponents(pair, c, in, traction);
+  FrictionComponents(in->normal, in->along, in->slip, slip);
+  for (int k = 0; k < 2; k++) {
+    f->kept[2 * c + k]    = traction[k] / f->stiffness - slip[k];
+    f->heading[2 * c + k] = pair->accepted.slips[c] ? traction[k] : 0;
+  }
+}
+
+/* Begins the step of a term. */
 static PetscErrorCode BeginTerm(ContactPair *pair, PetscInt c, PetscReal t)
 {
   Friction       f     = pair->friction;
   const LawState state = ContactTermState(pair, c, t, pair->most);
   FrictionInput  in    = {.stiffness = 0};
-  PetscReal      opening, traction[2], slip[2];
+  PetscReal      opening;
 
   PetscFunctionBeginUser;
+  f->began[c] = 0;
+  f->guide[c] = -1;
+  f->guide[c] = FrictionTermGuide(pair, c);
   PetscCall(TermSlip(pair, c, t, &in, &f->anchored[c]));
   if (!f->anchored[c]) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!pair->master) {
-    f->axis[c] = LeastAlong(pair, t, in.normal);
-    Along(pair, pair->term_point[pair->term_ptr[c]], f->axis[c], t, in.along);
-  }
   opening     = ContactTermGap(pair, pair->factor, pair->point_gap, c, NULL) - LawOnsetGap(&state);
   f->began[c] = pair->accepted.status[c] == CONTACT_OPEN && opening > 0 ? opening : 0;
-  FrictionComponents(in.normal, in.along, &pair->accepted.traction[3 * c], traction);
-  FrictionComponents(in.normal, in.along, in.slip, slip);
-  for (int k = 0; k < 2; k++) {
-    f->kept[2 * c + k]    = traction[k] / f->stiffness - slip[k];
-    f->heading[2 * c + k] = pair->accepted.slips[c] ? traction[k] : 0;
-  }
+  KeepTraction(pair, c, t, &in);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -361,6 +436,51 @@ PetscErrorCode FrictionBegin(ContactPair *pair, PetscReal t)
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) PetscCall(AnchorPoint(pair, q, t));
   for (PetscInt c = 0; c < pair->n; c++) PetscCall(BeginTerm(pair, c, t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionAnchorLate - anchors slave points of pressed terms that had no master near when the step began.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair, projected
+- t    - load parameter
+
+  Output Parameter:
+. made - there are such points; the step must be solved on
+
+  Note:
+  They slip from here on. How far they have slipped since the touch, within this step, is not known.
+@*/
+PetscErrorCode FrictionAnchorLate(ContactPair *pair, PetscReal t, PetscBool *made)
+{
+  Friction f = pair->friction;
+
+  PetscFunctionBeginUser;
+  *made = PETSC_FALSE;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    PetscBool     late = PETSC_FALSE;
+    FrictionInput in   = {.stiffness = 0};
+    LawValue      value;
+    PetscReal     area;
+
+    ContactTermLaw(pair, c, t, &value, NULL, &area);
+    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && value.stiffness > 0; k++) {
+      const PetscInt q = pair->term_point[k];
+
+      if (!FrictionTermTakes(pair, k) || f->face[q] >= 0) continue;
+      PetscCall(AnchorPoint(pair, q, t));
+      late = (PetscBool)(late || f->face[q] >= 0);
+    }
+    if (!late) continue;
+    *made = PETSC_TRUE;
+    if (f->anchored[c]) continue;
+    f->guide[c] = FrictionTermGuide(pair, c);
+    PetscCall(TermSlip(pair, c, t, &in, &f->anchored[c]));
+    KeepTraction(pair, c, t, &in);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -459,9 +579,10 @@ PetscErrorCode FrictionPointForces(const ContactPair *pair, PetscInt q, const Pe
 
   PetscFunctionBeginUser;
   if (F[0] == 0 && F[1] == 0 && F[2] == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
+  if (pair->master && !found) PetscFunctionReturn(PETSC_SUCCESS); /* what has no reaction is no force */
   for (PetscInt a = 0; a < n; a++)
     for (int d = 0; d < dim; d++) values[node[a] * dim + d] += S[a] * F[d];
-  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
   for (int k = 0; found && k < foot->nodes; k++) {
     PetscReal force[3][3], sign[3];
     PetscInt  at;

@@ -111,6 +111,27 @@ static double CountedShare(const FrictionInput *in, double *rate)
   return in->opening / travel;
 }
 
+/*@
+  FrictionCountedShare - gives the share of its slip that counts at a node: that since the touch.
+
+  Not collective
+
+  Input Parameters:
++ in      - the node; its own opening does not count
+- opening - gap less the gap below which there is pressure (length)
+
+  Note:
+  Plain C.
+@*/
+double FrictionCountedShare(const FrictionInput *in, double opening)
+{
+  FrictionInput at = *in;
+  double        rate;
+
+  at.opening = opening;
+  return CountedShare(&at, &rate);
+}
+
 /* Elastic slip e of a node that only sticks, and its derivatives. */
 static void ElasticSlip(const FrictionInput *in, double e[3], FrictionTraction *by)
 {

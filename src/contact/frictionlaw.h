@@ -45,4 +45,5 @@ typedef struct {
 
 void   FrictionComponents(const double normal[3], const double along[3], const double v[3], double component[2]);
 double FrictionBound(const FrictionInput *, double pressure);
+double FrictionCountedShare(const FrictionInput *, double opening);
 void   FrictionEvaluate(const FrictionInput *, FrictionTraction *);

@@ -23,6 +23,7 @@ PetscErrorCode FrictionTermMotion(const ContactPair *pair, PetscInt c, const Pet
     area += weight;
     PetscCall(ContactVariationsNeed(pair, q));
     for (int d = 0; d < dim; d++) normal[d] += weight * pair->variations->own[q * dim + d];
+    if (pair->friction->face[q] < 0) continue;
     for (PetscInt a = 0; a < n; a++)
       for (int d = 0; d < dim; d++) motion[d] += weight * S[a] * values[node[a] * dim + d];
     if (!pair->master || pair->friction->at[q] < 0) continue;

@@ -102,7 +102,7 @@ static PetscErrorCode AddFootNodes(const ContactPair *pair, PetscInt q)
 static PetscErrorCode PreparePoints(const ContactPair *pair, PetscInt c, PetscInt *room)
 {
   PetscFunctionBeginUser;
-  *room = 0;
+  *room = FACE_MAX_NODES;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt      q = pair->term_point[k];
     const FrictionFoot *foot;
@@ -148,6 +148,7 @@ PetscErrorCode FrictionTermNodes(const ContactPair *pair, PetscInt c)
     PetscCall(AddFootNodes(pair, q));
     AddAnchorNodes(pair, q);
   }
+  if (pair->friction->anchored[c] && FrictionTermGuide(pair, c) >= 0) AddAnchorNodes(pair, FrictionTermGuide(pair, c));
   ContactWorkNodesEnd(pair->work);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -189,18 +190,38 @@ static PetscErrorCode AddVariations(const TermBlock *b, PetscReal *rows, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the derivative of the slip of slave point q, times scale, and of the direction along. */
-static void AddSlipColumns(const TermBlock *b, PetscInt q, PetscReal scale, const FrictionTraction *by, PetscBool along)
+/* The derivatives of the traction by the tangents of the face on which slave point q is anchored: what is off the face
+   turns with it. */
+static void TurnOff(const ContactPair *pair, PetscInt q, const FrictionTraction *by, PetscReal turn[2][3][3])
+{
+  FrictionFrame frame;
+  PetscReal     off[2][3][3];
+
+  FrictionAnchorFrame(pair, q, &frame);
+  FrictionFrameVary(&frame, &pair->friction->off[3 * q], off);
+  for (int a = 0; a < 2; a++) {
+    for (int i = 0; i < 3; i++) {
+      for (int j = 0; j < 3; j++) {
+        turn[a][i][j] = 0;
+        for (int d = 0; d < 3; d++) turn[a][i][j] -= by->by_slip[i][d] * off[a][d][j];
+      }
+    }
+  }
+}
+
+/* Adds the derivative of the slip of slave point q, times scale. */
+static void AddSlipColumns(const TermBlock *b, PetscInt q, PetscReal scale, const FrictionTraction *by)
 {
   const ContactPair *pair = b->pair;
   const Facet       *face = AnchorFace(pair, q);
   const PetscInt    *node;
   const PetscReal   *S;
   const PetscInt     n = FrictionOwnNodes(pair, q, &node, &S);
-  PetscReal          N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2];
+  PetscReal          N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2], turn[2][3][3];
 
   for (PetscInt a = 0; a < n; a++) AddColumns(b, b->by_node, node[a], scale * S[a], by->by_slip, NULL);
   if (!face) return;
+  TurnOff(pair, q, by, turn);
   ElementShape(face->type, &pair->friction->xi[2 * q], N, dN, NULL);
   for (int k = 0; k < ElementGet(face->type)->nodes; k++) {
     PetscReal sign[3];
@@ -208,7 +229,25 @@ static void AddSlipColumns(const TermBlock *b, PetscInt q, PetscReal scale, cons
 
     FrictionNodeSign(pair, face->nodes[k], &at, sign);
     AddColumns(b, b->by_node, at, -scale * N[k], by->by_slip, sign);
-    if (along) AddColumns(b, b->by_node, at, dN[k * (b->dim - 1)], by->by_along, sign);
+    for (int a = 0; a < b->dim - 1; a++) AddColumns(b, b->by_node, at, scale * dN[k * (b->dim - 1) + a], turn[a], sign);
+  }
+}
+
+/* Adds the derivative of the direction along, which turns with the face on which slave point q is anchored. */
+static void AddAlongColumns(const TermBlock *b, PetscInt q, const FrictionTraction *by)
+{
+  const ContactPair *pair = b->pair;
+  const Facet       *face = AnchorFace(pair, q);
+  PetscReal          N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2];
+
+  if (!face) return;
+  ElementShape(face->type, &pair->friction->xi[2 * q], N, dN, NULL);
+  for (int k = 0; k < ElementGet(face->type)->nodes; k++) {
+    PetscReal sign[3];
+    PetscInt  at;
+
+    FrictionNodeSign(pair, face->nodes[k], &at, sign);
+    AddColumns(b, b->by_node, at, dN[k * (b->dim - 1)], by->by_along, sign);
   }
 }
 
@@ -238,8 +277,9 @@ static PetscErrorCode AddShares(TermBlock *b, PetscInt q, PetscReal weight)
   PetscBool              found;
 
   PetscFunctionBeginUser;
-  for (PetscInt a = 0; a < n; a++) AddShare(b, node[a], one, weight * S[a], NULL);
   PetscCall(FrictionPointFoot(b->pair, q, &foot, &found));
+  if (b->pair->master && !found) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt a = 0; a < n; a++) AddShare(b, node[a], one, weight * S[a], NULL);
   for (int k = 0; found && k < foot->nodes; k++) {
     PetscReal force[3][3], sign[3];
     PetscInt  at;
@@ -297,10 +337,9 @@ static PetscErrorCode AddFootMotion(TermBlock *b, PetscInt q, const PetscReal F[
 /* Fills the block: the derivative of the traction, taken to the nodes, and the motion of its forces over the master. */
 static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction *out)
 {
-  const ContactPair *pair  = b->pair;
-  const int          dim   = b->dim;
-  PetscBool          along = PETSC_TRUE;
-  PetscReal          area  = 0;
+  const ContactPair *pair = b->pair;
+  const int          dim  = b->dim;
+  PetscReal          area = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
@@ -311,10 +350,11 @@ static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction
 
     if (!FrictionTermTakes(pair, k)) continue;
     PetscCall(AddVariations(b, b->by_node, q, weight / area, out->by_normal, out->by_gap));
-    AddSlipColumns(b, q, weight / area, out, along);
     PetscCall(AddShares(b, q, weight));
-    along = PETSC_FALSE;
+    if (pair->friction->face[q] < 0) continue;
+    AddSlipColumns(b, q, weight / area, out);
   }
+  AddAlongColumns(b, FrictionTermGuide(pair, c), out);
   PetscCall(PetscCalloc1(b->n_rows * dim * b->columns, &b->value));
   for (PetscInt r = 0; r < b->n_rows * dim; r++)
     for (int d = 0; d < dim; d++)

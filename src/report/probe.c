@@ -514,13 +514,18 @@ static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode EvaluateFrictionForce(Probes probes, Probe *probe, PetscReal *value)
+/* A figure of a pair's friction. */
+static PetscErrorCode EvaluateFriction(Probes probes, Probe *probe, PetscReal *value)
 {
   ContactFriction friction;
 
   PetscFunctionBeginUser;
   PetscCall(ContactPairFriction(probes->model->contact, probe->pair, &friction));
-  *value = -friction.force[probe->scene->component];
+  switch (probe->scene->kind) {
+  case PROBE_FRICTION_FORCE: *value = -friction.force[probe->scene->component]; break;
+  case PROBE_SLIPPED_AREA: *value = friction.slipped_area; break;
+  default: *value = friction.elastic; /* PROBE_ELASTIC_SLIP */
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -539,26 +544,6 @@ static PetscErrorCode EvaluateFrictionTorque(Probes probes, Probe *probe, PetscR
 
     *value -= (x[i] - X[i]) * F[j] - (x[j] - X[j]) * F[i];
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode EvaluateSlippedArea(Probes probes, Probe *probe, PetscReal *value)
-{
-  ContactFriction friction;
-
-  PetscFunctionBeginUser;
-  PetscCall(ContactPairFriction(probes->model->contact, probe->pair, &friction));
-  *value = friction.slipped_area;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode EvaluateElasticSlip(Probes probes, Probe *probe, PetscReal *value)
-{
-  ContactFriction friction;
-
-  PetscFunctionBeginUser;
-  PetscCall(ContactPairFriction(probes->model->contact, probe->pair, &friction));
-  *value = friction.elastic;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -607,10 +592,10 @@ static const ProbeType types[PROBE_KINDS] = {
   [PROBE_PRESSURE_MAX]       = {"pressure_max", NAMES_PAIR, 0, NULL, EvaluatePressureMax},
   [PROBE_PRESSURE_MEAN]      = {"pressure_mean", NAMES_PAIR, 0, NULL, EvaluatePressureMean},
   [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", NAMES_PAIR, 0, NULL, EvaluatePressureDeviation},
-  [PROBE_FRICTION_FORCE]     = {"friction_force", NAMES_PAIR, 0, NULL, EvaluateFrictionForce},
+  [PROBE_FRICTION_FORCE]     = {"friction_force", NAMES_PAIR, 0, NULL, EvaluateFriction},
   [PROBE_FRICTION_TORQUE]    = {"friction_torque", NAMES_PAIR, 0, NULL, EvaluateFrictionTorque},
-  [PROBE_SLIPPED_AREA]       = {"slipped_area", NAMES_PAIR, 0, NULL, EvaluateSlippedArea},
-  [PROBE_ELASTIC_SLIP]       = {"elastic_slip", NAMES_PAIR, 0, NULL, EvaluateElasticSlip},
+  [PROBE_SLIPPED_AREA]       = {"slipped_area", NAMES_PAIR, 0, NULL, EvaluateFriction},
+  [PROBE_ELASTIC_SLIP]       = {"elastic_slip", NAMES_PAIR, 0, NULL, EvaluateFriction},
   [PROBE_TOOL_MOTION]        = {"tool_motion", NAMES_PAIR, 0, NULL, EvaluateToolMotion},
   [PROBE_TOOL_ROTATION]      = {"tool_rotation", NAMES_PAIR, 0, NULL, EvaluateToolRotation},
   [PROBE_FLUID_FRONT]        = {"fluid_front", NAMES_SURFACE, 0, NULL, EvaluateFluidFront},

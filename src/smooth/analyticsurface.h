@@ -30,4 +30,4 @@ typedef struct {
   double curvature; /* 1/radius; 0 for a plane */
 } AnalyticResult;
 
-int AnalyticSurfaceEvaluate(const AnalyticSurface *, int dim, const double *x, AnalyticResult *);
+int AnalyticSurfaceEvaluate(const AnalyticSurface *, int dim, const double *X, const double *u, AnalyticResult *);

@@ -45,8 +45,7 @@ static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t,
     FreeBodiesVelocity(b, u, a, du);
     a[k] = 0;
     PetscCall(PetscMalloc1(across * n_terms, &travel[k]));
-    PetscCall(ContactStepTravel(step, du, t, t, travel[k]));
-    if (across > 1) PetscCall(ContactStepSlide(step, du, t, t, &travel[k][n_terms]));
+    PetscCall(ContactStepTravel(step, du, t, t, travel[k], across > 1 ? &travel[k][n_terms] : NULL));
   }
   for (PetscInt i = 0; i < n_terms; i++) {
     if (terms[i].pressure == 0 && !(touching && terms[i].opening <= FREE_BODIES_TOUCH * b->face)) continue;

@@ -66,7 +66,8 @@ PenaltyError ModelPenaltyError(Model model, int pair)
   return model->work->penalty_error[pair];
 }
 
-/* The derivative of the free residual to ln s at the trial state. The residual is linear in s. */
+/* The derivative of the free residual to ln s at the trial state. The residual is linear in s where what slips goes on
+   slipping. Friction that could choose would stick under twice the pressures. */
 static PetscErrorCode ModelPenaltyForces(Model model, Vec forces)
 {
   const Problem problem = model->problem;
@@ -86,7 +87,8 @@ static PetscErrorCode ModelPenaltyForces(Model model, Vec forces)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -du/d(ln s) of the free displacements at the trial state. *known: the linear solve succeeded. */
+/* -du/d(ln s) of the free displacements at the trial state, whose contact and slip are held. *known: the linear solve
+   succeeded. */
 static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known)
 {
   Vec forces;
@@ -94,6 +96,7 @@ static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &forces));
+  PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, PETSC_FALSE));
   PetscCall(ModelPenaltyForces(model, forces));
   PetscCall(LinearSolverRenew(model->work->solver));
   PetscCall(LinearSolverSetStart(model->work->solver, 0));
@@ -102,6 +105,7 @@ static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known
   PetscCall(KSPSetOperators(ksp, model->problem->A, model->problem->P));
   PetscCall(KSPSolve(ksp, forces, slope));
   *known = (PetscBool)!LinearCheckLost(model->linear);
+  PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(VecDestroy(&forces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -208,9 +212,9 @@ PetscErrorCode ModelEstimatePenalty(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty().
- *stiffened: some are. */
-PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
+/* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty(). factor:
+   by how much those of each pair. *stiffened: some are. */
+PetscErrorCode ModelStiffen(Model model, PetscReal factor[], PetscBool *stiffened)
 {
   const int    pairs = ContactPairs(model->contact);
   ContactLoad *load;
@@ -223,15 +227,16 @@ PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
   for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
   for (int p = 0; p < pairs; p++) {
     const PenaltyError *error = &model->work->penalty_error[p];
-    const PetscReal     worst = PetscMax(error->displacement, error->force),
-                    factor    = PetscMin(worst / PENALTY_ERROR_WANTED, PENALTY_MOST_STIFFER);
+    const PetscReal     worst = PetscMax(error->displacement, error->force);
 
+    factor[p] = 1;
     if (!ContactPairScene(model->contact, p)->penalty_may_stiffen || !(worst > PENALTY_ERROR_LARGE) ||
         load[p].force < PENALTY_LIGHT_PAIR * most)
       continue;
-    PetscCall(ContactStiffen(model->contact, p, factor));
+    factor[p] = PetscMin(worst / PENALTY_ERROR_WANTED, PENALTY_MOST_STIFFER);
+    PetscCall(ContactStiffen(model->contact, p, factor[p]));
     PetscCall(PetscInfo(model->snes, "contact '%s': estimated error %g, penalties %g times as stiff\n",
-                        ContactPairName(model->contact, p), (double)worst, (double)factor));
+                        ContactPairName(model->contact, p), (double)worst, (double)factor[p]));
     *stiffened = PETSC_TRUE;
   }
   PetscCall(PetscFree(load));

@@ -129,7 +129,7 @@ static PetscErrorCode Bounds(FreeBodies b, const PetscReal *u, PetscReal t, Pets
     a[k] = 1;
     FreeBodiesVelocity(b, u, a, du);
     a[k] = 0;
-    PetscCall(ContactStepTravel(step, du, t, t, travel));
+    PetscCall(ContactStepTravel(step, du, t, t, travel, NULL));
     for (PetscInt i = 0; i < pass->n_terms; i++) pass->normal[i * n + k] = travel[i];
   }
   if (first) *overlap = 0;

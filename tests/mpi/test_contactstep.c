@@ -130,7 +130,7 @@ static void test_linear_step(void **state)
   assert_true(terms[left].stiffness > 0 && terms[left].penalty == PENALTY);
   assert_near(terms[1 - left].opening, 0.02, 1e-13);
   assert_true(terms[1 - left].pressure == 0 && terms[1 - left].stiffness == 0);
-  OK(ContactStepTravel(step, du, 0, 1, travel));
+  OK(ContactStepTravel(step, du, 0, 1, travel, NULL));
   /* The chord between the slave nodes does not count, only their feet do: 1.2 and 1.8, a fifth and four fifths. */
   assert_near(travel[left], -0.04 - 0.2 * 0.01, 1e-13);
   assert_near(travel[1 - left], -0.8 * 0.01, 1e-13);

@@ -19,6 +19,8 @@ static double Random(double low, double high)
   return low + (high - low) * (double)(state >> 11) / 9007199254740992.0;
 }
 
+static const double still[3] = {0, 0, 0};
+
 /* Replaces assert_float_equal(), which compares as float. */
 static void AssertNear(double a, double b, double tolerance)
 {
@@ -38,20 +40,20 @@ static void TestValues(void **state)
   AnalyticResult        out;
 
   (void)state;
-  assert_true(AnalyticSurfaceEvaluate(&plane, 3, (double[3]){7, 8, -0.25}, &out));
+  assert_true(AnalyticSurfaceEvaluate(&plane, 3, (double[3]){7, 8, -0.25}, still, &out));
   AssertNear(out.gap, -0.25, 0);
   AssertNear(out.curvature, 0, 0);
-  assert_true(AnalyticSurfaceEvaluate(&cylinder, 3, (double[3]){1.8, 40, 2.4}, &out));
+  assert_true(AnalyticSurfaceEvaluate(&cylinder, 3, (double[3]){1.8, 40, 2.4}, still, &out));
   AssertNear(out.gap, 1, 1e-14);
   AssertNear(out.normal[0], 0.6, 1e-14);
   AssertNear(out.normal[1], 0, 1e-14);
   AssertNear(out.curvature, 0.5, 1e-14);
-  assert_true(AnalyticSurfaceEvaluate(&bore, 3, (double[3]){1.8, 40, 2.4}, &out));
+  assert_true(AnalyticSurfaceEvaluate(&bore, 3, (double[3]){1.8, 40, 2.4}, still, &out));
   AssertNear(out.gap, -1, 1e-14);
   AssertNear(out.normal[2], -0.8, 1e-14);
-  assert_true(AnalyticSurfaceEvaluate(&sphere, 3, (double[3]){0, 3, -4.5}, &out));
+  assert_true(AnalyticSurfaceEvaluate(&sphere, 3, (double[3]){0, 3, -4.5}, still, &out));
   AssertNear(out.gap, sqrt(29.25) - 5, 1e-14);
-  assert_true(AnalyticSurfaceEvaluate(&socket, 3, (double[3]){0, 3, -4.5}, &out));
+  assert_true(AnalyticSurfaceEvaluate(&socket, 3, (double[3]){0, 3, -4.5}, still, &out));
   AssertNear(out.gap, 5 - sqrt(29.25), 1e-14);
 }
 
@@ -63,9 +65,9 @@ static void TestNoClosestPoint(void **state)
   AnalyticResult        out;
 
   (void)state;
-  assert_false(AnalyticSurfaceEvaluate(&cylinder, 3, (double[3]){0, 0, 5}, &out));
-  assert_false(AnalyticSurfaceEvaluate(&sphere, 3, (double[3]){0, 0, 1e-9}, &out));
-  assert_false(AnalyticSurfaceEvaluate(&plane, 3, (double[3]){0, 0, 1}, &out));
+  assert_false(AnalyticSurfaceEvaluate(&cylinder, 3, (double[3]){0, 0, 5}, still, &out));
+  assert_false(AnalyticSurfaceEvaluate(&sphere, 3, (double[3]){0, 0, 1e-9}, still, &out));
+  assert_false(AnalyticSurfaceEvaluate(&plane, 3, (double[3]){0, 0, 1}, still, &out));
 }
 
 /* Fourth-order central difference from the values at -2h, -h, h, 2h. */
@@ -78,20 +80,24 @@ static double Difference(const double value[4], double h)
 static void CheckVariations(const AnalyticSurface *master, int dim)
 {
   const double   h = 1e-4;
-  double         x[3];
+  double         x[3], X[3], u[3];
   AnalyticResult out, step;
 
   for (int c = 0; c < 3; c++) x[c] = c < dim ? Random(0.5, 2) : 0;
-  assert_true(AnalyticSurfaceEvaluate(master, dim, x, &out));
+  for (int c = 0; c < 3; c++) {
+    u[c] = c < dim ? 0.3 * x[(c + 1) % dim] : 0;
+    X[c] = x[c] - u[c];
+  }
+  assert_true(AnalyticSurfaceEvaluate(master, dim, X, u, &out));
   for (int c = 0; c < dim; c++) {
     double product = 0, size = 1, gap[4], N[3][4];
 
     for (int i = 0; i < 4; i++) {
       double moved[3];
 
-      memcpy(moved, x, sizeof(x));
+      memcpy(moved, u, sizeof(u));
       moved[c] += (i < 2 ? i - 2 : i - 1) * h;
-      assert_true(AnalyticSurfaceEvaluate(master, dim, moved, &step));
+      assert_true(AnalyticSurfaceEvaluate(master, dim, X, moved, &step));
       gap[i] = step.gap;
       for (int d = 0; d < dim; d++) N[d][i] = step.N[d];
     }
@@ -129,6 +135,29 @@ static void TestVariations(void **state)
   }
 }
 
+/* Far from the origin a change of the displacement changes the gap by as much, to the digits of the displacement. */
+static void TestDigits(void **state)
+{
+  const AnalyticSurface  plane    = {.shape = ANALYTIC_PLANE, .axis = {-0.5, 0.75, 0.25}};
+  const AnalyticSurface  cylinder = {.shape = ANALYTIC_CYLINDER, .axis = {0, 0, 1}, .radius = 50};
+  const AnalyticSurface  sphere   = {.shape = ANALYTIC_SPHERE, .radius = 50};
+  const AnalyticSurface *all[3]   = {&plane, &cylinder, &sphere};
+
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    const double   X[3] = {30.1, 40.2, 7.3}, u[3] = {3.1e-9, 1.7e-9, -2.3e-9};
+    double         along = 0;
+    AnalyticResult before, after;
+
+    assert_true(AnalyticSurfaceEvaluate(all[k], 3, X, still, &before));
+    assert_true(AnalyticSurfaceEvaluate(all[k], 3, X, u, &after));
+    for (int c = 0; c < 3; c++) along += before.normal[c] * u[c];
+    for (int c = 0; c < 3; c++)
+      for (int d = 0; d < 3; d++) along += before.M[c * 3 + d] * u[c] * u[d] / 2;
+    AssertNear(after.gap - before.gap, along, 2e-15); /* the rounding of the two gaps, not of 50 */
+  }
+}
+
 /* In the meridian of an axisymmetric scene a cylinder about the axis is a straight wall. */
 static void TestAxisymmetricCylinder(void **state)
 {
@@ -136,7 +165,7 @@ static void TestAxisymmetricCylinder(void **state)
   AnalyticResult        out;
 
   (void)state;
-  assert_true(AnalyticSurfaceEvaluate(&cylinder, 2, (double[2]){2.5, 7}, &out));
+  assert_true(AnalyticSurfaceEvaluate(&cylinder, 2, (double[2]){2.5, 7}, still, &out));
   AssertNear(out.gap, 0.5, 1e-15);
   AssertNear(out.N[0], 1, 0);
   for (int i = 0; i < 4; i++) AssertNear(out.M[i], 0, 0);
@@ -145,7 +174,8 @@ static void TestAxisymmetricCylinder(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestValues), cmocka_unit_test(TestNoClosestPoint),
-                                     cmocka_unit_test(TestVariations), cmocka_unit_test(TestAxisymmetricCylinder)};
+                                     cmocka_unit_test(TestVariations), cmocka_unit_test(TestDigits),
+                                     cmocka_unit_test(TestAxisymmetricCylinder)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 #include "frictionfoot.h"
+#include "frictionframe.h"
 #include "contact/frictionlaw.h"
 
 /* Allowed difference between derivatives and differences, relative to the largest of them. */
@@ -341,11 +342,64 @@ static void test_balance(void **state)
   check_balance(3, ELEMENT_QUAD9);
 }
 
+/* The vector with given components in the frame of two tangents, six numbers. */
+static void carried(const double *x, void *context, double value[3])
+{
+  double        tangent[2][3];
+  FrictionFrame frame;
+
+  memcpy(tangent, x, sizeof(tangent));
+  assert_true(FrictionFrameMake(tangent, &frame));
+  FrictionFrameCarry(&frame, context, value);
+}
+
+/* The frame is orthonormal, and what has fixed components in it varies as differences say. */
+static void check_frame(int dim)
+{
+  for (int trial = 0; trial < 20; trial++) {
+    double x[6] = {0, 0, 0, 0, 0, dim == 2}, direction[6] = {0}, component[3], back[3], v[3], by[2][3][3], sum[3];
+    double slope[3], worst                                = 1;
+    FrictionFrame frame;
+
+    do {
+      fill(dim, 1, x);
+      if (dim == 3) fill(dim, 1, x + 3);
+    } while (!FrictionFrameMake((const double(*)[3])x, &frame) || frame.area < 0.2);
+    fill(dim, 1, direction);
+    if (dim == 3) fill(dim, 1, direction + 3);
+    fill(3, 1, component);
+    FrictionFrameCarry(&frame, component, v);
+    FrictionFrameTake(&frame, v, back);
+    for (int d = 0; d < 3; d++) assert_true(fabs(back[d] - component[d]) < 1e-14);
+    FrictionFrameVary(&frame, component, by);
+    for (int i = 0; i < 3; i++) {
+      sum[i] = 0;
+      for (int a = 0; a < 2; a++)
+        for (int j = 0; j < 3; j++) sum[i] += by[a][i][j] * direction[3 * a + j];
+    }
+    for (double h = 3e-3; h > 2e-6; h /= 3) {
+      double error[3];
+
+      difference(carried, component, 6, x, direction, h, slope);
+      for (int d = 0; d < 3; d++) error[d] = slope[d] - sum[d];
+      worst = fmin(worst, norm(error) / fmax(norm(sum), 1e-3));
+    }
+    assert_true(worst < ALLOWED);
+  }
+}
+
+static void test_frame(void **state)
+{
+  (void)state;
+  check_frame(2);
+  check_frame(3);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_law), cmocka_unit_test(test_rotation),
-                                     cmocka_unit_test(test_kept), cmocka_unit_test(test_foot),
-                                     cmocka_unit_test(test_balance)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_law),     cmocka_unit_test(test_rotation),
+                                     cmocka_unit_test(test_kept),    cmocka_unit_test(test_foot),
+                                     cmocka_unit_test(test_balance), cmocka_unit_test(test_frame)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -203,9 +203,12 @@ PetscErrorCode FrictionCreate(ContactPair *);
 PetscErrorCode FrictionDestroy(Friction *);
 void           FrictionForget(const ContactPair *);
 PetscErrorCode FrictionBegin(ContactPair *, PetscReal t);
+PetscErrorCode FrictionAnchorLate(ContactPair *, PetscReal t, PetscBool *made);
+void           FrictionAnchorFrame(const ContactPair *, PetscInt q, FrictionFrame *);
 PetscErrorCode FrictionTerm(const ContactPair *, PetscInt term, PetscReal t, FrictionInput *, FrictionTraction *,
                             PetscBool *acts);
 PetscBool      FrictionTermTakes(const ContactPair *, PetscInt k);
+PetscInt       FrictionTermGuide(const ContactPair *, PetscInt term);
 PetscErrorCode FrictionPointFoot(const ContactPair *, PetscInt q, const FrictionFoot **, PetscBool *found);
 PetscInt       FrictionOwnNodes(const ContactPair *, PetscInt q, const PetscInt **node, const PetscReal **S);
 void           FrictionNodeSign(const ContactPair *, PetscInt point, PetscInt *node, PetscReal sign[3]);

@@ -1,14 +1,17 @@
 /* What a pair with friction holds besides its state. Nothing of it is state: FrictionBegin() makes it at the accepted
    displacements, when a step begins.
 
-   The anchor of a slave point is where it was on the master then, a place on a face or in an analytic tool. The slip
-   of a node is the weighted sum over its points of the distances to their anchors. Anchors stay in a step, also
-   through new lists, in which their faces are found by tags. What the accepted tractions say besides is kept as
-   lengths, see FrictionInput. So the accepted state of friction is the tractions alone, and a step that is taken back,
-   or goes on after a restart on other ranks, begins with the same anchors. */
+   The anchor of a slave point is where it was on the master then, a place on a face or in an analytic tool. The slave
+   point is off the face by penetration and by the sagitta of the faces. This distance turns with the face. The slip of
+   a node is the weighted sum over its points of their other distances to their anchors, so that it is 0 then, and stays
+   so where slave and master turn together, whatever the fit makes of the normal. Anchors stay in a step, also through
+   new lists, in which their faces are found by tags. What the accepted tractions say besides is kept as lengths, see
+   FrictionInput. So the accepted state of friction is the tractions alone, and a step that is taken back, or goes on
+   after a restart on other ranks, begins with the same anchors. */
 #pragma once
 #include "base/petsccompat.h"
 #include "frictionfoot.h"
+#include "frictionframe.h"
 #include "contact/frictionlaw.h"
 
 typedef struct {
@@ -16,6 +19,7 @@ typedef struct {
   /* Of each slave point: its anchor. */
   long      *face;  /* tag; -1: it has none */
   PetscReal *xi;    /* 2: on that face */
+  PetscReal *off;   /* 3: from there to the slave point, in the face's frame (length) */
   PetscReal *place; /* 3: in an analytic tool, at its first position (length, in the scene's coordinates) */
   PetscInt  *at;    /* number of the face in the lists in force; -1: not in them */
   /* Of each slave point: its foot at the last projection. */
@@ -27,10 +31,11 @@ typedef struct {
   PetscInt  *first, turns_used, turns_room;
   PetscReal *turns;
   /* Of each term, since the step began. */
-  PetscBool *anchored; /* all of its points have anchors */
+  PetscBool *anchored; /* some of its points have anchors */
   PetscReal *kept;     /* 2 lengths */
   PetscReal *heading;  /* 2 components of the slip's direction then; 0 where the node did not slip */
   PetscReal *began;    /* its opening, where it was open (length) */
+  PetscInt  *guide;    /* the slave point whose anchor gives the tangents; -1: none */
   int       *axis;     /* of an analytic tool: that which gives the tangents */
   PetscReal *force;    /* 3 for each slave point, in the last residual */
   PetscReal *nodal;    /* 3 for each term: force on the slave node, that of its neighbours on shared faces included */

@@ -134,4 +134,4 @@ PetscErrorCode ModelCreatePenaltyError(Model);
 void           ModelForgetPenaltyError(Model);
 PetscErrorCode ModelArchivePenaltyError(Model, Archive);
 PetscErrorCode ModelEstimatePenalty(Model);
-PetscErrorCode ModelStiffen(Model, PetscBool *stiffened);
+PetscErrorCode ModelStiffen(Model, PetscReal factor[], PetscBool *stiffened);
