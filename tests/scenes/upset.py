@@ -27,6 +27,8 @@ def forces(name, at, *overrides):
     if default:
         check.holds(f"{name}: the growth of plastic strain is told", "-set stepping.plastic_strain=0.09" in finished.text,
                     f"up to {summary['max_plastic_growth']:.2g} in a step")
+    if "stepping.plastic_strain=0.02" in overrides:
+        check.holds(f"{name}: growth of plastic strain within its bound", summary["max_plastic_growth"] <= 0.02)
     return numpy.interp(at, [row["t"] for row in steps], [row["force"] + row["die"] for row in steps])
 
 
