@@ -1,13 +1,14 @@
 """Metal forming: runs the scenes of forming that are in tests/scenes and runs, leaves steps, iterations and the forces,
-places and angles that have a reference in a record, and prints the table; --print tables an existing record.
-    python scripts/forming_table.py [--burnish BINARY] [--record FILE]"""
+places and angles that have a reference in a record, and prints the table; --print tables an existing record, --case
+runs one case and keeps the others of the record.
+    python scripts/forming_table.py [--burnish BINARY] [--record FILE] [--case "curved beams"]"""
 import math
 import shutil
 import subprocess
 
 import numpy
 
-from launch import ROOT, command, environment, read_records, read_steps, read_summary, table_parser, write_records
+from launch import ROOT, command, environment, read_records, read_steps, read_summary, replace_records, table_parser
 
 SCENES = ROOT / "tests/scenes"
 COLUMNS = ("case", "variant", "t", "quantity", "value", "reference", "source", "status", "steps", "failed", "iterations")
@@ -19,6 +20,12 @@ STEEL = "{law: von_mises, E: 200e3, nu: 0.3, yield: 300, hardening: {linear: 100
 ELASTIC = "{law: svk, E: 200e3, nu: 0.3}"
 BEAMS = {3: (8.89, -7.55), 6: (13.37, -13.39), 9: (15.12, -17.56), 12: (16.00, -21.05), 15: (16.74, -24.33),
          18: (17.20, -28.23), 21: (16.72, -32.73), 24: (11.12, -38.77), 27: (-2.09, -26.51), 30: (-1.49, -5.72)}
+BILLET = {0.1: 245261, 0.2: 270257, 0.3: 298239, 0.4: 330615, 0.5: 367790, 0.6: 406405, 0.7: 469336, 0.8: 552340,
+          0.9: 663023, 1: 828794}  # tests/jobs/forming_calculix.py, CAX8, 100 increments
+NECK, NECK_LARGEST = 6.297566, (76725.8, 5.81)  # tests/jobs/plastic_calculix.py, CAX8R, 200 increments
+NECKS = {3: (73613, 6.1133), 5: (76387, 5.9111), 7: (73395, 5.5277), 8: (69326, 5.2039), 9: (64401, 4.8379),
+         10: (57949, 4.4187)}
+HILL = {"young": 21000, "yield": 24, "inner": 1, "outer": 2, "bore": 0.02}  # of plastic_cylinder.yaml
 
 
 def row_at(steps, t):
@@ -26,10 +33,24 @@ def row_at(steps, t):
     return {key: values[at] for key, values in steps.items()}
 
 
+def jackson_green(w):
+    c = 1.295 * math.exp(0.736 * NU)
+    w_c, p_c = (math.pi * c * Y / (2 * MODULUS))**2, 4 / 3 / MODULUS**2 * (c / 2 * math.pi * Y)**3
+    s = w / w_c
+    if s < 1.9:
+        return p_c * s**1.5
+    a = math.sqrt(w * (s / 1.9)**(0.14 * math.exp(23 * Y / MODULUS)))
+    hardness = 2.84 * (1 - math.exp(-0.82 * a**-0.7))
+    return p_c * (math.exp(-0.25 * s**(5 / 12)) * s**1.5 + 4 * hardness / c * (1 - math.exp(-s**(5 / 9) / 25)) * s)
+
+
 def ball(steps):
     for way in (2, 6, 10, 50):
-        fit = 1.03 * way**1.425 if way <= 6 else 1.40 * way**1.263
-        yield way / 110, f"P/P_c at {way} w_c", row_at(steps, way / 110)["force"] / P_C, fit, "Kogut and Etsion 2002"
+        fit, row = 1.03 * way**1.425 if way <= 6 else 1.40 * way**1.263, row_at(steps, way / 110)
+        yield way / 110, f"P/P_c at {way} w_c", row["force"] / P_C, fit, "Kogut and Etsion 2002"
+        yield (way / 110, f"P/P_c at {way} w_c", row["force"] / P_C, jackson_green(way * W_C) / P_C,
+               "Jackson and Green 2005")
+        yield way / 110, f"nodes in contact at {way} w_c", row["contact_nodes"], None, ""
 
 
 def ring(steps):
@@ -52,11 +73,48 @@ def billet(steps):
     yield 1, "force on a die", end["force"] + end["die"], None, ""
 
 
-def beams(steps):
-    for u, force in BEAMS.items():
-        for key, reference in zip(("force_x", "force_y"), force):
+def billet_way(steps):
+    for t, force in BILLET.items():
+        yield t, "force on a die", numpy.interp(t, steps["t"], steps["force"] + steps["die"]), force, "CalculiX"
+
+
+def bar(steps):
+    way, largest = 10.2 * steps["t"], numpy.argmax(steps["force"])
+    yield steps["t"][largest], "largest force", steps["force"][largest], NECK_LARGEST[0], "CalculiX"
+    yield steps["t"][largest], "its elongation", way[largest], NECK_LARGEST[1], "CalculiX"
+    for at, (force, radius) in NECKS.items():
+        yield at / 10.2, f"force at {at} mm", numpy.interp(at, way, steps["force"]), force, "CalculiX"
+        yield at / 10.2, f"neck at {at} mm", NECK + numpy.interp(at, way, steps["neck"]), radius, "CalculiX"
+
+
+def hill(bore):
+    """Pressure on an incompressible cylinder whose bore is displaced."""
+    shear, plane, a, b = HILL["young"] / 3, 2 * HILL["yield"] / math.sqrt(3), HILL["inner"], HILL["outer"]
+    c = min(b, math.sqrt(4 * shear * a * bore / plane))
+    return 2 * shear * a * bore * (1 / a**2 - 1 / b**2) if c <= a else plane * (math.log(c / a) + (1 - c**2 / b**2) / 2)
+
+
+def cylinder(steps):
+    """The pressure is the work over what the bore sweeps: that of the middle of each step."""
+    bore, work = HILL["bore"] * numpy.append(0, steps["t"]), numpy.append(0, steps["work"])
+    pressure = numpy.diff(work) / (math.pi / 2 * HILL["inner"] * numpy.diff(bore))
+    expected = [(hill(before) + hill(after)) / 2 for before, after in zip(bore, bore[1:])]
+    worst = numpy.argmax(numpy.abs(pressure - expected))
+    yield steps["t"][worst], "pressure where it is furthest off", pressure[worst], expected[worst], "Hill 1950"
+    yield 1, "limit pressure", pressure[-1], hill(bore[-1]), "Hill 1950"
+
+
+def free_beams(steps):
+    """Without friction the source has no table."""
+    for u in BEAMS:
+        for key in ("force_x", "force_y"):
             if u <= 31.5 * steps["t"][-1]:
-                yield u / 31.5, key, numpy.interp(u / 31.5, steps["t"], steps[key]), reference, "Neto et al. 2016"
+                yield u / 31.5, key, numpy.interp(u / 31.5, steps["t"], steps[key]), None, ""
+
+
+def beams(steps):
+    for t, key, value, _, _ in free_beams(steps):
+        yield t, key, value, BEAMS[round(31.5 * t)][key == "force_y"], "Neto et al. 2016"
 
 
 def pipe(steps):
@@ -66,17 +124,64 @@ def pipe(steps):
 CASES = [("ball on a plane", name, SCENES / "sphere_flat.yaml", [f"mesh.parameters={mesh}"], ball)
          for name, mesh in (("h 3e-4", "{h: 3e-4, growth: 0.06}"), ("h 6e-4", "{h: 6e-4, growth: 0.12}"))]
 CASES += [("ring between plates", name, SCENES / "ring_springback.yaml", ["stepping.at=[0.5]", *own], ring)
-          for name, own in (("default steps", []), ("dt 0.02", ["stepping.dt_max=0.02"]))]
+          for name, own in (("default steps", []), ("dt 0.02", ["stepping.dt_max=0.02"]),
+                            ("full integration, dt 0.02", ["stepping.dt_max=0.02", "bodies.0.formulation=full"]))]
 CASES += [("vee die", name, SCENES / "vee_bend.yaml", own, vee)
           for name, own in (("100 x 8, fbar", []), ("200 x 16, fbar", ["mesh.parameters.nx=200", "mesh.parameters.ny=16"]),
                             ("100 x 8, second order", ["mesh.order=2"]))]
 CASES += [("upset billet", name, SCENES / "upset.yaml", own, billet)
           for name, own in (("default steps", []), *((f"plastic_strain {bound}", [f"stepping.plastic_strain={bound}"])
                                                      for bound in (0.5, 0.2, 0.1, 0.05, 0.01)))]
-CASES += [("curved beams", f"{smoother}, mu {mu}", SCENES / "curved_beams.yaml",
-           [f"contact.0.smoother={smoother}", f"contact.0.friction.mu={mu}"], beams)
-          for mu in (0.3, 0) for smoother in ("diffuse", "facet")]
-CASES += [("curved beams", "diffuse, mu 0.3, second order", SCENES / "curved_beams.yaml", ["mesh.order=2"], beams)]
+CASES += [("upset billet", "second order, full integration, plastic_strain 0.02", SCENES / "upset.yaml",
+           ["mesh.order=2", "mesh.parameters.ny=16", "bodies.0.formulation=full", "stepping.plastic_strain=0.02"],
+           billet_way)]
+HALF = ["stepping.initial=0.005", "stepping.dt_max=0.0079"]
+FACET, NODES = "contact.0.smoother=facet", "contact.0.formulation=node_to_surface"
+SWAP = ["contact.0.slave=lower_outer", "contact.0.master=upper_outer"]
+
+
+def grid(arc, wall, order, apart=0.001):
+    return [f"mesh.order={order}", f"mesh.parameters={{n_arc: {arc}, n_wall: {wall}, apart: {apart}}}"]
+
+
+CASES += [("curved beams", f"{name}, mu {mu}", SCENES / "curved_beams.yaml", [f"contact.0.friction.mu={mu}", *own],
+           figures)
+          for mu, figures in ((0.3, beams), (0, free_beams)) for name, own in (
+              ("smooth", []), ("facets", [FACET]), ("facets, node to surface", [FACET, NODES]),
+              ("facets, sides swapped", [FACET, *SWAP]), ("smooth, second order, 32 x 2", grid(32, 2, 2)),
+              ("smooth, second order", grid(64, 4, 2)),
+              ("smooth, second order, half the step", [*grid(64, 4, 2), *HALF]))]
+CASES += [("curved beams", f"smooth, {name}", SCENES / "curved_beams.yaml", own, beams)
+          for name, own in (
+              ("mu 0.3, node to surface", [NODES]), ("mu 0.3, half the step", HALF),
+              ("mu 0.3, 128 x 8", grid(128, 8, 1)), ("mu 0.3, second order, 128 x 8", grid(128, 8, 2)),
+              ("mu 0.29", ["contact.0.friction.mu=0.29"]),
+              ("mu 0.3, gap 0.1 at the start", grid(64, 4, 1, 0.1)),
+              ("mu 0.3, stiff stick", ["contact.0.friction.stick.penalty=2e4"]),
+              ("mu 0.3, ten times the penalty", ["contact.0.penalty.scale=30"]),
+              ("mu 0.3, hardening 420.5", [f"bodies.{k}.material.hardening.linear=420.5" for k in (0, 1)]),
+              ("mu 0.3, full integration", [f"bodies.{k}.formulation=full" for k in (0, 1)]),
+              ("mu 0.3, 48 x 4", grid(48, 4, 1)), ("mu 0.3, 48 x 4, gap 0.06 at the start", grid(48, 4, 1, 0.06)))]
+FINE_BAR = "mesh.parameters={nr: 16, nl: 48, progression: 1.04}"
+CASES += [("necking bar", name, SCENES / "necking.yaml", ["loads.0.uy=5.1", "stepping.dt_max=0.00686", *own], bar)
+          for name, own in (
+              ("full, second order, 8 x 24", ["mesh.order=2", "bodies.0.formulation=full"]),
+              ("mixed, second order, 8 x 24", ["mesh.order=2", "bodies.0.formulation=mixed"]),
+              ("full, triangles of second order",
+               ["mesh.order=2", "bodies.0.formulation=full", "mesh.parameters.simplex=1"]),
+              ("mixed, triangles of second order",
+               ["mesh.order=2", "bodies.0.formulation=mixed", "mesh.parameters.simplex=1"]),
+              ("fbar, 16 x 48", [FINE_BAR]), ("enhanced, 16 x 48", [FINE_BAR, "bodies.0.formulation=enhanced"]),
+              ("mixed, 16 x 48", [FINE_BAR, "bodies.0.formulation=mixed"]),
+              ("mixed, second order, 16 x 48", [FINE_BAR, "mesh.order=2", "bodies.0.formulation=mixed"]),
+              ("full, second order, half the step",
+               ["mesh.order=2", "bodies.0.formulation=full", "stepping.dt_max=0.00343"]))]
+ROUND = ["supports=[{surface: symmetry_x, ux: 0}, {surface: symmetry_y, uy: 0}]", "geometry=plane_strain", "probes=[]",
+         "loads=[{surface: inner, ux: \"0.02*cos(theta)\", uy: \"0.02*sin(theta)\"}]", "bodies.0.material.nu=0.4999"]
+CASES += [("thick cylinder", f"{name}, order {order}", SCENES / "plastic_cylinder.yaml",
+           [f"mesh.order={order}", f"bodies.0.formulation={name}",
+            f"mesh.parameters={{form: 0, n_wall: {20 // order}, n_arc: {12 // order}, n_len: 1, len: 0.1}}", *ROUND],
+           cylinder) for name, order in (("fbar", 1), ("enhanced", 1), ("mixed", 1), ("mixed", 2))]
 CASES += [("pinched pipe", f"{name}, {smoother}", ROOT / "runs/pipe_pinch.yaml",
            [f"bodies.0.material={law}", f"bodies.1.material={ELASTIC}", f"contact.0.smoother={smoother}",
             "stepping={initial: 0.05}", "output.every=0"], pipe)
@@ -112,10 +217,13 @@ def print_table(records):
 
 def main():
     parser = table_parser(__doc__, "forming")
+    parser.add_argument("--case", choices=sorted({case[0] for case in CASES}))
     args = parser.parse_args()
-    if not args.only_print:
-        args.out.mkdir(parents=True, exist_ok=True)
-        write_records(args.record, COLUMNS, lambda case: solve(case, args), CASES, 1)
+    args.out.mkdir(parents=True, exist_ok=True)
+    for name in dict.fromkeys(case[0] for case in CASES):
+        if not args.only_print and args.case in (None, name):
+            rows = [row for case in CASES if case[0] == name for row in solve(case, args)]
+            replace_records(args.record, COLUMNS, name, rows)
     print_table(read_records(args.record))
 
 

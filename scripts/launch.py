@@ -79,7 +79,7 @@ def table_parser(description, name, record=None):
 def write_records(path, columns, solve, cases, jobs):
     """Solves cases, `jobs` at a time, into a CSV file that grows as they end; solve gives a list of records."""
     with open(path, "w", newline="") as file, ThreadPoolExecutor(jobs) as pool:
-        writer = csv.DictWriter(file, columns)
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
         for records in pool.map(solve, cases):
             writer.writerows(records)
@@ -126,6 +126,6 @@ def replace_records(path, columns, case, records):
     """Puts the records of a case (column `case`) in the place of those a CSV file has of it."""
     rows = [row for row in read_records(path) if row["case"] != case] + records
     with open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, columns)
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)

@@ -37,7 +37,7 @@ PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *
 enum { PLASTIC_FIELDS = 7 };
 
 void           ElasticitySetTime(Elasticity, PetscReal t);
-PetscErrorCode ElasticityAcceptPlastic(Elasticity, const PetscReal *u, PetscReal t);
+PetscErrorCode ElasticityAcceptPlastic(Elasticity, const PetscReal *u, PetscReal t, PetscReal *growth);
 PetscErrorCode ElasticityArchivePlastic(Elasticity, Archive);
 PetscErrorCode ElasticityPlasticGrowth(Elasticity, const PetscReal *u, PetscReal t, PetscReal *growth);
 PetscErrorCode ElasticityNodalPlasticStrain(Elasticity, PetscReal *strain, PetscReal *weight);

@@ -1,6 +1,48 @@
 /* The plastic states of an elasticity: acceptance, archive, and what reports need of them. */
 #include "elasticityimpl.h"
 
+/* Copies the equivalent plastic strains of all points of a batch. A user's routine has none. */
+static void BatchStrains(const CellGroup *g, PetscInt batch, double *strains)
+{
+  const int     points = g->plastic.umat ? 0 : ElementStatePoints(&g->kernel), states = ElementStates(&g->plastic);
+  const double *state = &g->state[(size_t)batch * KERNEL_LANES * ElasticityCellStates(g)];
+
+  for (int p = 0; p < points; p++)
+    for (int lane = 0; lane < KERNEL_LANES; lane++)
+      strains[p * KERNEL_LANES + lane] = state[(p * states + PLASTIC_STRAIN) * KERNEL_LANES + lane];
+}
+
+/* The largest growth of these strains since they were copied. */
+static PetscReal BatchGrowth(const CellGroup *g, PetscInt batch, const double *before)
+{
+  const int points = g->plastic.umat ? 0 : ElementStatePoints(&g->kernel);
+  double    now[ELEMENT_MAX_POINTS * KERNEL_LANES];
+  PetscReal most = 0;
+
+  BatchStrains(g, batch, now);
+  for (int k = 0; k < points * KERNEL_LANES; k++) most = PetscMax(most, now[k] - before[k]);
+  return most;
+}
+
+/* Makes the plastic state of a group's cells at u the accepted one; growth: raised to its largest growth. */
+static PetscErrorCode AcceptGroup(Elasticity e, CellGroup *g, const PetscReal *u, PetscReal *growth)
+{
+  const size_t dofs = (size_t)g->nodes * e->dim;
+  double       before[ELEMENT_MAX_POINTS * KERNEL_LANES];
+
+  PetscFunctionBeginUser;
+  for (PetscInt batch = 0; batch < g->n_batches && g->state; batch++) {
+    const size_t first = (size_t)batch * KERNEL_LANES;
+
+    BatchStrains(g, batch, before);
+    ElasticityGather(e, g, batch, u, e->u);
+    ElementAcceptState(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants],
+                       ElasticityMultipliers(e, g, batch));
+    *growth = PetscMax(*growth, BatchGrowth(g, batch, before));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ElasticityAcceptPlastic - makes the plastic state at given displacements the accepted one, from which all others
 start.
@@ -12,45 +54,21 @@ start.
 . u - local displacements (length) [n_nodes*dim] of a state that is accepted
 - t - its time
 
+  Output Parameter:
+. growth - of the equivalent plastic strain of a quadrature point of this rank, the largest
+
   Note:
   Residual, tangent and energy at u and t stay the same, up to round-off. Nothing happens where no body is plastic.
 @*/
-PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u, PetscReal t)
+PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u, PetscReal t, PetscReal *growth)
 {
   PetscFunctionBeginUser;
+  *growth = 0;
   ElasticitySetTime(e, t);
-  for (int k = 0; k < e->n_groups; k++) {
-    CellGroup   *g    = &e->groups[k];
-    const size_t dofs = (size_t)g->nodes * e->dim;
-
-    for (PetscInt batch = 0; batch < g->n_batches && g->state; batch++) {
-      const size_t first = (size_t)batch * KERNEL_LANES;
-
-      ElasticityGather(e, g, batch, u, e->u);
-      ElementAcceptState(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants],
-                         ElasticityMultipliers(e, g, batch));
-    }
-  }
+  for (int k = 0; k < e->n_groups; k++) PetscCall(AcceptGroup(e, &e->groups[k], u, growth));
   e->accepted_t = t;
   ElasticitySetTime(e, t);
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The largest growth of the equivalent plastic strain of a group's points from states before to those of the group. */
-static PetscReal GroupGrowth(const CellGroup *g, const PetscReal *before)
-{
-  const size_t states = ElasticityCellStates(g);
-  PetscReal    most   = 0;
-
-  for (size_t batch = 0; batch < (size_t)g->n_batches; batch++) {
-    for (size_t k = PLASTIC_STRAIN; k < states; k += PLASTIC_STATE) {
-      const size_t first = (batch * states + k) * KERNEL_LANES;
-
-      for (size_t lane = 0; lane < KERNEL_LANES; lane++)
-        most = PetscMax(most, g->state[first + lane] - before[first + lane]);
-    }
-  }
-  return most;
 }
 
 /*@
@@ -83,14 +101,12 @@ PetscErrorCode ElasticityPlasticGrowth(Elasticity e, const PetscReal *u, PetscRe
     PetscCall(PetscMalloc1(n, &before[k]));
     PetscCall(PetscArraycpy(before[k], g->state, n));
   }
-  PetscCall(ElasticityAcceptPlastic(e, u, t));
-  *growth = 0;
+  PetscCall(ElasticityAcceptPlastic(e, u, t, growth));
   for (int k = 0; k < e->n_groups; k++) {
     CellGroup   *g = &e->groups[k];
     const size_t n = (size_t)g->n_batches * KERNEL_LANES * ElasticityCellStates(g);
 
     if (!g->state) continue;
-    *growth = PetscMax(*growth, GroupGrowth(g, before[k]));
     PetscCall(PetscArraycpy(g->state, before[k], n));
     PetscCall(PetscFree(before[k]));
   }

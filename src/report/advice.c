@@ -1,6 +1,7 @@
 /* Situations of a run and the changes that help in them, see advice.h. */
 #include "advice.h"
 #include "runlength.h"
+#include <math.h>
 #include <string.h>
 
 /* Estimated error by penetration above which a stiffer penalty is advised, and the error that it is to leave. */
@@ -38,6 +39,9 @@
 /* Part of the energy of friction that nodes may take whose slip turns by more than 10 degrees within a step: the
    direction of their forces lags by about half of the angle. */
 #define ADVICE_TURNED 0.1
+/* Part of the shear stress of a plastic flow that a step may lose, and the one that smaller steps are to leave. */
+#define ADVICE_FLOW        0.01
+#define ADVICE_FLOW_WANTED 0.003
 /* Penetration of a slave node (face sizes) at which contact is lost because the penalty is soft, and the one that a
    stiffer penalty is to leave. */
 #define ADVICE_DEEP        0.5
@@ -206,6 +210,25 @@ static double LineSearchCuts(const RunFigures *figures, char *text)
   return 1;
 }
 
+/* A step takes the directions of its flow from the whole stretch since its start. In simple shear these lag behind the
+   true ones: where the equivalent plastic strain grows by a in a step, the shear stress at its end is the true one over
+   cosh(sqrt(3)/2 a). Flow along a straight path of the logarithmic strain loses nothing. */
+static double FlowLoss(double growth)
+{
+  return 1 - 1 / cosh(sqrt(3) / 2 * growth);
+}
+
+static double FlowTurns(const RunFigures *figures, char *text)
+{
+  const double growth = figures->last ? (double)figures->last->energy.growth : 0, loss = FlowLoss(growth);
+
+  if (figures->scene->kinematics != KINEMATICS_FINITE || !(loss > ADVICE_FLOW)) return 0;
+  snprintf(text, ADVICE_TEXT,
+           "plastic strain grows by up to %.2g in a step, which costs a flow in shear %.2g %% of its stress", growth,
+           100 * loss);
+  return growth / (2 / sqrt(3) * acosh(1 / (1 - ADVICE_FLOW_WANTED)));
+}
+
 static double OutputIsSlow(const RunFigures *figures, char *text)
 {
   const PetscReal seconds = figures->usage.seconds[TIMING_OUTPUT];
@@ -262,6 +285,7 @@ static const Situation situations[] = {
   {.run = NeighbourListsAreRemade, .changes = {CHANGE_SHORTER}},
   {.run = StepsAreLong, .changes = {CHANGE_SHORTER}},
   {.run = LineSearchCuts, .changes = {CHANGE_SHORTER}},
+  {.run = FlowTurns, .changes = {CHANGE_FLOW}},
   {.run = OutputIsSlow, .changes = {CHANGE_OUTPUT}},
   {.run = StepsAreMany, .changes = {CHANGE_LONGER}},
   {.run = ResultsAreLarge, .changes = {CHANGE_LESS_OUTPUT}},
@@ -404,9 +428,10 @@ void AdviceCollect(const RunFigures *figures, Advice *advice)
     }
   }
   for (size_t s = 0; s < sizeof(situations) / sizeof(situations[0]); s++) {
-    const ChangePlace at = {.figures = figures, .body = -1, .factor = 1};
+    const double      factor = situations[s].run ? situations[s].run(figures, text) : 0;
+    const ChangePlace at     = {.figures = figures, .body = -1, .factor = factor};
 
-    if (situations[s].run && situations[s].run(figures, text) > 0) AddLine(advice, text, &at, situations[s].changes);
+    if (factor > 0) AddLine(advice, text, &at, situations[s].changes);
   }
 }
 

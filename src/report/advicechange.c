@@ -348,6 +348,11 @@ static void WriteShorter(const ChangePlace *at, char *text, size_t size)
     WriteNumber("stepping", scene->stepping.control == STEP_FIXED ? "initial" : "dt_max", half, text, size);
 }
 
+static void WriteFlow(const ChangePlace *at, char *text, size_t size)
+{
+  WriteNumber("stepping", "plastic_strain", (double)at->figures->last->energy.growth / at->factor, text, size);
+}
+
 static int StopsEarly(const ChangePlace *at)
 {
   return at->figures->scene->stepping.dt_min > CHANGE_DT_MIN_NEAR;
@@ -472,6 +477,7 @@ static const Change changes[CHANGES] = {
   [CHANGE_SECOND_ORDER]   = {"mesh.order", AXIS_ELEMENTS, 1, IsFirstOrder, WriteSecondOrder},
   [CHANGE_SHORTER]        = {"stepping", AXIS_STEP, -1, MayBeShorter, WriteShorter},
   [CHANGE_SHORTER_MIN]    = {"stepping.dt_min", AXIS_STEP, -1, StopsEarly, WriteShorterMin},
+  [CHANGE_FLOW]           = {"stepping.plastic_strain", AXIS_STEP, -1, MayBeShorter, WriteFlow},
   [CHANGE_MORE_NODES]     = {"stepping.N_c", AXIS_STEP, 1, CountsNodes, WriteMoreNodes},
   [CHANGE_LONGER]         = {"stepping", AXIS_STEP, 1, Always, WriteNothing},
   [CHANGE_PREDICTION]     = {"stepping.prediction", AXIS_PREDICTION, 1, PredictsAfterwards, WritePrediction},

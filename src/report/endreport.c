@@ -176,7 +176,8 @@ static void PrintEnergy(const EnergyFigures *energy, FILE *stream)
   fprintf(stream, "energy   work %.6g on the bodies = %.6g elastic + %.6g plastic", work, (double)energy->elastic,
           (double)energy->plastic);
   if (sum > 0) fprintf(stream, ", %.2g %% apart by the trapezoidal rule over the steps", 100 * fabs(work - sum) / sum);
-  fprintf(stream, "; largest plastic strain %.4g\n", (double)energy->strain);
+  fprintf(stream, "; largest plastic strain %.4g, growth in a step up to %.2g\n", (double)energy->strain,
+          (double)energy->growth);
 }
 
 /* The stream, and how many changes to try have been printed */

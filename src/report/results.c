@@ -269,7 +269,8 @@ static PetscErrorCode ResultsArchiveStep(Results results, Archive archive)
                                &last->energy.elastic,
                                &last->energy.plastic,
                                &last->energy.work,
-                               &last->energy.strain};
+                               &last->energy.strain,
+                               &last->energy.growth};
   PetscInt       *integer[] = {&last->step,     &last->attempts, &last->newton, &last->krylov,           &last->tied,
                                &contact->nodes, &contact->in,    &contact->out, &contact->outside_window};
 

@@ -192,6 +192,7 @@ static void AddEnergy(cJSON *json, Scene scene, const StepRecord *last)
   AddReal(map, "plastic", energy.plastic);
   AddReal(map, "work", energy.work);
   AddReal(json, "max_plastic_strain", energy.strain);
+  AddReal(json, "max_plastic_growth", energy.growth);
 }
 
 static void AddPartition(cJSON *json, const Mesh mesh)

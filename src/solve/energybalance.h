@@ -11,12 +11,13 @@ typedef struct {
   PetscReal plastic; /* energy that plastic flow has dissipated, hardening included */
   PetscReal work;    /* done on all bodies by loads, supports and contact */
   PetscReal strain;  /* largest equivalent plastic strain of a quadrature point */
+  PetscReal growth;  /* largest growth of it in a step so far */
 } EnergyFigures;
 
 typedef struct _n_EnergyBalance *EnergyBalance;
 
 PetscErrorCode EnergyBalanceCreate(Mesh, Elasticity, EnergyBalance *);
 PetscErrorCode EnergyBalanceDestroy(EnergyBalance *);
-PetscErrorCode EnergyBalanceAdd(EnergyBalance, const PetscReal *u_0, const PetscReal *u);
+PetscErrorCode EnergyBalanceAdd(EnergyBalance, const PetscReal *u_0, const PetscReal *u, PetscReal growth);
 EnergyFigures  EnergyBalanceGet(EnergyBalance);
 PetscErrorCode EnergyBalanceArchive(EnergyBalance, Archive, const PetscReal *u);

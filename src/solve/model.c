@@ -195,13 +195,13 @@ PetscErrorCode ModelAccept(Model model)
 {
   ModelWork      *work    = model->work;
   const PetscBool stepped = model->t > work->accepted_t ? PETSC_TRUE : PETSC_FALSE;
-  PetscReal       motion;
+  PetscReal       motion, growth;
   PetscBool       ok;
 
   PetscFunctionBeginUser;
   ToolsAccept(model->mesh, model->u, model->t);
-  PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t));
-  if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u));
+  PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t, &growth));
+  if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u, growth));
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);

@@ -87,6 +87,8 @@ for name, law in LAWS.items():
         largest = max(abs(value) for value in force)
         check.near(f"{what}: force", [row["force"] for row in steps], force, (1e-6 if law[3] else 2e-3) * largest)
         check.near(f"{what}: plastic strain", steps[-1]["max_plastic_strain"], expected[-1][1], 1e-3 * expected[-1][1])
+        growth = max(after[1] - before[1] for before, after in zip([(0, 0, 0), *expected], expected))
+        check.near(f"{what}: largest growth in a step", finished.summary()["max_plastic_growth"], growth, 1e-2 * growth)
         work = expected[-1][2] * LENGTH
         check.near(f"{what}: plastic work", finished.summary()["energy"]["plastic"], work, 5e-3 * work)
         check.holds(f"{what}: no step failed", finished.summary()["steps_failed"] == 0)

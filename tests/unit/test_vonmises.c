@@ -250,6 +250,24 @@ static void LargeShearDoesNotOscillate(void **unused)
   assert_near(determinant, 1, 1e-11);
 }
 
+/* A long step of simple shear lags: its shear stress is the true one over cosh(sqrt(3)/2 a), where a is the growth of
+   the equivalent plastic strain in the step. */
+static void LongStepsOfShearLag(void **unused)
+{
+  const double steps[] = {0.2, 0.5, 1, 2};
+
+  (void)unused;
+  for (int k = 0; k < 4; k++) {
+    double state[PLASTIC_MAX_STATE] = {0}, P[9], before;
+
+    for (int step = 1; step <= 20; step++) Point(1, &perfect, (double[9]){0, 0.01 * step}, state, NULL, P, NULL, state);
+    before = state[PLASTIC_STRAIN];
+    Point(1, &perfect, (double[9]){0, 0.2 + steps[k]}, state, NULL, P, NULL, state);
+    assert_near(P[1], perfect.yield / sqrt(3) / cosh(sqrt(3) / 2 * (state[PLASTIC_STRAIN] - before)),
+                2e-3 * perfect.yield);
+  }
+}
+
 static void InvertedPointsStayFinite(void **unused)
 {
   const double points[][9] = {{-2.5, 0.1, 0, 0, 0.2, 0, 0.3, 0, 0},
@@ -272,10 +290,15 @@ static void InvertedPointsStayFinite(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(StressAndTangentAreDerivatives), cmocka_unit_test(AcceptedStatesAreElastic),
-    cmocka_unit_test(RotationTurnsTheStress),         cmocka_unit_test(TensionFollowsTheHardening),
-    cmocka_unit_test(HardeningIsConsistent),          cmocka_unit_test(SmallStrainsAreTheLimit),
-    cmocka_unit_test(LargeShearDoesNotOscillate),     cmocka_unit_test(InvertedPointsStayFinite),
+    cmocka_unit_test(StressAndTangentAreDerivatives),
+    cmocka_unit_test(AcceptedStatesAreElastic),
+    cmocka_unit_test(RotationTurnsTheStress),
+    cmocka_unit_test(TensionFollowsTheHardening),
+    cmocka_unit_test(HardeningIsConsistent),
+    cmocka_unit_test(SmallStrainsAreTheLimit),
+    cmocka_unit_test(LargeShearDoesNotOscillate),
+    cmocka_unit_test(InvertedPointsStayFinite),
+    cmocka_unit_test(LongStepsOfShearLag),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
