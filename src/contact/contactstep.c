@@ -69,7 +69,7 @@ static PetscErrorCode AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
                                             .pressure  = value.pressure,
                                             .stiffness = pair->stiffness[c],
                                             .penalty   = state.penalty};
-  if (pair->friction && !pair->tool) /* the slip against a tool with unknowns is left out */
+  if (pair->friction)
     PetscCall(FrictionStepTerm(pair, c, t, &step->terms[step->mine].friction, step->tangent[step->mine]));
   step->pair[step->mine]   = p;
   step->term[step->mine++] = c;
@@ -306,6 +306,7 @@ static PetscErrorCode OwnSlide(ContactStep step, const PetscReal *du, PetscReal 
     const ContactPair *pair = &step->contact->pairs[p];
 
     PetscCall(PairMove(step->contact, &step->contact->pairs[p], du, t, t_next, &values));
+    if (pair->friction && pair->tool) PetscCall(ContactToolRelative(pair, values));
     for (; i < step->mine && step->pair[i] == p; i++)
       if (pair->friction) PetscCall(FrictionTermMotion(pair, step->term[i], values, &slide[3 * i]));
     PetscCall(PetscFree(values));
@@ -426,6 +427,7 @@ static PetscErrorCode AddTraction(ContactStep step, PetscInt i, PetscInt a, Pets
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n, &values));
   PetscCall(FrictionTermForces(pair, step->term[i], step->tangent[i][a], values));
+  if (pair->tool) PetscCall(ContactToolForces(pair, values));
   for (PetscInt k = 0; k < n; k++)
     if (values[k] != 0) PetscCall(MatSetValue(B, pair->lists->dof[k], j, -values[k], ADD_VALUES));
   PetscCall(PetscFree(values));
