@@ -1,4 +1,5 @@
 /* The line search of Newton's method: what it compares, and how Newton's step is corrected for contact before it. */
+#include "bodies/tools.h"
 #include "modelimpl.h"
 #include "contact/contactturn.h"
 
@@ -205,6 +206,29 @@ static PetscErrorCode EvaluatePart(Halvings *h, int i)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The part of the step x - y that is tried first: all that the search allows, unless it turns a tool too far. Where all
+   that touches a tool slips, little resists its turn, and a linear step would spin it. */
+static PetscErrorCode FirstPart(Model model, SNESLineSearch search, Vec x, Vec y, PetscReal *first)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *u, *v, turn;
+  Vec            end;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESLineSearchGetDamping(search, first));
+  if (!model->mesh->n_tools) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(n, &u, n, &v));
+  PetscCall(VecDuplicate(x, &end));
+  PetscCall(VecWAXPY(end, -1, y, x));
+  PetscCall(ProblemDisplacements(model->problem, x, model->t, u));
+  PetscCall(ProblemDisplacements(model->problem, end, model->t, v));
+  turn = ToolsTurn(model->mesh, u, v, NULL);
+  if (turn * *first > MODEL_FARTHEST) *first = MODEL_FARTHEST / turn;
+  PetscCall(VecDestroy(&end));
+  PetscCall(PetscFree2(u, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Evaluates what is missing to judge part i of the step. *serves: the residual falls to less than LINE_PLAIN of itself,
    or the work that is done against it on the way, by Simpson's rule, is that of an energy that falls. *stands: w and G
    are those of part i. */
@@ -260,8 +284,8 @@ static PetscErrorCode ModelSearchWork(SNESLineSearch search, void *context)
   PetscCall(SNESGetIterationNumber(snes, &iterate));
   PetscCall(SNESLineSearchGetVecs(search, &x, &F, &y, &w, &G));
   PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_SUCCEEDED));
-  PetscCall(SNESLineSearchGetDamping(search, &h.first));
   PetscCall(SNESLineSearchPreCheck(search, x, y, &changed));
+  PetscCall(FirstPart(model, search, x, y, &h.first));
   PetscCall(VecNorm(F, NORM_2, &h.before));
   PetscCall(VecDotRealPart(F, y, &h.slope));
   work->norms[iterate % LINE_MEMORY] = h.before;
