@@ -14,7 +14,9 @@
 #define PENALTY_ERROR_LARGE 0.004
 /* The estimates for pressures do not count for this. Where the slave's nodes are denser than the master's, pressures
    scatter, and stiffer penalties only let them scatter more. */
-/* They are made so stiff that this is to be expected. */
+/* They are made so stiff that this is to be expected where the estimate is twice as large as that or more. Below, the
+   factor falls to 1, and the error that is to be expected rises to the threshold: an estimate that rounding moves over
+   the threshold, on other ranks, then hardly changes the answer. */
 #define PENALTY_ERROR_WANTED 0.002
 /* They are made stiffer by at most this factor at a time. An estimate that asks for more is beyond the range in which
    the error is proportional to the compliance. */
@@ -208,13 +210,20 @@ PetscErrorCode ModelEstimatePenalty(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How many times as stiff penalties become for an estimated error above PENALTY_ERROR_LARGE, where it is 1. */
+static PetscReal Factor(PetscReal error)
+{
+  return PetscMin(PENALTY_MOST_STIFFER, PetscMin(error / PENALTY_ERROR_WANTED, PetscSqr(error / PENALTY_ERROR_LARGE)));
+}
+
 /* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty().
- *stiffened: some are. */
+ *stiffened: some are. Those with such small forces stay as they are of which the solve itself leaves an error as large.
+ */
 PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
 {
   const int    pairs = ContactPairs(model->contact);
   ContactLoad *load;
-  PetscReal    most = 0;
+  PetscReal    most = 0, left = model->scene->solver.tolerance * ProblemForceScale(model->problem);
 
   PetscFunctionBeginUser;
   *stiffened = PETSC_FALSE;
@@ -223,11 +232,10 @@ PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
   for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
   for (int p = 0; p < pairs; p++) {
     const PenaltyError *error = &model->work->penalty_error[p];
-    const PetscReal     worst = PetscMax(error->displacement, error->force),
-                    factor    = PetscMin(worst / PENALTY_ERROR_WANTED, PENALTY_MOST_STIFFER);
+    const PetscReal     worst = PetscMax(error->displacement, error->force), factor = Factor(worst);
 
     if (!ContactPairScene(model->contact, p)->penalty_may_stiffen || !(worst > PENALTY_ERROR_LARGE) ||
-        load[p].force < PENALTY_LIGHT_PAIR * most)
+        load[p].force < PENALTY_LIGHT_PAIR * most || PENALTY_ERROR_LARGE * load[p].force <= left)
       continue;
     PetscCall(ContactStiffen(model->contact, p, factor));
     PetscCall(PetscInfo(model->snes, "contact '%s': estimated error %g, penalties %g times as stiff\n",
