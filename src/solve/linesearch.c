@@ -17,6 +17,8 @@
 #define LINE_PLAIN 0.5
 /* With friction the work that is done against the residual must fall by this part of what its slope promises. */
 #define LINE_FALL 1e-4
+/* With friction a step serves after which the same tangent asks for less than this part of it. */
+#define LINE_NATURAL 0.5
 /* Energies that differ by less than this many machine epsilons of the energy differ by round-off only. */
 #define LINE_RISE 64
 
@@ -249,6 +251,36 @@ static PetscErrorCode PartServes(Halvings *h, int i, PetscBool *serves, PetscBoo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether Newton's method converges from the end of the step x - y, although neither residual nor work falls on
+   the way: the step that the same tangent asks for there is less than LINE_NATURAL of y. A soft motion along a bend is
+   such a step. What is stiff across it is out of balance at its end by the square of the step, and the next step
+   corrects that. Source: Deuflhard, the natural monotonicity test, Newton Methods for Nonlinear Problems, 2004. */
+static PetscErrorCode EndServes(Model model, Halvings *h, PetscBool *serves)
+{
+  PetscReal whole, next;
+  PetscBool direct;
+  SNES      snes;
+  KSP       ksp;
+  Vec       x, F, y, w, G, z;
+
+  PetscFunctionBeginUser;
+  *serves = PETSC_FALSE;
+  PetscCall(LinearSolverDirect(model->work->solver, &direct));
+  if (!direct || h->first < 1 || h->norm[0] == PETSC_MAX_REAL) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESLineSearchGetSNES(h->search, &snes));
+  PetscCall(SNESLineSearchGetVecs(h->search, &x, &F, &y, &w, &G));
+  PetscCall(SNESGetKSP(snes, &ksp));
+  PetscCall(EvaluatePart(h, 0));
+  PetscCall(VecDuplicate(y, &z));
+  PetscCall(KSPSolve(ksp, G, z));
+  PetscCall(VecNorm(y, NORM_2, &whole));
+  PetscCall(VecNorm(z, NORM_2, &next));
+  PetscCall(PetscInfo(snes, "the next step is %g of this one\n", (double)(next / whole)));
+  *serves = (PetscBool)(next < LINE_NATURAL * whole);
+  PetscCall(VecDestroy(&z));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Finds the largest part of the step after which the residual is below the largest of the last iterates, or else that
    with the least residual. */
 static PetscErrorCode LeastResidual(Halvings *h, int *best)
@@ -263,6 +295,24 @@ static PetscErrorCode LeastResidual(Halvings *h, int *best)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Chooses the part of the step: the first of 1, 1/2, 1/4, ... that serves. *stands: w and G are those of that part. */
+static PetscErrorCode ChoosePart(Model model, Halvings *h, int *best, PetscBool *stands)
+{
+  PetscBool serves = PETSC_FALSE, end = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *best   = 0;
+  *stands = PETSC_FALSE;
+  for (int i = 0; i <= LINE_HALVINGS && h->slope > 0 && !serves; i++)
+    PetscCall(PartServes(h, *best = i, &serves, stands));
+  if (serves && *best == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(EndServes(model, h, &end));
+  *stands = end;
+  if (end) *best = 0;
+  if (!end && !serves) PetscCall(LeastResidual(h, best));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The search where friction leaves no energy. It takes the first of the steps 1, 1/2, 1/4, ... on which the work that
    is done against the residual falls as an energy would. Residuals alone mislead it: where bodies flow plastically, or
    what sticks begins to slip, they rise on the way to an equilibrium, and fall on a way to states in which all slips.
@@ -273,9 +323,9 @@ static PetscErrorCode ModelSearchWork(SNESLineSearch search, void *context)
   Model      model = context;
   ModelWork *work  = model->work;
   Halvings   h     = {.search = search};
-  PetscBool  changed, changed_w, serves = PETSC_FALSE, stands = PETSC_FALSE;
+  PetscBool  changed, changed_w, stands;
   PetscInt   iterate;
-  int        best = 0;
+  int        best;
   SNES       snes;
   Vec        x, F, y, w, G;
 
@@ -290,14 +340,12 @@ static PetscErrorCode ModelSearchWork(SNESLineSearch search, void *context)
   PetscCall(VecDotRealPart(F, y, &h.slope));
   work->norms[iterate % LINE_MEMORY] = h.before;
   for (int i = 0; i < PetscMin(iterate + 1, LINE_MEMORY); i++) h.largest = PetscMax(h.largest, work->norms[i]);
-  for (int i = 0; i <= LINE_HALVINGS && h.slope > 0 && !serves; i++)
-    PetscCall(PartServes(&h, best = i, &serves, &stands));
-  if (!serves) PetscCall(LeastResidual(&h, &best));
+  PetscCall(ChoosePart(model, &h, &best, &stands));
   if (h.norm[best] == PETSC_MAX_REAL) {
     PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_FAILED_REDUCT));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (!(serves && stands)) PetscCall(EvaluatePart(&h, best));
+  if (!stands) PetscCall(EvaluatePart(&h, best));
   PetscCall(SNESLineSearchPostCheck(search, x, y, w, &changed, &changed_w));
   PetscCall(VecCopy(w, x));
   PetscCall(VecCopy(G, F));

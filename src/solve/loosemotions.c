@@ -190,7 +190,7 @@ static PetscBool TurnsInPlace(FreeBodies b, PetscInt piece, const PetscReal *u, 
   if (!p->tool) return PETSC_FALSE;
   FreeBodiesPieceMotion(b, piece, a, q);
   FreeModesNodeVelocity(b->mesh, p, p->tool->node, u, q, v);
-  for (int d = 0; d < b->mesh->dim; d++) square += PetscSqr(p->size * v[d]);
+  for (int d = 0; d < b->mesh->dim; d++) square += p->tool->motion->free[d] ? PetscSqr(p->size * v[d]) : 0;
   return (PetscBool)(PetscSqrtReal(square) <= FREE_BODIES_HELD * longest);
 }
 
