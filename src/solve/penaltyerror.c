@@ -14,10 +14,11 @@
 #define PENALTY_ERROR_LARGE 0.004
 /* The estimates for pressures do not count for this. Where the slave's nodes are denser than the master's, pressures
    scatter, and stiffer penalties only let them scatter more. */
-/* They are made so stiff that this is to be expected where the estimate is twice as large as that or more. Below, the
-   factor falls to 1, and the error that is to be expected rises to the threshold: an estimate that rounding moves over
-   the threshold, on other ranks, then hardly changes the answer. */
+/* They are made so stiff that this is to be expected. */
 #define PENALTY_ERROR_WANTED 0.002
+/* Close to the threshold the factor rises from 1, by this part of itself for each part of the estimate: an estimate
+   that rounding moves over the threshold, on other ranks, then hardly changes the answer. */
+#define PENALTY_RISE 6
 /* They are made stiffer by at most this factor at a time. An estimate that asks for more is beyond the range in which
    the error is proportional to the compliance. */
 #define PENALTY_MOST_STIFFER 30
@@ -213,7 +214,8 @@ PetscErrorCode ModelEstimatePenalty(Model model)
 /* How many times as stiff penalties become for an estimated error above PENALTY_ERROR_LARGE, where it is 1. */
 static PetscReal Factor(PetscReal error)
 {
-  return PetscMin(PENALTY_MOST_STIFFER, PetscMin(error / PENALTY_ERROR_WANTED, PetscSqr(error / PENALTY_ERROR_LARGE)));
+  return PetscMin(PENALTY_MOST_STIFFER,
+                  PetscMin(error / PENALTY_ERROR_WANTED, 1 + PENALTY_RISE * (error / PENALTY_ERROR_LARGE - 1)));
 }
 
 /* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty().
