@@ -1,5 +1,6 @@
-"""A run with backstresses, an overstress, a routine of a user or a pushed tool that rolls by friction, that is killed goes on from its checkpoint: on the same
-number of ranks with the same steps.csv bit for bit, on another number within round-off."""
+"""A run with backstresses, an overstress, a routine of a user or a pushed tool that rolls by friction, that is killed,
+goes on from its checkpoint: on the same number of ranks with the same steps.csv bit for bit, on another number within
+round-off."""
 import pathlib
 import shutil
 import signal
@@ -60,9 +61,9 @@ for name, material in LAWS.items():
     ]
 CASES["rolling"] = "tool.yaml", 3, [
     "mesh.order=1", "contact.0.friction.mu=0.3", "output={checkpoint: 1, every: 0}",
-    "bodies.0.material={law: von_mises, E: 1000, nu: 0.3, yield: 15, hardening: {linear: 50}, kinematic: [{C: 100, gamma: "
-    "10}]}", "contact.0.master={cylinder: {point: [5, 8.2], radius: 3, free: [uy, rz], force: [0, -30], history: [[0, 0], "
-    "[0.3, 1], [1, 1]], motion: [{ux: 2, history: [[0, 0], [0.3, 0], [1, 1]]}]}}"
+    "bodies.0.material={law: von_mises, E: 1000, nu: 0.3, yield: 15, hardening: {linear: 50}, "
+    "kinematic: [{C: 100, gamma: 10}]}", "contact.0.master={cylinder: {point: [5, 8.2], radius: 3, free: [uy, rz], "
+    "force: [0, -30], history: [[0, 0], [0.3, 1], [1, 1]], motion: [{ux: 2, history: [[0, 0], [0.3, 0], [1, 1]]}]}}"
 ]
 for name, (scene, after, overrides) in CASES.items():
     whole = run(args, SCENES / scene, "-quiet", out=f"{name}_whole", overrides=overrides)

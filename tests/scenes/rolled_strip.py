@@ -1,5 +1,5 @@
-"""A strip is rolled by a roll that a force pushes and that turns, drawn by friction alone: the force is the given one, the
-strip's volume stays, the strip leaves faster than it enters, and at most one step in ten fails."""
+"""A strip is rolled by a roll that a force pushes and that turns, drawn by friction alone: the force is the given one,
+the strip leaves faster than it enters, as it is thinner, and at most one step in ten fails."""
 from harness import Check, arguments, run, SCENES
 
 FORCE, THICKNESS = 800, 2
