@@ -188,6 +188,41 @@ void ToolsAccept(Mesh mesh, const PetscReal *u, PetscReal t)
 }
 
 /*@
+  ToolsTurn - finds the tool that turns most by its free rotations from one state to another.
+
+  Not collective, the same on all ranks
+
+  Input Parameters:
++ mesh - the mesh
+. u_0  - local displacements u_0[n_nodes*dim] (length) of the first state
+- u    - those of the second state
+
+  Output Parameter:
+. tool - that tool; NULL where none has a free rotation; may be NULL
+
+  Note:
+  It returns the change of the rotation vector (radians).
+@*/
+PetscReal ToolsTurn(Mesh mesh, const PetscReal *u_0, const PetscReal *u, const MeshTool **tool)
+{
+  PetscReal most = 0;
+
+  if (tool) *tool = NULL;
+  for (int k = 0; k < mesh->n_tools; k++) {
+    const PetscInt first  = mesh->tools[k].node * mesh->dim;
+    PetscReal      square = 0;
+
+    for (int c = 3; c < MOTION_COMPONENTS; c++)
+      if (mesh->tools[k].motion->free[c])
+        square += PetscSqr((u[first + ToolDof(mesh, c)] - u_0[first + ToolDof(mesh, c)]) / mesh->tools[k].arm);
+    if (!(square > PetscSqr(most))) continue;
+    most = PetscSqrtReal(square);
+    if (tool) *tool = &mesh->tools[k];
+  }
+  return most;
+}
+
+/*@
   ToolsResidual - subtracts the forces and moments on the tools from the residual.
 
   Not collective

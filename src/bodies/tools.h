@@ -4,17 +4,19 @@
    them like others. ToolsConstrain() marks their components that are not free, ToolsPrescribe() writes these.
    ToolsPlace() and ToolMove() move the tools to given displacements, ToolsAccept() makes these the accepted ones.
    ToolDof() tells where a component stands, ToolGetPlace() where a tool's point is and how it is turned.
-   ToolsResidual() subtracts the forces on the tools. ToolOfPair() finds the tool that is the master of a contact pair.
+   ToolsTurn() tells how far they turn from one state to another. ToolsResidual() subtracts the forces on the tools.
+   ToolOfPair() finds the tool that is the master of a contact pair.
  */
 #pragma once
 #include "mesh/mesh.h"
 
-void ToolsConstrain(Mesh, PetscBool *constrained);
-void ToolsPrescribe(Mesh, PetscReal t, PetscReal *u);
-void ToolMove(Mesh, const MeshTool *, const PetscReal *own, PetscReal t);
-void ToolsPlace(Mesh, const PetscReal *u, PetscReal t);
-void ToolsAccept(Mesh, const PetscReal *u, PetscReal t);
-void ToolsResidual(Mesh, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2);
+void      ToolsConstrain(Mesh, PetscBool *constrained);
+void      ToolsPrescribe(Mesh, PetscReal t, PetscReal *u);
+void      ToolMove(Mesh, const MeshTool *, const PetscReal *own, PetscReal t);
+void      ToolsPlace(Mesh, const PetscReal *u, PetscReal t);
+void      ToolsAccept(Mesh, const PetscReal *u, PetscReal t);
+void      ToolsResidual(Mesh, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2);
+PetscReal ToolsTurn(Mesh, const PetscReal *u_0, const PetscReal *u, const MeshTool **);
 const MeshTool *ToolOfPair(Mesh, Scene, int contact);
 int             ToolDof(Mesh, int component);
 void            ToolGetPlace(Mesh, const MeshTool *, const PetscReal *own, PetscReal point[3], PetscReal turn[3]);

@@ -1,6 +1,7 @@
 /* Gaps of all slave points of a pair at given displacements, and how its contact nodes move. */
 #include "contactimpl.h"
 #include "base/timing.h"
+#include "kernels/rigidkernel.h"
 
 /* Finds the gap of a slave point, with its first variation where `vary`. Where nothing has moved since the lists were
    made, the gap of the search's fit is taken, if it is the smoother's own; the work's points and factors are then
@@ -97,15 +98,33 @@ PetscErrorCode ContactPairProject(Contact contact, ContactPair *pair, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An analytic master that moves by d has the same effect as slave nodes that move by -d. */
+/* An analytic master that moves has the same effect as slave nodes that move against it: each less what moves with the
+   tool at its place, to first order. */
 static void AnalyticTravel(Contact contact, const ContactPair *pair, PetscReal t, PetscReal t_next, PetscReal *values)
 {
-  const int dim = contact->mesh->dim;
-  PetscReal from[3], to[3];
+  const Motion        *motion = &pair->scene->motion;
+  const NeighbourLists lists  = pair->lists;
+  const int            dim    = contact->mesh->dim;
+  PetscReal            from[MOTION_COMPONENTS], to[MOTION_COMPONENTS], point[3];
+  double               rate[3][3], spin[3] = {0, 0, 0};
 
-  MotionPlace(&pair->scene->motion, t, pair->scene->motion.point, from);
-  MotionPlace(&pair->scene->motion, t_next, pair->scene->motion.point, to);
-  for (PetscInt i = 0; i < pair->lists->n_nodes * dim; i++) values[i] -= to[i % dim] - from[i % dim];
+  MotionComponents(motion, t, from);
+  MotionComponents(motion, t_next, to);
+  MotionPlace(motion, t, motion->point, point);
+  RigidTurnRate(&from[3], rate);
+  for (int k = 0; k < 3; k++)
+    for (int d = 0; d < 3; d++) spin[d] += rate[k][d] * (to[3 + k] - from[3 + k]);
+  for (PetscInt i = 0; i < lists->n_nodes; i++) {
+    PetscReal arm[3] = {0, 0, 0};
+
+    for (int d = 0; d < dim; d++)
+      arm[d] = lists->X[i * dim + d] + lists->u[i * dim + d] + contact->mesh->centre[d] - point[d];
+    for (int d = 0; d < dim; d++) {
+      const int e = (d + 1) % 3, g = (d + 2) % 3;
+
+      values[i * dim + d] -= to[d] - from[d] + spin[e] * arm[g] - spin[g] * arm[e];
+    }
+  }
 }
 
 /*@

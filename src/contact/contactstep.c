@@ -69,7 +69,7 @@ static PetscErrorCode AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
                                             .pressure  = value.pressure,
                                             .stiffness = pair->stiffness[c],
                                             .penalty   = state.penalty};
-  if (pair->friction && !pair->tool) /* the slip against a tool with unknowns is left out */
+  if (pair->friction)
     PetscCall(FrictionStepTerm(pair, c, t, &step->terms[step->mine].friction, step->tangent[step->mine]));
   step->pair[step->mine]   = p;
   step->term[step->mine++] = c;
@@ -263,7 +263,7 @@ static PetscErrorCode OwnMotion(ContactStep step, const PetscReal *du, PetscReal
 {
   const int  dim = step->contact->mesh->dim;
   PetscReal *values;
-  PetscInt   i = 0;
+  PetscInt   i = 0, k = 0;
 
   PetscFunctionBeginUser;
   if (slide) PetscCall(PetscArrayzero(slide, 3 * step->mine));
@@ -276,8 +276,10 @@ static PetscErrorCode OwnMotion(ContactStep step, const PetscReal *du, PetscReal
 
       travel[i] = dim == 3 ? TermTravel(3, &step->N[first * 3], n, &step->node[first], values)
                            : TermTravel(2, &step->N[first * 2], n, &step->node[first], values);
-      if (slide && pair->friction) PetscCall(FrictionTermMotion(pair, step->term[i], values, &slide[3 * i]));
     }
+    if (slide && pair->friction && pair->tool) PetscCall(ContactToolRelative(pair, values));
+    for (; k < i; k++)
+      if (slide && pair->friction) PetscCall(FrictionTermMotion(pair, step->term[k], values, &slide[3 * k]));
     PetscCall(PetscFree(values));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -398,6 +400,7 @@ static PetscErrorCode AddTraction(ContactStep step, PetscInt i, PetscInt a, Pets
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n, &values));
   PetscCall(FrictionTermForces(pair, step->term[i], step->tangent[i][a], values));
+  if (pair->tool) PetscCall(ContactToolForces(pair, values));
   for (PetscInt k = 0; k < n; k++)
     if (values[k] != 0) PetscCall(MatSetValue(B, pair->lists->dof[k], j, -values[k], ADD_VALUES));
   PetscCall(PetscFree(values));

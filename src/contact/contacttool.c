@@ -127,6 +127,33 @@ PetscErrorCode ContactToolForces(const ContactPair *pair, PetscReal *values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ContactToolRelative - takes the motion of the tool from that of the slave nodes.
+
+  Not collective
+
+  Input Parameter:
+. pair - the pair, whose master is a tool with free motions
+
+  Input/Output Parameter:
+. values - motion of the contact nodes [n_nodes*dim] (length); that of the slave nodes becomes relative to the tool
+@*/
+PetscErrorCode ContactToolRelative(const ContactPair *pair, PetscReal *values)
+{
+  const PetscReal *own = &values[pair->lists->tool * pair->mesh->dim];
+  PetscReal        B[3 * TOOL_NODES * 3];
+  ToolState        s;
+
+  PetscFunctionBeginUser;
+  FindTool(pair, &s);
+  for (PetscInt i = 0; i < pair->lists->tool; i++) {
+    Velocity(pair, &s, i, B);
+    for (int d = 0; d < s.dim; d++)
+      for (int q = 0; q < TOOL_NODES * s.dim; q++) values[i * s.dim + d] -= B[d * TOOL_NODES * s.dim + q] * own[q];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The rows and columns of a block's tangent that belong to the tool's dofs. */
 typedef struct {
   ToolState        s;

@@ -2,6 +2,7 @@
    lists, springs and penalties hold. */
 #include "base/timing.h"
 #include "bodies/freemodes.h"
+#include "bodies/tools.h"
 #include "modelimpl.h"
 
 /* At a breakpoint of the scene's histories the lists are renewed at most this many times for offsets of surface contact
@@ -31,6 +32,11 @@
 /* A body of which the springs hold more than this part of F_ref is in no contact that holds it. Either a load moves it
    on and on, or a tool pushes it before it against no force but that of the springs. */
 #define EQUILIBRIUM_ALL 0.1
+
+/* A rigid tool may turn by this angle (radians) in a step by its free rotations. A step is straight, which it cannot be
+   where a tool goes on around, and a tool that nothing resists, because all that touches it slips, turns without end.
+ */
+#define EQUILIBRIUM_MOST_TURN 1
 
 /* Penalties are stiffened at most this many times at one load parameter. The first time is enough where the error is
    proportional to the compliance of the penalty, which it is when it is small. */
@@ -96,7 +102,7 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
   if (report->result == SOLVE_LEAK || report->result == SOLVE_LEAKED)
     FluidLeakText(model->problem->fluids, report->detail, sizeof(report->detail));
   if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST || report->result == SOLVE_LEAK ||
-      report->result == SOLVE_LEAKED)
+      report->result == SOLVE_LEAKED || report->result == SOLVE_TURNED)
     PetscFunctionReturn(PETSC_SUCCESS); /* the report has its detail already */
   if (report->result == SOLVE_CYCLE) {
     PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
@@ -492,6 +498,21 @@ static PetscErrorCode ModelMoveFluids(Model model, SolveReport *report, PetscBoo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Ends a solve in which a tool has turned too far. */
+static PetscErrorCode ModelJudgeTurn(Model model, SolveReport *report)
+{
+  const MeshTool *tool;
+  const PetscReal turn = ToolsTurn(model->mesh, model->work->accepted_u, model->problem->trial, &tool);
+
+  PetscFunctionBeginUser;
+  if (report->result != SOLVE_CONVERGED || turn <= EQUILIBRIUM_MOST_TURN) PetscFunctionReturn(PETSC_SUCCESS);
+  report->result = SOLVE_TURNED;
+  PetscCall(PetscSNPrintf(report->detail, sizeof(report->detail),
+                          "'%s' turned by %.4g degrees, of which %.3g are allowed", tool->name,
+                          (double)(turn * 180 / PETSC_PI), (double)(EQUILIBRIUM_MOST_TURN * 180 / PETSC_PI)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelSolve - finds equilibrium at a load parameter, starting from the accepted state.
 
@@ -542,6 +563,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
     }
     if (window == WINDOW_HOLDS && ModelEstimatesAt(model, t)) PetscCall(ModelCheckPenalty(model, report, &window));
   }
+  PetscCall(ModelJudgeTurn(model, report));
   report->cycles = work->cycles;
   PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));
   if (report->result != SOLVE_CONVERGED) {

@@ -1,4 +1,5 @@
 /* The line search of Newton's method: what it compares, and how Newton's step is corrected for contact before it. */
+#include "bodies/tools.h"
 #include "modelimpl.h"
 #include "contact/contactturn.h"
 
@@ -12,6 +13,12 @@
 #define LINE_TRIFLE 1e-3
 /* With friction a step is shortened to 1 over 2 to this power. */
 #define LINE_HALVINGS 5
+/* A residual that falls below this part of itself needs no other look at the step: Newton's method converges. */
+#define LINE_PLAIN 0.5
+/* With friction the work that is done against the residual must fall by this part of what its slope promises. */
+#define LINE_FALL 1e-4
+/* With friction a step serves after which the same tangent asks for less than this part of it. */
+#define LINE_NATURAL 0.5
 /* Energies that differ by less than this many machine epsilons of the energy differ by round-off only. */
 #define LINE_RISE 64
 
@@ -170,35 +177,155 @@ PetscErrorCode ModelLocateEdge(Model model, PetscBool *found, ContactPlace *plac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Norm of the residual at x - lambda y, in w and G. Where an element is inverted it is infinite. */
-static PetscErrorCode NormAlong(SNESLineSearch search, PetscReal lambda, PetscReal *norm)
+/* A search where friction leaves no energy: the parts 1, 1/2, 1/4, ... of the step, and the residuals there. */
+typedef struct {
+  SNESLineSearch search;
+  PetscReal      first;                    /* the part that is tried first */
+  PetscReal      slope, before, largest;   /* F . y; norm of F, and the largest of the last iterates */
+  PetscReal      norm[LINE_HALVINGS + 2];  /* of the residual; PETSC_MAX_REAL where an element is inverted */
+  PetscReal      along[LINE_HALVINGS + 2]; /* residual . y */
+  int            known;                    /* parts that have been evaluated */
+} Halvings;
+
+/* Evaluates the residual at part i of the step, in w and G. */
+static PetscErrorCode EvaluatePart(Halvings *h, int i)
 {
-  SNES      snes;
-  PetscBool inverted;
-  Vec       x, F, y, w, G;
+  const PetscReal lambda = h->first / (1 << i);
+  SNES            snes;
+  PetscBool       inverted;
+  Vec             x, F, y, w, G;
 
   PetscFunctionBeginUser;
-  PetscCall(SNESLineSearchGetSNES(search, &snes));
-  PetscCall(SNESLineSearchGetVecs(search, &x, &F, &y, &w, &G));
+  PetscCall(SNESLineSearchGetSNES(h->search, &snes));
+  PetscCall(SNESLineSearchGetVecs(h->search, &x, &F, &y, &w, &G));
   PetscCall(VecWAXPY(w, -lambda, y, x));
   PetscCall(SNESComputeFunction(snes, w, G));
   PetscCall(SNESGetFunctionDomainError(snes, &inverted));
-  PetscCall(VecNorm(G, NORM_2, norm));
-  if (inverted || PetscIsInfOrNanReal(*norm)) *norm = PETSC_MAX_REAL;
+  PetscCall(VecNorm(G, NORM_2, &h->norm[i]));
+  PetscCall(VecDotRealPart(G, y, &h->along[i]));
+  if (inverted || PetscIsInfOrNanReal(h->norm[i])) h->norm[i] = PETSC_MAX_REAL;
+  h->known = PetscMax(h->known, i + 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The search where friction leaves no energy: the first of the steps 1, 1/2, 1/4, ... after which the residual is below
-   the largest of the last iterates, or else that with the least residual. A search that asked for less at each iterate
-   would stop where a node changes between sticking and slipping: there the residual has a kink, and may rise to
-   either side. */
-static PetscErrorCode ModelSearchResidual(SNESLineSearch search, void *context)
+/* The part of the step x - y that is tried first: all that the search allows, unless it turns a tool too far. Where all
+   that touches a tool slips, little resists its turn, and a linear step would spin it. */
+static PetscErrorCode FirstPart(Model model, SNESLineSearch search, Vec x, Vec y, PetscReal *first)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *u, *v, turn;
+  Vec            end;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESLineSearchGetDamping(search, first));
+  if (!model->mesh->n_tools) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(n, &u, n, &v));
+  PetscCall(VecDuplicate(x, &end));
+  PetscCall(VecWAXPY(end, -1, y, x));
+  PetscCall(ProblemDisplacements(model->problem, x, model->t, u));
+  PetscCall(ProblemDisplacements(model->problem, end, model->t, v));
+  turn = ToolsTurn(model->mesh, u, v, NULL);
+  if (turn * *first > MODEL_FARTHEST) *first = MODEL_FARTHEST / turn;
+  PetscCall(VecDestroy(&end));
+  PetscCall(PetscFree2(u, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Evaluates what is missing to judge part i of the step. *serves: the residual falls to less than LINE_PLAIN of itself,
+   or the work that is done against it on the way, by Simpson's rule, is that of an energy that falls. *stands: w and G
+   are those of part i. */
+static PetscErrorCode PartServes(Halvings *h, int i, PetscBool *serves, PetscBool *stands)
+{
+  const PetscReal lambda = h->first / (1 << i);
+  PetscReal       rise;
+
+  PetscFunctionBeginUser;
+  *stands = (PetscBool)(h->known <= i);
+  if (*stands) PetscCall(EvaluatePart(h, i));
+  *serves = (PetscBool)(h->norm[i] < LINE_PLAIN * h->before);
+  if (*serves || h->norm[i] == PETSC_MAX_REAL) PetscFunctionReturn(PETSC_SUCCESS);
+  if (h->known <= i + 1) PetscCall(EvaluatePart(h, i + 1));
+  *stands = PETSC_FALSE;
+  rise    = -lambda / 6 * (h->slope + 4 * h->along[i + 1] + h->along[i]);
+  *serves = (PetscBool)(h->norm[i + 1] < PETSC_MAX_REAL && rise <= -LINE_FALL * lambda * h->slope);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether Newton's method converges from the end of the step x - y, although neither residual nor work falls on
+   the way: the step that the same tangent asks for there is less than LINE_NATURAL of y. A soft motion along a bend is
+   such a step. What is stiff across it is out of balance at its end by the square of the step, and the next step
+   corrects that. Source: Deuflhard, the natural monotonicity test, Newton Methods for Nonlinear Problems, 2004. */
+static PetscErrorCode EndServes(Model model, Halvings *h, PetscBool *serves)
+{
+  PetscReal whole, next;
+  PetscBool direct;
+  SNES      snes;
+  KSP       ksp;
+  Vec       x, F, y, w, G, z;
+
+  PetscFunctionBeginUser;
+  *serves = PETSC_FALSE;
+  PetscCall(LinearSolverDirect(model->work->solver, &direct));
+  if (!direct || h->first < 1 || h->norm[0] == PETSC_MAX_REAL) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESLineSearchGetSNES(h->search, &snes));
+  PetscCall(SNESLineSearchGetVecs(h->search, &x, &F, &y, &w, &G));
+  PetscCall(SNESGetKSP(snes, &ksp));
+  PetscCall(EvaluatePart(h, 0));
+  PetscCall(VecDuplicate(y, &z));
+  PetscCall(KSPSolve(ksp, G, z));
+  PetscCall(VecNorm(y, NORM_2, &whole));
+  PetscCall(VecNorm(z, NORM_2, &next));
+  PetscCall(PetscInfo(snes, "the next step is %g of this one\n", (double)(next / whole)));
+  *serves = (PetscBool)(next < LINE_NATURAL * whole);
+  PetscCall(VecDestroy(&z));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the largest part of the step after which the residual is below the largest of the last iterates, or else that
+   with the least residual. */
+static PetscErrorCode LeastResidual(Halvings *h, int *best)
+{
+  PetscFunctionBeginUser;
+  *best = 0;
+  for (int i = 0; i <= LINE_HALVINGS; i++) {
+    if (h->known <= i) PetscCall(EvaluatePart(h, i));
+    if (h->norm[i] < h->norm[*best]) *best = i;
+    if (h->norm[i] < h->largest) break;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Chooses the part of the step: the first of 1, 1/2, 1/4, ... that serves. *stands: w and G are those of that part. */
+static PetscErrorCode ChoosePart(Model model, Halvings *h, int *best, PetscBool *stands)
+{
+  PetscBool serves = PETSC_FALSE, end = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *best   = 0;
+  *stands = PETSC_FALSE;
+  for (int i = 0; i <= LINE_HALVINGS && h->slope > 0 && !serves; i++)
+    PetscCall(PartServes(h, *best = i, &serves, stands));
+  if (serves && *best == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(EndServes(model, h, &end));
+  *stands = end;
+  if (end) *best = 0;
+  if (!end && !serves) PetscCall(LeastResidual(h, best));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The search where friction leaves no energy. It takes the first of the steps 1, 1/2, 1/4, ... on which the work that
+   is done against the residual falls as an energy would. Residuals alone mislead it: where bodies flow plastically, or
+   what sticks begins to slip, they rise on the way to an equilibrium, and fall on a way to states in which all slips.
+   Where no work falls they decide. A search that asked for less of them at each iterate would stop where a node changes
+   between sticking and slipping: there the residual has a kink, and may rise to either side. */
+static PetscErrorCode ModelSearchWork(SNESLineSearch search, void *context)
 {
   Model      model = context;
   ModelWork *work  = model->work;
-  PetscReal  lambda, norm, before, best = PETSC_MAX_REAL, at = 0, largest = 0;
-  PetscBool  changed, changed_w;
+  Halvings   h     = {.search = search};
+  PetscBool  changed, changed_w, stands;
   PetscInt   iterate;
+  int        best;
   SNES       snes;
   Vec        x, F, y, w, G;
 
@@ -207,28 +334,22 @@ static PetscErrorCode ModelSearchResidual(SNESLineSearch search, void *context)
   PetscCall(SNESGetIterationNumber(snes, &iterate));
   PetscCall(SNESLineSearchGetVecs(search, &x, &F, &y, &w, &G));
   PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_SUCCEEDED));
-  PetscCall(SNESLineSearchGetDamping(search, &lambda));
   PetscCall(SNESLineSearchPreCheck(search, x, y, &changed));
-  PetscCall(VecNorm(F, NORM_2, &before));
-  work->norms[iterate % LINE_MEMORY] = before;
-  for (PetscInt i = 0; i < PetscMin(iterate + 1, LINE_MEMORY); i++) largest = PetscMax(largest, work->norms[i]);
-  for (int i = 0; i <= LINE_HALVINGS; i++, lambda /= 2) {
-    PetscCall(NormAlong(search, lambda, &norm));
-    if (norm < best) {
-      best = norm;
-      at   = lambda;
-    }
-    if (norm < largest) break;
-  }
-  if (best == PETSC_MAX_REAL) {
+  PetscCall(FirstPart(model, search, x, y, &h.first));
+  PetscCall(VecNorm(F, NORM_2, &h.before));
+  PetscCall(VecDotRealPart(F, y, &h.slope));
+  work->norms[iterate % LINE_MEMORY] = h.before;
+  for (int i = 0; i < PetscMin(iterate + 1, LINE_MEMORY); i++) h.largest = PetscMax(h.largest, work->norms[i]);
+  PetscCall(ChoosePart(model, &h, &best, &stands));
+  if (h.norm[best] == PETSC_MAX_REAL) {
     PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_FAILED_REDUCT));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (at != lambda) PetscCall(NormAlong(search, at, &norm));
+  if (!stands) PetscCall(EvaluatePart(&h, best));
   PetscCall(SNESLineSearchPostCheck(search, x, y, w, &changed, &changed_w));
   PetscCall(VecCopy(w, x));
   PetscCall(VecCopy(G, F));
-  PetscCall(SNESLineSearchSetLambda(search, at));
+  PetscCall(SNESLineSearchSetLambda(search, h.first / (1 << best)));
   PetscCall(SNESLineSearchComputeNorms(search));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -243,8 +364,7 @@ static PetscErrorCode ModelSearchResidual(SNESLineSearch search, void *context)
 . model - its SNES has its line search
 
   Note:
-  With follower loads there is no energy. The search then takes the work of the residual for it. With friction residuals
-  are compared with those of several iterates.
+  With follower loads there is no energy. The search then takes the work of the residual for it, with friction too.
 @*/
 PetscErrorCode ModelCreateLineSearch(Model model)
 {
@@ -258,7 +378,7 @@ PetscErrorCode ModelCreateLineSearch(Model model)
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
   PetscCall(SNESLineSearchShellSetUserFunc(
-    search, ContactHasFriction(model->contact) ? ModelSearchResidual : ModelSearchRelaxed, model));
+    search, ContactHasFriction(model->contact) ? ModelSearchWork : ModelSearchRelaxed, model));
   PetscCall(SNESLineSearchSetPreCheck(search, ModelPrepareStep, model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

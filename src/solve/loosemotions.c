@@ -18,9 +18,21 @@ static PetscReal Together(int across, PetscBool along, PetscInt n, PetscInt i, c
   return sum;
 }
 
+/* How the friction of terms counts: what slips too, alone, or not. */
+typedef enum { GRAM_STICKS, GRAM_ALONG, GRAM_SLIPS } GramKind;
+
+/* Does a term slip? Across its slip it has the stiffness of what sticks at most. */
+static PetscBool Slips(const ActiveSetTerm *term, int dim)
+{
+  PetscReal stiffness = 0;
+
+  for (int a = 0; a < 2; a++) stiffness += term->friction.by_slip[a][a];
+  return (PetscBool)(stiffness < (dim - 1.5) * term->friction.law.stiffness);
+}
+
 /* Stiffness gram[n][n] of the terms in contact, or touching, along the motions at (u, t), over the largest diagonal
-   entry. Friction counts as if nothing slipped. along: it alone counts. */
-static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, PetscBool along,
+   entry. Friction counts as if nothing slipped, unless its kind says otherwise. */
+static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, GramKind kind,
                                   double gram[])
 {
   const PetscInt       size   = b->mesh->n_nodes * b->mesh->dim;
@@ -51,7 +63,8 @@ static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t,
     if (terms[i].pressure == 0 && !(touching && terms[i].opening <= FREE_BODIES_TOUCH * b->face)) continue;
     for (int k = 0; k < n; k++)
       for (int l = 0; l < n; l++)
-        gram[k * n + l] += Together(across, along, n_terms, i, travel[k], travel[l]) /
+        gram[k * n + l] += Together(kind == GRAM_SLIPS && Slips(&terms[i], b->mesh->dim) ? 1 : across,
+                                    (PetscBool)(kind == GRAM_ALONG), n_terms, i, travel[k], travel[l]) /
                            (b->pieces[b->owner[k]].size * b->pieces[b->owner[l]].size);
   }
   for (int k = 0; k < n; k++) largest = PetscMax(largest, gram[k * n + k]);
@@ -69,7 +82,7 @@ static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t,
 PetscErrorCode FreeBodiesContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, double gram[])
 {
   PetscFunctionBeginUser;
-  PetscCall(ContactGram(b, u, t, touching, PETSC_FALSE, gram));
+  PetscCall(ContactGram(b, u, t, touching, GRAM_STICKS, gram));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,7 +96,7 @@ PetscErrorCode FreeBodiesRub(FreeBodies b, const PetscReal *u, PetscReal t, Pets
   PetscFunctionBeginUser;
   if (!ContactHasFriction(b->contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(n * n, &along));
-  PetscCall(ContactGram(b, u, t, PETSC_TRUE, PETSC_TRUE, along));
+  PetscCall(ContactGram(b, u, t, PETSC_TRUE, GRAM_ALONG, along));
   for (int k = 0; k < n; k++) largest = PetscMax(largest, gram[k * n + k]);
   for (int k = 0; k < n * n; k++) gram[k] += factor * largest * along[k];
   PetscCall(PetscFree(along));
@@ -141,8 +154,8 @@ PetscErrorCode FreeBodiesBasis(FreeBodies b, const double gram[], PetscReal part
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Norms of the nodal loads at t, summed over each piece. */
-static PetscErrorCode PieceLoads(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal *load)
+/* Norms of the nodal loads at t, summed over each piece, and those of the moments on tools. */
+static PetscErrorCode PieceLoads(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal *load, PetscReal *moment)
 {
   const int  dim = b->mesh->dim;
   PetscReal *f, square = 0;
@@ -150,15 +163,34 @@ static PetscErrorCode PieceLoads(FreeBodies b, const PetscReal *u, PetscReal t, 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(b->mesh->n_nodes * dim, &f));
   PetscCall(PetscArrayzero(load, b->n_pieces));
+  PetscCall(PetscArrayzero(moment, b->n_pieces));
   PetscCall(LoadsResidual(b->loads, t, u, f, NULL, &square));
   for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
+    const MeshTool *tool = b->pieces[b->piece[i]].tool;
+
     square = 0;
     for (int d = 0; d < dim; d++) square += PetscSqr(f[i * dim + d]);
     load[b->piece[i]] += PetscSqrtReal(square);
+    if (tool && i != tool->node) moment[b->piece[i]] += PetscSqrtReal(square);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, load, (PetscMPIInt)b->n_pieces, MPIU_REAL, MPI_SUM, b->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, moment, (PetscMPIInt)b->n_pieces, MPIU_REAL, MPI_SUM, b->mesh->comm));
   PetscCall(PetscFree(f));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether the motion a[n] at displacements u turns a tool about its own point, so that its moment alone works. The
+   longest way of the tool's dofs is given. */
+static PetscBool TurnsInPlace(FreeBodies b, PetscInt piece, const PetscReal *u, const double a[], PetscReal longest)
+{
+  const FreePiece *p = &b->pieces[piece];
+  double           q[RIGID_MODES], v[3], square = 0;
+
+  if (!p->tool) return PETSC_FALSE;
+  FreeBodiesPieceMotion(b, piece, a, q);
+  FreeModesNodeVelocity(b->mesh, p, p->tool->node, u, q, v);
+  for (int d = 0; d < b->mesh->dim; d++) square += p->tool->motion->free[d] ? PetscSqr(p->size * v[d]) : 0;
+  return (PetscBool)(PetscSqrtReal(square) <= FREE_BODIES_HELD * longest);
 }
 
 /* Which of the motions free[m][n] at displacements u the loads at t drive: those along which they do more than a part
@@ -167,22 +199,23 @@ PetscErrorCode FreeBodiesDriven(FreeBodies b, const PetscReal *u, PetscReal t, P
                                 const double free[], PetscBool driven[])
 {
   const int  n = b->n;
-  PetscReal *load, *longest;
+  PetscReal *load, *moment, *longest;
   double    *force, *scale;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(b->n_pieces, &load, b->n_pieces, &longest, n, &force, n, &scale));
-  PetscCall(PieceLoads(b, u, t, load));
+  PetscCall(PetscMalloc5(b->n_pieces, &load, b->n_pieces, &moment, b->n_pieces, &longest, n, &force, n, &scale));
+  PetscCall(PieceLoads(b, u, t, load, moment));
   PetscCall(FreeBodiesForce(b, u, t, force, scale));
   for (int f = 0; f < m; f++) {
     double work = 0, most = 0;
 
     PetscCall(FreeBodiesLongest(b, u, &free[f * n], longest));
     for (int k = 0; k < n; k++) work += free[f * n + k] * force[k];
-    for (PetscInt p = 0; p < b->n_pieces; p++) most += load[p] * longest[p];
+    for (PetscInt p = 0; p < b->n_pieces; p++)
+      most += (TurnsInPlace(b, p, u, &free[f * n], longest[p]) ? moment[p] : load[p]) * longest[p];
     driven[f] = (PetscBool)(PetscAbsReal(work) > part * most);
   }
-  PetscCall(PetscFree4(load, longest, force, scale));
+  PetscCall(PetscFree5(load, moment, longest, force, scale));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -241,7 +274,8 @@ static void UnscaleMotion(FreeBodies b, PetscReal part, int k, double a[])
 . text - "'ball': translation along y, (0, 1, 0); ..."; empty: contact holds all bodies
 
   Note:
-  A contact holds a motion if a term in contact sees it. The system is singular along the others without springs. Unless
+  A contact holds a motion if a term in contact sees it; friction that slips does not hold what is driven. The system is
+  singular along the others without springs. Unless
   only those that are driven are asked for, motions that are tied are named too.
 @*/
 PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool driven, size_t size, char *text)
@@ -256,7 +290,7 @@ PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FreeBodiesCentre(b, u));
   PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
-  PetscCall(FreeBodiesContactGram(b, u, t, PETSC_FALSE, gram));
+  PetscCall(ContactGram(b, u, t, PETSC_FALSE, driven ? GRAM_SLIPS : GRAM_STICKS, gram));
   if (!driven) ScaleTied(b, FREE_BODIES_HIDDEN, gram);
   PetscCall(FreeBodiesBasis(b, gram, driven ? FREE_BODIES_HELD : FREE_BODIES_NAMED, &m, free, pivot));
   for (int f = 0; f < m && !driven; f++) UnscaleMotion(b, FREE_BODIES_HIDDEN, pivot[f], &free[f * n]);

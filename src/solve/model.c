@@ -18,6 +18,7 @@ const char *const SolveResults[] = {
   "the places that a fluid wets did not settle",
   "a fluid leaks, and the step is too long to say at which pressure",
   "a fluid leaks",
+  "a rigid tool turned too far in one step",
   "not-a-number in the residual"};
 
 /*@

@@ -26,6 +26,7 @@ typedef enum {
   SOLVE_FLUID,
   SOLVE_LEAK,
   SOLVE_LEAKED,
+  SOLVE_TURNED,
   SOLVE_NAN
 } SolveResult;
 extern const char *const SolveResults[]; /* in words, for messages */

@@ -16,6 +16,9 @@
    scatter, and stiffer penalties only let them scatter more. */
 /* They are made so stiff that this is to be expected. */
 #define PENALTY_ERROR_WANTED 0.002
+/* Close to the threshold the factor rises from 1, by this part of itself for each part of the estimate: an estimate
+   that rounding moves over the threshold, on other ranks, then hardly changes the answer. */
+#define PENALTY_RISE 6
 /* They are made stiffer by at most this factor at a time. An estimate that asks for more is beyond the range in which
    the error is proportional to the compliance. */
 #define PENALTY_MOST_STIFFER 30
@@ -212,13 +215,21 @@ PetscErrorCode ModelEstimatePenalty(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty(). factor:
-   by how much those of each pair. *stiffened: some are. */
+/* How many times as stiff penalties become for an estimated error above PENALTY_ERROR_LARGE, where it is 1. */
+static PetscReal Factor(PetscReal error)
+{
+  return PetscMin(PENALTY_MOST_STIFFER,
+                  PetscMin(error / PENALTY_ERROR_WANTED, 1 + PENALTY_RISE * (error / PENALTY_ERROR_LARGE - 1)));
+}
+
+/* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty().
+ *stiffened: some are. Those with such small forces stay as they are of which the solve itself leaves an error as large.
+ */
 PetscErrorCode ModelStiffen(Model model, PetscReal factor[], PetscBool *stiffened)
 {
   const int    pairs = ContactPairs(model->contact);
   ContactLoad *load;
-  PetscReal    most = 0;
+  PetscReal    most = 0, left = model->scene->solver.tolerance * ProblemForceScale(model->problem);
 
   PetscFunctionBeginUser;
   *stiffened = PETSC_FALSE;
@@ -231,9 +242,9 @@ PetscErrorCode ModelStiffen(Model model, PetscReal factor[], PetscBool *stiffene
 
     factor[p] = 1;
     if (!ContactPairScene(model->contact, p)->penalty_may_stiffen || !(worst > PENALTY_ERROR_LARGE) ||
-        load[p].force < PENALTY_LIGHT_PAIR * most)
+        load[p].force < PENALTY_LIGHT_PAIR * most || PENALTY_ERROR_LARGE * load[p].force <= left)
       continue;
-    factor[p] = PetscMin(worst / PENALTY_ERROR_WANTED, PENALTY_MOST_STIFFER);
+    factor[p] = Factor(worst);
     PetscCall(ContactStiffen(model->contact, p, factor[p]));
     PetscCall(PetscInfo(model->snes, "contact '%s': estimated error %g, penalties %g times as stiff\n",
                         ContactPairName(model->contact, p), (double)worst, (double)factor[p]));

@@ -1,4 +1,5 @@
 /* A line search that lets the energy rise over a step and looks on after the next ones whether it has paid. */
+#include "bodies/tools.h"
 #include "modelimpl.h"
 
 /* The energy must fall by this part of what its slope promises. */
@@ -24,7 +25,7 @@ typedef struct {
 } Search;
 
 /*@
-  ModelLargestTurn - finds how far a step turns or stretches a cell.
+  ModelLargestTurn - finds how far a step turns or stretches a cell, or turns a rigid tool.
 
   Collective
 
@@ -34,14 +35,15 @@ typedef struct {
 - v     - those at its end
 
   Output Parameter:
-. turn - largest motion of the two ends of a cell's edge against each other, over the length of the edge; of all ranks
+. turn - largest motion of the two ends of a cell's edge against each other, over the length of the edge, or free
+         rotation of a tool (radians); of all ranks
 @*/
 PetscErrorCode ModelLargestTurn(Model model, const PetscReal *u, const PetscReal *v, PetscReal *turn)
 {
   const Mesh mesh = model->mesh;
 
   PetscFunctionBeginUser;
-  *turn = 0;
+  *turn = ToolsTurn(mesh, u, v, NULL);
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const Element  *element = ElementGet(mesh->cell_type[c]);
     const PetscInt *nodes   = &mesh->cell_nodes[mesh->cell_ptr[c]];

@@ -87,8 +87,10 @@ static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscR
   RigidSolve(n, pass->factor, pass->wish);
   PetscCall(FreeBodiesLongest(b, u, pass->wish, longest));
   *any = PETSC_FALSE;
+  for (PetscInt p = 0; p < b->n_pieces; p++) pass->driven[p] = PETSC_FALSE;
+  for (int k = 0; k < n; k++) /* by a load of its own: friction couples the motions of bodies that touch */
+    if (pass->force[k] != 0 && longest[b->owner[k]] > 0) pass->driven[b->owner[k]] = PETSC_TRUE;
   for (PetscInt p = 0; p < b->n_pieces; p++) {
-    pass->driven[p] = (PetscBool)(longest[p] > 0);
     pass->weight[p] = pass->driven[p] ? longest[p] / move : 0;
     if (!pass->driven[p]) continue;
     *any     = PETSC_TRUE;
@@ -97,10 +99,13 @@ static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscR
   for (PetscInt p = 0; p < b->n_pieces; p++)
     if (!pass->driven[p]) pass->weight[p] = SEARCH_LIGHT * lightest;
   for (int k = 0; k < n; k++) {
-    pass->wish[k] /= pass->weight[b->owner[k]];
-    for (int l = 0; l < n; l++) pass->factor[k * n + l] = pass->weight[b->owner[k]] * pass->gram[k * n + l];
+    pass->wish[k] = pass->force[k];
+    for (int l = 0; l < n; l++)
+      pass->factor[k * n + l] =
+        PetscSqrtReal(pass->weight[b->owner[k]] * pass->weight[b->owner[l]]) * pass->gram[k * n + l];
   }
   if (*any) RigidCholesky(n, pass->factor, pass->factor);
+  if (*any) RigidSolve(n, pass->factor, pass->wish);
   PetscCall(PetscFree(longest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

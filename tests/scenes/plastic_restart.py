@@ -1,5 +1,6 @@
-"""A run with backstresses, an overstress or a routine of a user that is killed goes on from its checkpoint: on the same
-number of ranks with the same steps.csv bit for bit, on another number within round-off."""
+"""A run with backstresses, an overstress, a routine of a user or a pushed tool that rolls by friction, that is killed,
+goes on from its checkpoint: on the same number of ranks with the same steps.csv bit for bit, on another number within
+round-off."""
 import pathlib
 import shutil
 import signal
@@ -31,15 +32,14 @@ def table(directory):
     return [row[:clock] + row[clock + 1:] for row in rows]
 
 
-def kill_and_restart(directory, overrides, ranks):
-    command = ["mpirun", "-n", str(args.ranks), args.burnish, str(SCENES / "plastic_bar.yaml"), "-quiet", "-o",
-               str(directory)]
+def kill_and_restart(scene, directory, overrides, ranks, after):
+    command = ["mpirun", "-n", str(args.ranks), args.burnish, str(SCENES / scene), "-quiet", "-o", str(directory)]
     for override in overrides:
         command += ["-set", override]
     launcher = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    while launcher.poll() is None:  # until a third of the steps is done
+    while launcher.poll() is None:  # until so many steps are done
         steps = directory / "steps.csv"
-        if steps.exists() and steps.read_text().count("\n") > STEPS // 3:
+        if steps.exists() and steps.read_text().count("\n") > after:
             children = pathlib.Path(f"/proc/{launcher.pid}/task/{launcher.pid}/children").read_text().split()
             for child in children:
                 subprocess.run(["kill", f"-{signal.SIGKILL.value}", child], check=False)
@@ -51,17 +51,26 @@ def kill_and_restart(directory, overrides, ranks):
     return Run(finished.returncode, finished.stdout, directory)
 
 
+CASES = {}
 for name, material in LAWS.items():
-    overrides = [f"bodies.0.material={material}", "mesh.parameters={lx: 2, ly: 1, lz: 1, nx: 4, ny: 3, nz: 3, tet: 0}",
-                 "bodies.0.formulation=fbar",
-                 "supports.1={surface: x_min, uy: 0}",
-                 "loads.0={surface: x_max, ux: 0.1, uy: 0.05, history: [[0, 0], [0.5, 1], [1, -1]]}",
-                 f"stepping={{control: fixed, initial: {1 / STEPS}}}", "output={checkpoint: 1, every: 0}"]
-    whole = run(args, SCENES / "plastic_bar.yaml", "-quiet", out=f"{name}_whole", overrides=overrides)
+    CASES[name] = "plastic_bar.yaml", STEPS // 3, [
+        f"bodies.0.material={material}", "mesh.parameters={lx: 2, ly: 1, lz: 1, nx: 4, ny: 3, nz: 3, tet: 0}",
+        "bodies.0.formulation=fbar", "supports.1={surface: x_min, uy: 0}",
+        "loads.0={surface: x_max, ux: 0.1, uy: 0.05, history: [[0, 0], [0.5, 1], [1, -1]]}",
+        f"stepping={{control: fixed, initial: {1 / STEPS}}}", "output={checkpoint: 1, every: 0}"
+    ]
+CASES["rolling"] = "tool.yaml", 3, [
+    "mesh.order=1", "contact.0.friction.mu=0.3", "output={checkpoint: 1, every: 0}",
+    "bodies.0.material={law: von_mises, E: 1000, nu: 0.3, yield: 15, hardening: {linear: 50}, "
+    "kinematic: [{C: 100, gamma: 10}]}", "contact.0.master={cylinder: {point: [5, 8.2], radius: 3, free: [uy, rz], "
+    "force: [0, -30], history: [[0, 0], [0.3, 1], [1, 1]], motion: [{ux: 2, history: [[0, 0], [0.3, 0], [1, 1]]}]}}"
+]
+for name, (scene, after, overrides) in CASES.items():
+    whole = run(args, SCENES / scene, "-quiet", out=f"{name}_whole", overrides=overrides)
     for ranks in (args.ranks, args.ranks + 1):
         directory = out / f"{name}_parts_{ranks}"
         shutil.rmtree(directory, ignore_errors=True)
-        parts = kill_and_restart(directory, overrides, ranks)
+        parts = kill_and_restart(scene, directory, overrides, ranks, after)
         check.holds(f"{name}: {ranks} ranks go on", parts.status == 0 and parts.summary()["restarts"] == 1)
         if ranks == args.ranks:
             check.holds(f"{name}: the same steps, bit for bit", table(directory) == table(whole.directory))

@@ -79,6 +79,26 @@ roll = run(args, SCENES / "tool.yaml", out="roll", overrides=[
 check.near("roll: force along the block", abs(roll["along"]) * 3 / 6, 1, 0.03)  # the contact bends round the cylinder
 check.holds("roll: it has turned", abs(roll["turn"]) > 0.01, f"{roll['turn']:.3f} degrees")
 
+# A roller that is pressed and drawn along rolls; the way on the slab is a little longer than that on the roller, because
+# contact stretches the slab and presses the roller's place into it.
+rolled = run(args, SCENES / "tool.yaml", out="rolled", overrides=[
+    "contact.0.friction.mu=0.3", "mesh.order=1",
+    cylinder("free: [uy, rz], force: [0, -30], history: [[0, 0], [0.3, 1], [1, 1]], "
+             "motion: [{ux: 3, history: [[0, 0], [0.3, 0], [1, 1]]}]")
+])
+last = rolled.steps()[-1]
+check.near("rolled: the turn", -math.radians(last["turn"]) * 3 / last["aside"], 1, 0.05)
+check.holds("rolled: friction has next to nothing to do", abs(last["along"]) < 0.05 * 0.3 * 30, f"{last['along']:.3f}")
+check.holds("rolled: few iterations", rolled.summary()["newton_iterations"] < 60,
+            str(rolled.summary()["newton_iterations"]))
+# A moment that nothing resists: without friction, and with one that friction cannot bear.
+for what, friction, moment in (("smooth", [], 1), ("slipping", ["contact.0.friction.mu=0.3"], -40)):
+    text = run(args, SCENES / "tool.yaml", out="spins", must=2, overrides=[
+        *friction, "mesh.order=1", "stepping.dt_min=0.02",
+        cylinder(f"free: [uy, rz], force: [0, -30], moment: {{z: {moment}}}")
+    ]).text
+    check.holds(f"{what}: refused, and the motion is named", "no equilibrium" in text and "'punch': rotation" in text)
+
 if args.cases == "all":
     # A motion that is an expression of t is that of a history.
     expression = run(args, SCENES / "tool.yaml", out="expression",

@@ -25,6 +25,7 @@ for name, overrides in CASES.items():
     check.near(f"{name}: force", loaded["force"] / FORCE, 1, 1e-6)
     print(f"     {summary['steps']} steps, {summary['steps_failed']} failed, {summary['newton_iterations']} iterations; "
           f"{found[name][0]:.3f} degrees under load, {found[name][1]:.3f} after it, way {loaded['way']:.4f}")
+    check.holds(f"{name}: at most one step in ten fails", 10 * summary["steps_failed"] <= summary["steps"])
     if name == "coarse":
         way = loaded["way"]
 for name in ("fine", "second order"):

@@ -177,6 +177,7 @@ PetscErrorCode ContactOwnToNodes(const ContactPair *, PetscInt nodes, PetscInt f
 PetscErrorCode ContactToolVariation(const ContactPair *, PetscInt n, const PetscInt nodes[], const PetscReal *N,
                                     PetscReal *own);
 PetscErrorCode ContactToolForces(const ContactPair *, PetscReal *values);
+PetscErrorCode ContactToolRelative(const ContactPair *, PetscReal *values);
 PetscErrorCode ContactToolBlock(const ContactPair *, PetscInt n, const PetscInt nodes[], const PetscReal *force,
                                 PetscReal *M);
 /* contactvariation.c */
