@@ -352,6 +352,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));
+  PetscCall(SurfaceFindFreeEdges(pair->slave, pair->n_images, pair->images));
   pair->automatic    = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
   pair->most         = PETSC_MAX_REAL;
   pair->trial_factor = 1;
