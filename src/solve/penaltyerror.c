@@ -19,6 +19,10 @@
 /* They are made stiffer by at most this factor at a time. An estimate that asks for more is beyond the range in which
    the error is proportional to the compliance. */
 #define PENALTY_MOST_STIFFER 30
+/* A raise of the penalties by a factor is to lower the estimate by that factor. A raise that brings less than this
+   power of it has not brought what it was made for: what is left does not come from the penalty, or it is at a few
+   terms that hardly have an area, such as those over the end of a surface. The pair is then stiffened no more. */
+#define PENALTY_GAIN 0.5
 /* A pair whose forces are below this part of those of the most loaded pair does not stiffen its penalty, because its
    own error hardly counts in the model. */
 #define PENALTY_LIGHT_PAIR 1e-3
@@ -28,6 +32,8 @@ PetscErrorCode ModelCreatePenaltyError(Model model)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(ContactPairs(model->contact), &model->work->penalty_error));
+  PetscCall(PetscCalloc2(ContactPairs(model->contact), &model->work->stiffened_at, ContactPairs(model->contact),
+                         &model->work->stiffened_by));
   ModelForgetPenaltyError(model);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -35,8 +41,10 @@ PetscErrorCode ModelCreatePenaltyError(Model model)
 /* Forgets the estimates of a solve that was taken back. */
 void ModelForgetPenaltyError(Model model)
 {
-  for (int p = 0; p < ContactPairs(model->contact); p++)
+  for (int p = 0; p < ContactPairs(model->contact); p++) {
+    model->work->stiffened_at[p] = model->work->stiffened_by[p] = 0;
     model->work->penalty_error[p] = (PenaltyError){.force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN};
+  }
 }
 
 /* Saves or loads the estimates with the model. */
@@ -64,6 +72,23 @@ PetscErrorCode ModelArchivePenaltyError(Model model, Archive archive)
 PenaltyError ModelPenaltyError(Model model, int pair)
 {
   return model->work->penalty_error[pair];
+}
+
+/*@
+  ModelPenaltyStays - says whether stiffer penalties have not lowered the error that is estimated for a pair.
+
+  Not collective
+
+  Input Parameters:
++ model - the model
+- pair  - number of the pair
+
+  Note:
+  The last solve has made them stiffer, and the estimate fell by much less than was forecast.
+@*/
+PetscBool ModelPenaltyStays(Model model, int pair)
+{
+  return (PetscBool)(model->work->stiffened_by[pair] < 0);
 }
 
 /* The derivative of the free residual to ln s at the trial state. The residual is linear in s. */
@@ -208,6 +233,16 @@ PetscErrorCode ModelEstimatePenalty(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether the last raise of a pair's penalties in this solve has brought too little of what was forecast. worst:
+   its largest error now. */
+static PetscBool StiffeningFails(Model model, int pair, PetscReal worst)
+{
+  PetscReal *at = &model->work->stiffened_at[pair], *by = &model->work->stiffened_by[pair];
+
+  if (*by > 0 && worst > *at * PetscPowReal(*by, -PENALTY_GAIN)) *by = -*by;
+  return (PetscBool)(*by < 0);
+}
+
 /* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty().
  *stiffened: some are. */
 PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
@@ -227,8 +262,10 @@ PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
                     factor    = PetscMin(worst / PENALTY_ERROR_WANTED, PENALTY_MOST_STIFFER);
 
     if (!ContactPairScene(model->contact, p)->penalty_may_stiffen || !(worst > PENALTY_ERROR_LARGE) ||
-        load[p].force < PENALTY_LIGHT_PAIR * most)
+        load[p].force < PENALTY_LIGHT_PAIR * most || StiffeningFails(model, p, worst))
       continue;
+    model->work->stiffened_at[p] = worst;
+    model->work->stiffened_by[p] = factor;
     PetscCall(ContactStiffen(model->contact, p, factor));
     PetscCall(PetscInfo(model->snes, "contact '%s': estimated error %g, penalties %g times as stiff\n",
                         ContactPairName(model->contact, p), (double)worst, (double)factor));

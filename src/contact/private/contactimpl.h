@@ -141,9 +141,18 @@ struct _n_Contact {
   PetscLogEvent   event_fit, event_offset, event_adjust, event_touch; /* only where the scene calls for the effect */
 };
 
+/* What of a pair is in contact: closed nodes, or closed faces where no node is closed. */
+typedef struct {
+  PetscInt  n;
+  PetscBool faces;         /* faces are counted */
+  PetscReal depth, over_h; /* largest penetrations (length, face sizes) */
+} ContactPressing;
+
 /* contactpair.c */
 PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneContact *, ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
+/* contactquery.c */
+PetscErrorCode ContactPairPressing(const ContactPair *, ContactPressing *);
 /* contactfaces.c */
 PetscBool      ContactFacesServe(const ContactPair *, Scene, int order);
 PetscErrorCode ContactFacesAdd(ContactPair *, const PetscReal turn[]);
