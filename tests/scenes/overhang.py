@@ -1,5 +1,5 @@
-"""A soft slab bends over the edge of a block that ends under it: either role of the two surfaces, the error by penetration
-that is estimated, and penalties that are not raised where that does not help."""
+"""A soft slab bends over the edge of a block that ends under it: either role of the two surfaces, the error by
+penetration that is estimated, and penalties that are not raised where that does not help."""
 from harness import Check, arguments, run, SCENES
 
 # geometry -> largest difference of the deflections of the slab's end with either surface as slave: what was measured
@@ -23,7 +23,8 @@ for name, finished in (("slab", slab), ("block", block)):
     check.holds(f"{name} as slave: no failed step", finished.summary()["steps_failed"] == 0)
     check.holds(f"{name} as slave: one count of nodes in contact",
                 pair["nodes"] == finished.steps()[-1]["contact_nodes"] > 0, str(pair["nodes"]))
-    check.holds(f"{name} as slave: penalty", pair["penalty"]["stiffened"] <= RAISED, f"{pair['penalty']['stiffened']:.3g}")
+    raised = pair["penalty"]["stiffened"]
+    check.holds(f"{name} as slave: penalty", raised <= RAISED, f"{raised:.3g}")
 if args.geometry == "plane_strain":
     check.holds("a raise that brings too little is told", "lowered it by less than forecast" in slab.text)
     check.holds("no stiffer penalty is advised", "penalty.scale" not in slab.text)
@@ -31,5 +32,6 @@ if args.geometry == "plane_strain":
     errors = [run(args, SCENES / "overhang.yaml", out=f"scale_{scale}",
                   overrides=["loads=[{surface: slab_top, uy: -1}]", f"contact.0.penalty.scale={scale}"])
               .summary()["contact"][0]["penalty"]["error_displacement"] for scale in (3000, 30000)]
-    check.holds("the estimate falls with the penalty", errors[1] <= FALLS * errors[0], f"{errors[0]:.2g} to {errors[1]:.2g}")
+    check.holds("the estimate falls with the penalty", errors[1] <= FALLS * errors[0],
+                f"{errors[0]:.2g} to {errors[1]:.2g}")
 check.finish()

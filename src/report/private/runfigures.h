@@ -19,7 +19,7 @@ typedef struct {
   PetscReal           master_deepest; /* their largest depth in all written states (length) */
   PenaltyError        penalty_error;
   PetscBool           penalty_stays; /* stiffer penalties have not lowered that error */
-  PetscReal           stiffened; /* factor by which the run raised the penalty, where it may choose it */
+  PetscReal           stiffened;     /* factor by which the run raised the penalty, where it may choose it */
 } PairFigures;
 
 typedef struct {
