@@ -90,7 +90,8 @@ typedef struct {
 
 /* How well the surfaces of a pair are kept apart. */
 typedef struct {
-  PetscInt  nodes; /* in contact */
+  PetscInt  nodes; /* in contact; faces where only faces press */
+  PetscBool faces; /* only faces press */
   PetscReal max_penetration, max_penetration_over_h;
   PetscReal sagitta; /* of first-order facets of the master over the curved surface that they stand for: the mean over
                         the slave points near it (length) */

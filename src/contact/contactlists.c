@@ -116,6 +116,23 @@ static void PairDampFactors(ContactPair *pair)
   }
 }
 
+/* Rung on which the fit of a slave point stands; RUNGS: it has none. */
+static int FitRung(NeighbourLists lists, PetscInt q)
+{
+  return lists->fit_n[q] ? lists->rung[q] : RUNGS;
+}
+
+/* A fit that falls to a lower rung within a step stays there to the end of the step. The surface of that rung may lead
+   back to where the higher rung holds, whose surface leads to where it does not. */
+static void PairKeepRungs(ContactPair *pair)
+{
+  for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.fitted; q++) {
+    const int next = FitRung(pair->next, q);
+
+    if (next > FitRung(pair->lists, q)) pair->first_rung[q] = PetscMax(pair->first_rung[q], next);
+  }
+}
+
 /* The next lists replace those in force. */
 static PetscErrorCode PairTakeNext(ContactPair *pair)
 {
@@ -197,6 +214,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscReal    needed  = motion;
     PetscBool    changed = PETSC_FALSE, serve;
 
+    PetscCall(PetscArrayzero(pair->first_rung, pair->slaves->n));
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(PetscLogEventBegin(contact->event_offset, 0, 0, 0, 0));
     if (pair->slave_offsets) PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next, &changed));
@@ -372,6 +390,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
     PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(ContactNoteLost(pair, t));
     PairDampFactors(pair);
+    PairKeepRungs(pair);
     PetscCall(PairTakeNext(pair));
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
@@ -429,6 +448,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;
   for (int p = 0; p < contact->n_pairs && !agree; p++) {
     PairDampFactors(&contact->pairs[p]);
+    PairKeepRungs(&contact->pairs[p]);
     PetscCall(PairTakeNext(&contact->pairs[p]));
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));

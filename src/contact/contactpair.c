@@ -174,6 +174,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
                          &pair->point_gap, 3 * slaves->n, &pair->point_normal, slaves->n, &pair->point_force));
   PetscCall(PetscCalloc4(slaves->n, &pair->factor_before, slaves->n, &pair->factor_change, slaves->n, &pair->factor_low,
                          slaves->n, &pair->factor_high));
+  PetscCall(PetscCalloc1(slaves->n, &pair->first_rung));
   PetscCall(ContactVariationsCreate(mesh->dim, slaves->n, &pair->variations));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -352,6 +353,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));
+  PetscCall(SurfaceFindFreeEdges(pair->slave, pair->n_images, pair->images));
   pair->automatic    = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
   pair->most         = PETSC_MAX_REAL;
   pair->trial_factor = 1;
@@ -367,6 +369,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   if (contact->share < 1) PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &pair->reaction));
   pair->tool = ToolOfPair(mesh, scene, (int)(contact - scene->contacts));
   SearchSetTool(pair->search, pair->tool);
+  SearchSetRungs(pair->search, pair->first_rung);
   PetscCall(PetscCalloc2(pair->n, &pair->held, pair->n, &pair->predicted));
   if (friction) PetscCall(FrictionCreate(pair));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
@@ -403,6 +406,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree5(pair->force, pair->normal, pair->pressure, pair->stiffness, pair->stiffness_before));
   PetscCall(
     PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
+  PetscCall(PetscFree(pair->first_rung));
   PetscCall(PetscFree4(pair->factor_before, pair->factor_change, pair->factor_low, pair->factor_high));
   PetscCall(ContactVariationsDestroy(&pair->variations));
   PetscCall(PetscFree(pair->before));

@@ -12,7 +12,7 @@
 enum { OVERLAP_SAMPLES = 16 };
 
 /* Finds the node whose value is the largest of all ranks; of nodes that differ by round-off it is the one of lowest
-   tag. value[c] is of each term. Tag -1: no node has any. */
+   tag. value[c] is of each term, NaN where it has none; a face stands for its first node. Tag -1: no term has any. */
 static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscReal value[], PetscReal largest,
                                 ContactPlace *place)
 {
@@ -20,7 +20,7 @@ static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscR
   PetscInt  tag = PETSC_MAX_INT, node = -1;
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < pair->n_nodes; c++) {
+  for (PetscInt c = 0; c < pair->n; c++) {
     if (!(value[c] >= largest - QUALITY_ROUND_OFF * pair->slave->mean_size) || mesh->node_tag[pair->node[c]] >= tag)
       continue;
     node = pair->node[c];
@@ -88,6 +88,7 @@ PetscErrorCode ContactPairGaps(Contact contact, int p, ContactGaps *gaps)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(pair->n, &depth));
+  for (PetscInt c = pair->n_nodes; c < pair->n; c++) depth[c] = NAN;
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
     const PetscReal gap = PetscAbsReal(pair->now.gap[c]) <= QUALITY_ROUND_OFF * pair->size[c] ? 0 : pair->now.gap[c];
 
@@ -158,33 +159,31 @@ static void CountAverse(const ContactPair *pair, PetscMPIInt rank, PetscInt coun
 PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *quality)
 {
   const ContactPair *pair     = &contact->pairs[p];
-  PetscInt           count[3] = {0, 0, 0}; /* nodes, points near, averse */
+  PetscInt           count[2] = {0, 0}; /* points near, averse */
+  ContactPressing    pressing;
   PetscMPIInt        rank;
-  PetscReal          most[2] = {0, 0}, sum[2] = {0, 0}, *depth;
+  PetscReal          sum[2] = {0, 0}, *depth;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(pair->n, &depth));
-  for (PetscInt c = 0; c < pair->n_nodes; c++) {
-    const PetscReal penetration = ContactTermOffset(pair, c, pair->t) - pair->now.gap[c];
+  PetscCall(ContactPairPressing(pair, &pressing));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    const PetscBool counts = (PetscBool)((c >= pair->n_nodes) == pressing.faces);
 
-    depth[c] = pair->now.status[c] == CONTACT_CLOSED ? penetration : NAN;
-    if (pair->now.status[c] != CONTACT_CLOSED) continue;
-    count[0]++;
-    most[0] = PetscMax(most[0], penetration);
-    most[1] = PetscMax(most[1], penetration / pair->size[c]);
+    depth[c] =
+      counts && pair->now.status[c] == CONTACT_CLOSED ? ContactTermOffset(pair, c, pair->t) - pair->now.gap[c] : NAN;
   }
   PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &rank));
   SumSagitta(pair, rank, sum);
-  CountAverse(pair, rank, &count[1]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
-  *quality = (ContactQuality){.nodes = count[0], .near = count[1], .averse = count[2]};
+  CountAverse(pair, rank, count);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  *quality = (ContactQuality){.nodes = pressing.n, .faces = pressing.faces, .near = count[0], .averse = count[1]};
   if (pair->master) quality->turned = pair->master->turned;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
-  PetscCall(FindPlace(contact->mesh, pair, depth, most[0], &quality->deepest));
+  PetscCall(FindPlace(contact->mesh, pair, depth, pressing.depth, &quality->deepest));
   PetscCall(PetscFree(depth));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
-  quality->max_penetration        = most[0];
-  quality->max_penetration_over_h = most[1];
+  quality->max_penetration        = pressing.depth;
+  quality->max_penetration_over_h = pressing.over_h;
   quality->sagitta                = sum[1] > 0 ? sum[0] / sum[1] : 0;
   if (quality->sagitta <= QUALITY_ROUND_OFF * pair->slave->mean_size) quality->sagitta = 0;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -66,6 +66,35 @@ static PetscInt FindDeepest(const ContactPair *pair, PetscInt first, PetscInt en
 }
 
 /*@
+  ContactPairPressing - counts what of a pair is in contact: its closed nodes, or its closed faces where no node is
+  closed.
+
+  Collective
+
+  Input Parameter:
+. pair - the pair, after ContactResidual()
+
+  Output Parameter:
+. pressing - the count and the largest penetrations of what is counted, the same on all ranks
+@*/
+PetscErrorCode ContactPairPressing(const ContactPair *pair, ContactPressing *pressing)
+{
+  PetscReal most[4] = {0, 0, 0, 0}; /* of nodes and of faces */
+  PetscInt  count[2];
+  PetscBool faces;
+
+  PetscFunctionBeginUser;
+  count[0] = FindDeepest(pair, 0, pair->n_nodes, &most[0]);
+  count[1] = FindDeepest(pair, pair->n_nodes, pair->n, &most[2]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, pair->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 4, MPIU_REAL, MPI_MAX, pair->mesh->comm));
+  faces = (PetscBool)(!count[0] && count[1]);
+  *pressing =
+    (ContactPressing){.n = count[faces], .faces = faces, .depth = most[2 * faces], .over_h = most[2 * faces + 1]};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactSummarise - counts contact and collects penetrations (length), penalties and the total force of all pairs in
   the present state.
 
@@ -79,42 +108,44 @@ static PetscInt FindDeepest(const ContactPair *pair, PetscInt first, PetscInt en
 @*/
 PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
 {
-  /* Closed nodes, nodes that closed, that opened, closed faces. */
-  PetscInt count[4] = {0, 0, 0, 0};
-  /* Penetration and that over h, of nodes and of faces; -penalty_min, penalty_max, force of a term. */
-  PetscReal most[7]  = {0, 0, 0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0};
-  PetscReal total[3] = {0, 0, 0}, least, dissipated;
+  PetscInt  count[2] = {0, 0};                              /* nodes that closed, that opened */
+  PetscReal most[3]  = {PETSC_MIN_REAL, PETSC_MIN_REAL, 0}; /* -penalty_min, penalty_max, force of a term */
+  PetscReal total[3] = {0, 0, 0}, least, dissipated, depth = 0, over_h = 0;
+  PetscInt  pressing = 0;
   PetscInt  outside;
 
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
+    ContactPressing    one;
 
-    count[0] += FindDeepest(pair, 0, pair->n_nodes, &most[0]);
-    count[3] += FindDeepest(pair, pair->n_nodes, pair->n, &most[2]);
+    PetscCall(ContactPairPressing(pair, &one));
+    pressing += one.n;
+    depth  = PetscMax(depth, one.depth);
+    over_h = PetscMax(over_h, one.over_h);
     for (PetscInt c = 0; c < pair->n_nodes; c++) {
-      count[1] += pair->now.status[c] == CONTACT_CLOSED && pair->accepted.status[c] == CONTACT_OPEN;
-      count[2] += pair->now.status[c] == CONTACT_OPEN && pair->accepted.status[c] == CONTACT_CLOSED;
-      most[4] = PetscMax(most[4], -pair->now.penalty[c]);
-      most[5] = PetscMax(most[5], pair->now.penalty[c]);
-      most[6] = PetscMax(most[6], ContactTermForce(pair, c));
+      count[0] += pair->now.status[c] == CONTACT_CLOSED && pair->accepted.status[c] == CONTACT_OPEN;
+      count[1] += pair->now.status[c] == CONTACT_OPEN && pair->accepted.status[c] == CONTACT_CLOSED;
+      most[0] = PetscMax(most[0], -pair->now.penalty[c]);
+      most[1] = PetscMax(most[1], pair->now.penalty[c]);
+      most[2] = PetscMax(most[2], ContactTermForce(pair, c));
     }
     for (int d = 0; d < 3; d++) total[d] += pair->total[d];
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 4, MPIU_INT, MPI_SUM, contact->mesh->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 7, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 3, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, total, 3, MPIU_REAL, MPI_SUM, contact->mesh->comm));
   PetscCall(Dissipated(contact, &dissipated));
-  PetscCall(LeastPenetration(contact, most[6], &least));
+  PetscCall(LeastPenetration(contact, most[2], &least));
   PetscCall(CountOutside(contact, &outside));
-  *summary = (ContactSummary){.nodes                  = count[0] ? count[0] : count[3],
-                              .in                     = count[1],
-                              .out                    = count[2],
-                              .max_penetration        = count[0] ? most[0] : most[2],
-                              .max_penetration_over_h = count[0] ? most[1] : most[3],
-                              .min_penetration        = count[0] && least < PETSC_MAX_REAL ? least : 0,
-                              .penalty_min            = -most[4],
-                              .penalty_max            = most[5],
+  *summary = (ContactSummary){.nodes                  = pressing,
+                              .in                     = count[0],
+                              .out                    = count[1],
+                              .max_penetration        = depth,
+                              .max_penetration_over_h = over_h,
+                              .min_penetration        = least < PETSC_MAX_REAL ? least : 0,
+                              .penalty_min            = -most[0],
+                              .penalty_max            = most[1],
                               .outside_window         = outside,
                               .dissipated             = dissipated,
                               .force = PetscSqrtReal(PetscSqr(total[0]) + PetscSqr(total[1]) + PetscSqr(total[2]))};
@@ -547,7 +578,8 @@ PetscErrorCode ContactPairTermStiffness(Contact contact, int pair, PetscReal *st
 - n       - number of labels
 
   Output Parameter:
-. closed - closed[n]: slave nodes with that label that are closed in the present state, of all ranks
+. closed - closed[n]: terms of slave nodes and faces with that label that are closed in the present state, of all
+           ranks
 @*/
 PetscErrorCode ContactPairClosed(Contact contact, int pair, const PetscInt *label, PetscInt n, PetscInt *closed)
 {
@@ -555,7 +587,7 @@ PetscErrorCode ContactPairClosed(Contact contact, int pair, const PetscInt *labe
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(closed, n));
-  for (PetscInt c = 0; c < p->n_nodes; c++) closed[label[p->node[c]]] += p->now.status[c] == CONTACT_CLOSED;
+  for (PetscInt c = 0; c < p->n; c++) closed[label[p->node[c]]] += p->now.status[c] == CONTACT_CLOSED;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, closed, (PetscMPIInt)n, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -32,7 +32,6 @@ enum { NODE_VALUES = sizeof(NodeValue) / sizeof(PetscReal), NODE_SUMS = sizeof(N
 static PetscErrorCode MarkEnds(const ContactPair *pair, PetscReal *end)
 {
   PetscFunctionBeginUser;
-  PetscCall(SurfaceFindFreeEdges(pair->slave, pair->n_images, pair->images));
   for (PetscInt f = 0; f < pair->slave->n_faces; f++) {
     const Facet   *face  = &pair->slave->faces[f];
     const Element *e     = ElementGet(face->type);

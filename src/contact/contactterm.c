@@ -194,7 +194,7 @@ PetscReal ContactMeanOpening(const ContactPair *pair, PetscInt c)
 @*/
 LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t, PetscReal most)
 {
-  return (LawState){.penalty = PetscMin(most, pair->trial_factor * ContactTermPenalty(pair, c, pair->now.penalty[c])),
+  return (LawState){.penalty = PetscMin(most, ContactTermPenalty(pair, c, pair->trial_factor * pair->now.penalty[c])),
                     .offset  = ContactTermOffset(pair, c, t),
                     .multiplier = pair->now.multiplier[c] - (pair->carried ? pair->carried[c] : 0)};
 }

@@ -57,17 +57,34 @@ typedef double (*RunRuleFn)(const RunFigures *, char *text);
 typedef double (*BodyRuleFn)(const SceneBody *, char *text);
 typedef double (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text);
 
+/* The largest error by penetration that counts for a pair. */
+static PetscReal ErrorByPenetration(const PairFigures *pair)
+{
+  const PenaltyError *part = &pair->penalty_error;
+
+  return PetscMax(PetscMax(part->force, part->displacement), pair->scene->penalty_may_stiffen ? 0 : part->pressure);
+}
+
 static double PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   const SceneContact *scene = pair->scene;
-  const PenaltyError *part  = &pair->penalty_error;
-  const PetscReal     error =
-    PetscMax(PetscMax(part->force, part->displacement), scene->penalty_may_stiffen ? 0 : part->pressure);
+  const PetscReal     error = ErrorByPenetration(pair);
 
   (void)figures;
-  if (scene->adjust || scene->augment || !(error > ADVICE_PENALTY)) return 0;
+  if (scene->adjust || scene->augment || pair->penalty_stays || !(error > ADVICE_PENALTY)) return 0;
   snprintf(text, ADVICE_TEXT, "%s: penetration leaves about %.2g %% of error", pair->name, (double)(100 * error));
   return (double)(error / ADVICE_PENALTY_WANTED);
+}
+
+static double PenetrationStays(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  const PetscReal error = ErrorByPenetration(pair);
+
+  (void)figures;
+  if (!pair->penalty_stays || !(error > ADVICE_PENALTY)) return 0;
+  snprintf(text, ADVICE_TEXT, "%s: penetration leaves about %.2g %% of error, which stiffer penalties hardly lower",
+           pair->name, (double)(100 * error));
+  return 1;
 }
 
 static double MasterStandsIn(const RunFigures *figures, const PairFigures *pair, char *text)
@@ -272,6 +289,7 @@ typedef struct {
 
 static const Situation situations[] = {
   {.pair = PenetrationIsDeep, .changes = {CHANGE_FREE_PENALTY, CHANGE_STIFFER}},
+  {.pair = PenetrationStays, .changes = {CHANGE_FINER_SLAVE}},
   {.pair = MasterStandsIn, .changes = {CHANGE_FINER_SLAVE, CHANGE_ROLES}},
   {.pair = PressuresScatter, .changes = {CHANGE_SURFACE, CHANGE_FINER_SLAVE}},
   {.pair = SlipTurns, .changes = {CHANGE_SHORTER}},

@@ -39,8 +39,9 @@ static void PrintPair(const PairFigures *pair, FILE *stream)
 {
   const ContactQuality *quality = &pair->quality;
 
-  fprintf(stream, "contact  %s: %lld nodes, penetration up to %.3g (%.2g of a face)", pair->name,
-          (long long)quality->nodes, (double)quality->max_penetration, (double)quality->max_penetration_over_h);
+  fprintf(stream, "contact  %s: %lld %s, penetration up to %.3g (%.2g of a face)", pair->name,
+          (long long)quality->nodes, quality->faces ? "faces" : "nodes", (double)quality->max_penetration,
+          (double)quality->max_penetration_over_h);
   if (quality->deepest.tag >= 0)
     fprintf(stream, " at node %lld (%.5g, %.5g, %.5g)", (long long)quality->deepest.tag, (double)quality->deepest.X[0],
             (double)quality->deepest.X[1], (double)quality->deepest.X[2]);
@@ -107,7 +108,8 @@ static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
     pair->name, 100 * (double)error->force, 100 * (double)error->pressure, 100 * (double)error->peak,
     100 * (double)error->displacement);
   if (pair->scene->penalty_may_stiffen && pair->stiffened > 1)
-    fprintf(stream, "; penalty raised %.3g times for it", (double)pair->stiffened);
+    fprintf(stream, "; penalty raised %.3g times for it%s", (double)pair->stiffened,
+            pair->penalty_stays ? ", which lowered it by less than forecast: it was raised no more" : "");
   fprintf(stream, "\n");
 }
 

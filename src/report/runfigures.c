@@ -38,6 +38,7 @@ static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
   pair->name          = ContactPairName(contact, p);
   pair->scene         = ContactPairScene(contact, p);
   pair->penalty_error = ModelPenaltyError(model, p);
+  pair->penalty_stays = ModelPenaltyStays(model, p);
   PetscCall(ContactPairFits(contact, p, &pair->fits));
   PetscCall(ContactPairQuality(contact, p, &pair->quality));
   PetscCall(ContactPairPenalty(contact, p, &pair->penalty_min, &pair->penalty_max));

@@ -308,21 +308,23 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
   Not collective
 
   Input Parameters:
-+ fit - the prepared fits
-- at  - where the fit is made
++ fit   - the prepared fits
+. at    - where the fit is made
+- first - rung to begin with
 
   Output Parameters:
 + problem - the fit, with arrays that belong to fit
 . result  - its surface and guards, likewise
 - rung    - the rung on which the fit holds; RUNG_FACET if none does
 @*/
-PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, FitProblem *problem, FitResult *result, int *rung)
+PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, int first, FitProblem *problem, FitResult *result,
+                               int *rung)
 {
   PetscBool holds = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   *rung = RUNG_FACET;
-  for (int r = 0; r < RUNGS && !holds; r++) {
+  for (int r = first; r < RUNGS && !holds; r++) {
     PetscCall(FitRung(fit, at, r, problem, result, &holds));
     if (holds) *rung = r;
   }
@@ -391,7 +393,8 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
     at.foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
   }
   TimingBegin(TIMING_FIT); /* these two readings of the clock cost 0.1 % of a ladder */
-  PetscCall(FitSupportClimb(fit, &at, &problem, &result, &lists->rung[q]));
+  PetscCall(FitSupportClimb(fit, &at, fit->s->first_rung ? fit->s->first_rung[q] : RUNG_PLAIN, &problem, &result,
+                            &lists->rung[q]));
   TimingEnd(TIMING_FIT);
   if (look->listed && lists->rung[q] != RUNG_FACET && FitStrays(look, &result)) lists->rung[q] = RUNG_FACET;
   if (lists->rung[q] == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);

@@ -10,6 +10,9 @@
    counts as behind it. Penetrations are much smaller, and another side of the master is nearer then. */
 #define FLANK_DEPTH 0.25
 
+/* Nodes of a slave's face count as farthest past an edge within this part of its size. */
+#define FLANK_FARTHEST 0.1
+
 /* An edge that two facets share, as seen from one of them. */
 typedef struct {
   int       edge;
@@ -246,23 +249,106 @@ static PetscReal SlaveTurns(const Nearest *look, const PetscReal normal[3])
   return turns;
 }
 
-/* Part of a slave point's area that takes part where the flank ends at a convex edge of facet c, beyond which there is
-   a facet that the point does not face. The width over which it fades shrinks as the point turns towards that facet,
-   because then the plane beyond the edge lies in front of the master. Past the edge, a point that is deeper than
-   FLANK_DEPTH is in front of another side of the master, not behind this one. Where the slave turns with the master,
-   its next face meets the side beyond the edge, and nothing of this one's area is left out inside. */
-static PetscReal EndShare(const Nearest *look, const Candidate *c, const Candidate *beyond, const FlankEdge *edge)
+/* Part of a slave point's area that takes part at an end of facet c, fading over a width (length), half of it on either
+   side of the edge. Past the edge, a point that is deeper than FLANK_DEPTH is in front of another side of the master,
+   not behind this one. turns: 1 where the slave turns with the master, so that its next face meets the side beyond the
+   edge, and nothing of this one's area is left out inside. */
+static PetscReal EndShare(const Nearest *look, const Candidate *c, const FlankEdge *edge, PetscReal width,
+                          PetscReal turns)
 {
-  const PetscReal width  = look->size * NeighbourListsAverse(look->lists, look->q, beyond->normal),
-                  inside = FootToEdge(look, edge);
+  const PetscReal inside = FootToEdge(look, edge);
   const PetscReal past   = inside > FACET_COINCIDENT * look->size ? -inside : BesideFoot(look);
   PetscReal       place;
 
   if (2 * PetscAbsReal(past) >= width) return past > 0 ? 0 : 1;
   place = past / width + 0.5;
-  place += SlaveTurns(look, beyond->normal) * (PetscMax(0, 2 * place - 1) - place);
+  place += turns * (PetscMax(0, 2 * place - 1) - place);
   return (1 - SmoothStep(place)) *
          (1 - SmoothStep(2 * place) * SmoothStep(DepthAtEdge(look, c, edge) / (FLANK_DEPTH * look->size)));
+}
+
+/* The same where the flank ends at a convex edge, beyond which there is a facet that the point does not face. The width
+   over which it fades shrinks as the point turns towards that facet, because then the plane beyond the edge lies in
+   front of the master. */
+static PetscReal ConvexShare(const Nearest *look, const Candidate *c, const Candidate *beyond, const FlankEdge *edge)
+{
+  return EndShare(look, c, edge, look->size * NeighbourListsAverse(look->lists, look->q, beyond->normal),
+                  SlaveTurns(look, beyond->normal));
+}
+
+/* The way out of facet c across one of its edges, in its plane, of length 1. */
+static void WayOut(const Nearest *look, const Candidate *c, const FlankEdge *edge, PetscReal out[3])
+{
+  const NeighbourLists lists    = look->lists;
+  const int            dim      = lists->dim;
+  PetscReal            along[3] = {0, 0, 0}, square = 0, part = 0, height = 0, length = 0;
+
+  for (int d = 0; d < 3; d++) out[d] = 0;
+  for (int d = 0; d < dim; d++) {
+    const PetscInt  a = edge->nodes[0] * dim + d, b = edge->nodes[1] * dim + d;
+    const PetscReal at = lists->point_X[a] + lists->point_u[a];
+
+    out[d]   = at - c->centre[d];
+    along[d] = lists->point_X[b] + lists->point_u[b] - at;
+    square += PetscSqr(along[d]);
+    part += along[d] * out[d];
+    height += c->normal[d] * out[d];
+  }
+  for (int d = 0; d < dim; d++) out[d] -= (square > 0 ? part / square : 0) * along[d] + height * c->normal[d];
+  for (int d = 0; d < dim; d++) length += PetscSqr(out[d]);
+  for (int d = 0; d < dim && length > 0; d++) out[d] /= PetscSqrtReal(length);
+}
+
+/* How far the slave reaches past an edge of the master, the way out of it, around the point's own face: 0 where it ends
+   at that edge or before, 1 where it covers the width of the fading. It goes on at a node, or it ends there across that
+   way. */
+static PetscReal SlaveOverhangs(const Nearest *look, const FlankEdge *edge, const PetscReal out[3])
+{
+  const NeighbourLists lists  = look->lists;
+  const SlavePoints    slaves = look->slaves;
+  const int            dim    = lists->dim;
+  const PetscInt       first = slaves->ptr[look->q], end = slaves->ptr[look->q + 1], a = edge->nodes[0] * dim;
+  PetscReal            farthest = PETSC_MIN_REAL, goes_on = 0;
+
+  for (int pass = 0; pass < 2; pass++) {
+    for (PetscInt k = first; k < end; k++) {
+      const PetscInt i    = slaves->node[k];
+      PetscReal      past = 0, way = 0, length = 0;
+
+      for (int d = 0; d < dim; d++) {
+        past +=
+          (slaves->nodes[i].X[d] - lists->point_X[a + d] + slaves->u[i * dim + d] - lists->point_u[a + d]) * out[d];
+        way += slaves->end[i * dim + d] * out[d];
+        length += PetscSqr(slaves->end[i * dim + d]);
+      }
+      if (!pass) farthest = PetscMax(farthest, past);
+      if (pass && past >= farthest - FLANK_FARTHEST * look->size)
+        goes_on = PetscMax(goes_on, 1 - (length > 0 ? SmoothStep(2 * way / PetscSqrtReal(length)) : 0));
+    }
+  }
+  return SmoothStep(2 * (farthest / look->size + goes_on));
+}
+
+/* Part of a slave point's area that takes part where the master's surface ends at an edge of facet c and the slave
+   reaches past it. A slave that ends there too keeps all its area. */
+static PetscReal FreeShare(const Nearest *look, const Candidate *c)
+{
+  const Element *e     = ElementGet(c->facet.type);
+  PetscReal      share = 1;
+
+  for (int k = 0; k < (e->dim == 1 ? 2 : e->edges); k++) {
+    const FlankEdge edge = {k,
+                            {c->facet.nodes[e->dim == 1 ? k : e->edge_corners[k][0]],
+                             c->facet.nodes[e->dim == 1 ? k : e->edge_corners[k][1]]},
+                            PETSC_TRUE};
+    PetscReal       out[3], part;
+
+    if (!(c->facet.free_edges >> k & 1)) continue;
+    WayOut(look, c, &edge, out);
+    part  = 1 - EndShare(look, c, &edge, look->size, SlaveTurns(look, out));
+    share = PetscMin(share, 1 - (part > 0 ? part * SlaveOverhangs(look, &edge, out) : 0));
+  }
+  return share;
 }
 
 /* Part of a slave point's area that takes part where the point is far behind the flank that it faces. A side of the
@@ -295,7 +381,8 @@ static PetscReal DeepShare(const Nearest *look, int facing, int n, const int *fo
 . ends - ends[facing]: for each facet that faces the point the edges at which the flank ends, as bits like free_edges
 
   Note:
-  Returns 1 where the normals oppose each other and no convex end is near.
+  Returns 1 where the normals oppose each other, and neither a convex end nor a free edge that the slave overhangs is
+  near.
 @*/
 PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, int *ends)
 {
@@ -303,13 +390,14 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
 
   for (int i = 0; i < facing; i++) {
     ends[i] = 0;
+    share   = PetscMin(share, FreeShare(look, &look->candidates[found[i]]));
     for (int k = facing; k < n; k++) {
       const Candidate *beyond = &look->candidates[found[k]];
       FlankEdge        edge;
 
       if (!SharedEdge(look, &look->candidates[found[i]], beyond, &edge)) continue;
       ends[i] |= 1 << edge.edge;
-      if (edge.convex) share = PetscMin(share, EndShare(look, &look->candidates[found[i]], beyond, &edge));
+      if (edge.convex) share = PetscMin(share, ConvexShare(look, &look->candidates[found[i]], beyond, &edge));
     }
   }
   if (n > facing) share *= DeepShare(look, facing, n, found);

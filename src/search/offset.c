@@ -109,7 +109,7 @@ static PetscErrorCode FitAt(FitSupport *fit, const OffsetFace *face, int q, FitP
     at.foot[d]    = at.X[d];
     at.outward[d] = face->normal[3 * q + d];
   }
-  PetscCall(FitSupportClimb(fit, &at, problem, result, rung));
+  PetscCall(FitSupportClimb(fit, &at, RUNG_PLAIN, problem, result, rung));
   for (int a = 0; a < n && *rung != RUNG_FACET; a++) {
     for (int k = 0; k < dim - 1; k++) {
       nodes[a][k] = 0;

@@ -452,6 +452,20 @@ void SearchSetTool(ContactSearch s, const MeshTool *tool)
 }
 
 /*@
+  SearchSetRungs - says on which rung of the ladder of fall-backs the fit of each slave point begins.
+
+  Not collective
+
+  Input Parameters:
++ s     - the search
+- first - of each slave point of this rank, RUNG_PLAIN to RUNGS, where it has no fit; borrowed, read by each search
+@*/
+void SearchSetRungs(ContactSearch s, const int *first)
+{
+  s->first_rung = first;
+}
+
+/*@
   SearchLists - lists for every slave point of this rank the facets near it and the points of which these are made, from
   whatever rank.
 
@@ -486,6 +500,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(SearchFieldCreate(s, u, t, box, distance, lists, &field));
   PetscCall(NeighbourListsCreateSlaves(s, lists));
   PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, lists->slave_normal));
+  if (s->master) PetscCall(SlavePointsFindEnds(s->slaves, u));
   if (s->fit->fitted) PetscCall(FitSupportCreate(s, lists, &field, &fit));
   if (s->fit->fitted && s->fit->global_frame)
     PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));

@@ -222,6 +222,7 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *points)
     PetscCall(FaceMapsDestroy(&p->maps));
     PetscCall(PetscFree(p->normal));
   }
+  PetscCall(PetscFree(p->end));
   PetscCall(PetscFree6(p->ptr, p->node, p->S, p->hat, p->weight, p->offset));
   PetscCall(PetscFree2(p->size, p->height));
   PetscCall(PetscFree(p->nodes));
@@ -357,6 +358,30 @@ PetscErrorCode SlavePointsNormals(SlavePoints points, int n_images, const Surfac
     FaceRuleAreas(FaceRuleGet(facet->type, points->finer), facet->type, dim, GEOMETRY_SOLID, x, area,
                   &normals[3 * points->first[f]]);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SlavePointsFindEnds - finds at which nodes the slave surface ends, and which way.
+
+  Collective
+
+  Input Parameters:
++ points - the slave points
+- u      - local displacements u[mesh n_nodes*dim] (length), ghosts included
+@*/
+PetscErrorCode SlavePointsFindEnds(SlavePoints points, const PetscReal *u)
+{
+  const int  dim = points->mesh->dim;
+  PetscReal *end;
+
+  PetscFunctionBeginUser;
+  if (!points->end) PetscCall(PetscMalloc1(points->n_nodes * dim, &points->end));
+  PetscCall(PetscMalloc1(points->mesh->n_nodes * dim, &end));
+  PetscCall(SurfaceNodeEnds(points->surface, u, end));
+  PetscCall(PetscSFBcastBegin(points->sf, points->block, end, points->end, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(points->sf, points->block, end, points->end, MPI_REPLACE));
+  PetscCall(PetscFree(end));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

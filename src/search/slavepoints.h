@@ -5,7 +5,8 @@
 
    SlavePointsCreateNodes() or SlavePointsCreateQuadrature() makes them. SlavePointsSetOffsets() or
    SlavePointsSetMaps() brings the offsets of the faces to the points. SlavePointsMove() fetches displacements;
-   SlavePointsPosition() and SlavePointsNormals() refer to the last move. SlavePointsHatAreas() gives the nodal areas
+   SlavePointsPosition() and SlavePointsNormals() refer to the last move. SlavePointsFindEnds() finds where the slave
+   ends. SlavePointsHatAreas() gives the nodal areas
    of surface-to-surface contact. */
 #pragma once
 #include "search/facemap.h"
@@ -22,6 +23,7 @@ typedef struct {
   PetscReal     *S, *hat, *weight; /* shape and hat functions at these nodes; area weight of each point */
   PetscReal     *size, *height;    /* of the slave's faces at each point, and of the elements below them (length) */
   PetscReal     *offset;           /* n*dim, along the normal at the time when it was taken (length) */
+  PetscReal     *end;              /* n_nodes*dim: SurfaceNodeEnds() at the last SlavePointsFindEnds(), of any length */
   /* The following members are for surface-to-surface contact only. */
   PetscReal   *normal; /* n_nodes*3: mean normal around each node after SlavePointsNormals(), of any length */
   PetscInt     n_faces;
@@ -43,6 +45,7 @@ PetscBool      SlavePointIsOwn(SlavePoints, PetscInt q, PetscMPIInt rank);
 void           SlavePointsPosition(SlavePoints, PetscInt q, PetscReal *x);
 PetscErrorCode SlavePointsNormals(SlavePoints, int n_images, const SurfaceImage *, const PetscReal *u,
                                   PetscReal *normals);
+PetscErrorCode SlavePointsFindEnds(SlavePoints, const PetscReal *u);
 PetscErrorCode SlavePointsSetOffsets(SlavePoints, const PetscReal *offset);
 PetscErrorCode SlavePointsSetMaps(SlavePoints, const FaceMaps *);
 PetscErrorCode SlavePointsHatAreas(SlavePoints, Geometry, const PetscReal *u, PetscReal *area);

@@ -365,6 +365,71 @@ PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, int n_images, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The way out of a face across one of its edges, in the plane of the face: as long as the edge, in 2D of length 1. X:
+   coordinates of the face's nodes. */
+static void FaceOutward(const Facet *face, int edge, int dim, const double *X, PetscReal out[3])
+{
+  const int corners  = ElementGet(face->type)->corners;
+  PetscReal along[3] = {0}, square = 0, length = 0, part = 0;
+  int       ends[2];
+
+  FaceEdgeNodes(face, edge, ends);
+  for (int d = 0; d < dim; d++) {
+    PetscReal centre = 0;
+
+    for (int a = 0; a < corners; a++) centre += X[a * dim + d] / corners;
+    along[d] = X[ends[1] * dim + d] - X[ends[0] * dim + d];
+    out[d]   = (X[ends[0] * dim + d] + X[ends[1] * dim + d]) / 2 - centre;
+    square += PetscSqr(along[d]);
+    part += along[d] * out[d];
+  }
+  for (int d = 0; d < dim && square > 0; d++) out[d] -= part / square * along[d];
+  for (int d = 0; d < dim; d++) length += PetscSqr(out[d]);
+  for (int d = 0; d < dim && length > 0; d++) out[d] *= PetscSqrtReal((dim == 3 ? square : 1) / length);
+}
+
+/*@
+  SurfaceNodeEnds - finds which way a surface ends at its nodes: the sum of the ways out across the free edges around
+  each of them, in the plane of the surface.
+
+  Collective
+
+  Input Parameters:
++ surface - a deformable surface, after SurfaceFindFreeEdges()
+- u       - local displacements u[n_nodes*dim] (length)
+
+  Output Parameter:
+. end - end[n_nodes*dim] of any length, complete on every copy of a node, 0 where the surface does not end
+@*/
+PetscErrorCode SurfaceNodeEnds(ContactSurface surface, const PetscReal *u, PetscReal *end)
+{
+  Mesh      mesh = surface->mesh;
+  const int dim  = mesh->dim;
+  double    X[FACE_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(end, mesh->n_nodes * dim));
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    const Facet   *face = &surface->faces[f];
+    const Element *of   = ElementGet(face->type);
+
+    for (int e = 0; face->free_edges && e < FaceEdges(face); e++) {
+      PetscReal out[3];
+      int       ends[2];
+
+      if (!(face->free_edges >> e & 1)) continue;
+      FaceCoordinates(surface, face, u, X);
+      FaceOutward(face, e, dim, X, out);
+      for (int d = 0; d < dim; d++) {
+        for (int k = 0; k < FaceEdgeNodes(face, e, ends); k++) end[face->nodes[ends[k]] * dim + d] += out[d];
+        if (of->dim == 2 && of->order == 2) end[face->nodes[of->corners + e] * dim + d] += out[d];
+      }
+    }
+  }
+  PetscCall(MeshSumNodes(mesh, dim, end));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SurfaceNodeAreas - computes tributary areas int N_a dA and normals int N_a n dA of all local nodes, summed over the
   faces of all ranks.

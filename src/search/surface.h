@@ -4,7 +4,8 @@
 
    SurfaceCreate() makes a surface. SurfaceImages() makes the mirror images of a pair, and SurfaceFindFreeEdges()
    needs them to mark the edges at which a master ends. SurfaceImageBeyondAxis() finds those at negative radii.
-   SurfaceNodeAreas() and SurfaceNodeSizes() measure deformable surfaces around their nodes. SurfaceFaces() checks that
+   SurfaceNodeEnds() says where a surface ends, and which way. SurfaceNodeAreas() and SurfaceNodeSizes() measure
+   deformable surfaces around their nodes. SurfaceFaces() checks that
    two surfaces face each other at all. SurfaceReflect() and SurfaceImageFacet() take positions and faces to a mirror
    image. */
 #pragma once
@@ -46,6 +47,7 @@ PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const ch
 PetscErrorCode SurfaceDestroy(ContactSurface *);
 PetscBool      SurfaceOnPlane(Mesh, const SurfaceImage *, const PetscReal *x);
 PetscErrorCode SurfaceFindFreeEdges(ContactSurface, int n_images, const SurfaceImage *);
+PetscErrorCode SurfaceNodeEnds(ContactSurface, const PetscReal *u, PetscReal *end);
 PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, PetscReal *area, PetscReal *normal);
 PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, int n_images, const SurfaceImage *, PetscReal *size,
                                 PetscReal *turn, PetscReal *share);

@@ -94,6 +94,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(PetscFree2(m->u, m->work->accepted_u));
   PetscCall(PetscFree2(m->work->solved, m->work->from));
   PetscCall(PetscFree(m->work->penalty_error));
+  PetscCall(PetscFree2(m->work->stiffened_at, m->work->stiffened_by));
   PetscCall(PetscFree(m->work));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -105,3 +105,4 @@ PetscErrorCode ModelArchive(Model, Archive);
 PetscErrorCode ModelEffects(Model, char *text, size_t size);
 PetscErrorCode ModelDofs(Model, PetscInt *free_dofs);
 PenaltyError   ModelPenaltyError(Model, int pair);
+PetscBool      ModelPenaltyStays(Model, int pair);

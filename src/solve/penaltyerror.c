@@ -22,6 +22,10 @@
 /* They are made stiffer by at most this factor at a time. An estimate that asks for more is beyond the range in which
    the error is proportional to the compliance. */
 #define PENALTY_MOST_STIFFER 30
+/* A raise of the penalties by a factor is to lower the estimate by that factor. A raise that brings less than this
+   power of it has not brought what it was made for: what is left does not come from the penalty, or it is at a few
+   terms that hardly have an area, such as those over the end of a surface. The pair is then stiffened no more. */
+#define PENALTY_GAIN 0.5
 /* A pair whose forces are below this part of those of the most loaded pair does not stiffen its penalty, because its
    own error hardly counts in the model. */
 #define PENALTY_LIGHT_PAIR 1e-3
@@ -31,6 +35,8 @@ PetscErrorCode ModelCreatePenaltyError(Model model)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(ContactPairs(model->contact), &model->work->penalty_error));
+  PetscCall(PetscCalloc2(ContactPairs(model->contact), &model->work->stiffened_at, ContactPairs(model->contact),
+                         &model->work->stiffened_by));
   ModelForgetPenaltyError(model);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -38,8 +44,10 @@ PetscErrorCode ModelCreatePenaltyError(Model model)
 /* Forgets the estimates of a solve that was taken back. */
 void ModelForgetPenaltyError(Model model)
 {
-  for (int p = 0; p < ContactPairs(model->contact); p++)
+  for (int p = 0; p < ContactPairs(model->contact); p++) {
+    model->work->stiffened_at[p] = model->work->stiffened_by[p] = 0;
     model->work->penalty_error[p] = (PenaltyError){.force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN};
+  }
 }
 
 /* Saves or loads the estimates with the model. */
@@ -67,6 +75,23 @@ PetscErrorCode ModelArchivePenaltyError(Model model, Archive archive)
 PenaltyError ModelPenaltyError(Model model, int pair)
 {
   return model->work->penalty_error[pair];
+}
+
+/*@
+  ModelPenaltyStays - says whether stiffer penalties have not lowered the error that is estimated for a pair.
+
+  Not collective
+
+  Input Parameters:
++ model - the model
+- pair  - number of the pair
+
+  Note:
+  The last solve has made them stiffer, and the estimate fell by much less than was forecast.
+@*/
+PetscBool ModelPenaltyStays(Model model, int pair)
+{
+  return (PetscBool)(model->work->stiffened_by[pair] < 0);
 }
 
 /* The derivative of the free residual to ln s at the trial state. The residual is linear in s where what slips goes on
@@ -222,6 +247,16 @@ static PetscReal Factor(PetscReal error)
                   PetscMin(error / PENALTY_ERROR_WANTED, 1 + PENALTY_RISE * (error / PENALTY_ERROR_LARGE - 1)));
 }
 
+/* Says whether the last raise of a pair's penalties in this solve has brought too little of what was forecast. worst:
+   its largest error now. */
+static PetscBool StiffeningFails(Model model, int pair, PetscReal worst)
+{
+  PetscReal *at = &model->work->stiffened_at[pair], *by = &model->work->stiffened_by[pair];
+
+  if (*by > 0 && worst > *at * PetscPowReal(*by, -PENALTY_GAIN)) *by = -*by;
+  return (PetscBool)(*by < 0);
+}
+
 /* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty().
  *stiffened: some are. Those with such small forces stay as they are of which the solve itself leaves an error as large.
  */
@@ -242,9 +277,12 @@ PetscErrorCode ModelStiffen(Model model, PetscReal factor[], PetscBool *stiffene
 
     factor[p] = 1;
     if (!ContactPairScene(model->contact, p)->penalty_may_stiffen || !(worst > PENALTY_ERROR_LARGE) ||
-        load[p].force < PENALTY_LIGHT_PAIR * most || PENALTY_ERROR_LARGE * load[p].force <= left)
+        load[p].force < PENALTY_LIGHT_PAIR * most || PENALTY_ERROR_LARGE * load[p].force <= left ||
+        StiffeningFails(model, p, worst))
       continue;
-    factor[p] = Factor(worst);
+    factor[p]                    = Factor(worst);
+    model->work->stiffened_at[p] = worst;
+    model->work->stiffened_by[p] = factor[p];
     PetscCall(ContactStiffen(model->contact, p, factor[p]));
     PetscCall(PetscInfo(model->snes, "contact '%s': estimated error %g, penalties %g times as stiff\n",
                         ContactPairName(model->contact, p), (double)worst, (double)factor[p]));

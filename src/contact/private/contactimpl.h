@@ -94,6 +94,7 @@ typedef struct {
   /* Of each slave point: its factor before the one in force, in this step, and what the search said then less that. */
   PetscReal         *factor_before, *factor_change;
   PetscReal         *factor_low, *factor_high; /* factors of this step between which the right one is */
+  int               *first_rung;               /* rung with which the fit of each slave point begins in this step */
   PetscBool          fresh;     /* the lists in force were made where they are, with the offsets in force */
   PetscBool          projected; /* the slave points were projected with these lists at their last update */
   int               *seed;      /* of each slave point: facet of the last projection */
@@ -140,9 +141,18 @@ struct _n_Contact {
   PetscLogEvent   event_fit, event_offset, event_adjust, event_touch; /* only where the scene calls for the effect */
 };
 
+/* What of a pair is in contact: closed nodes, or closed faces where no node is closed. */
+typedef struct {
+  PetscInt  n;
+  PetscBool faces;         /* faces are counted */
+  PetscReal depth, over_h; /* largest penetrations (length, face sizes) */
+} ContactPressing;
+
 /* contactpair.c */
 PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneContact *, ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
+/* contactquery.c */
+PetscErrorCode ContactPairPressing(const ContactPair *, ContactPressing *);
 /* contactfaces.c */
 PetscBool      ContactFacesServe(const ContactPair *, Scene, int order);
 PetscErrorCode ContactFacesAdd(ContactPair *, const PetscReal turn[]);

@@ -26,6 +26,7 @@ struct _n_ContactSearch {
   const PetscReal    *offset; /* of the quadrature points of this rank's master faces, where fits use these points */
   const FaceMaps     *maps;   /* or these points as combinations of nodes */
   const MeshTool     *tool;   /* the master, where its motion has free components; else NULL */
+  const int          *first_rung;    /* of each slave point, with which its fit begins; NULL: RUNG_PLAIN */
   PetscBool           keeps_faces;   /* lists keep all faces, not only those of each slave point */
   PetscBool           listed;        /* any side of the bodies may meet any other one */
   PetscBool           one_body;      /* slave and master have faces of one body */
@@ -127,7 +128,7 @@ PetscReal      SearchFitReach(ContactSearch);
 PetscErrorCode FitSupportCreate(ContactSearch, NeighbourLists, const SearchField *, FitSupport *);
 PetscErrorCode FitSupportDestroy(FitSupport *);
 PetscErrorCode FitSupportSlave(FitSupport *, const Nearest *, PetscInt q, PetscInt first, ListBuffer *);
-PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, FitProblem *, FitResult *, int *rung);
+PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, int first, FitProblem *, FitResult *, int *rung);
 /* search.c */
 PetscErrorCode SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6],
                                  PetscReal distance, NeighbourLists, SearchField *);

@@ -68,6 +68,8 @@ typedef struct _n_ModelWork {
   PetscBool  searched;       /* it was tried to move them */
 
   PenaltyError *penalty_error; /* of each pair, once the load is at its end */
+  PetscReal    *stiffened_at;  /* of each pair: its worst estimate when this solve stiffened it last; 0: it has not */
+  PetscReal    *stiffened_by;  /* the factor by which it did; negative: that brought too little, and it stays */
 
   /* A look-ahead from the accepted state */
   Vec       look_ahead; /* free displacements at look_ahead_t by ModelLookAhead() */
