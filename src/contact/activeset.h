@@ -30,6 +30,7 @@ typedef struct {
   PetscReal         pressure;  /* in the residual there */
   PetscReal         stiffness; /* in the tangent; 0: the term takes no part in it */
   PetscReal         penalty;   /* stiffness when pressed */
+  PetscReal         area;      /* on which its pressure acts */
   ActiveSetFriction friction;
 } ActiveSetTerm;
 
