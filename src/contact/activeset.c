@@ -482,6 +482,25 @@ PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBo
   } while (PETSC_TRUE);
 }
 
+/*@
+  ActiveSetRest - finds all components that have no column.
+
+  Not collective
+
+  Input Parameter:
+. p - the active set
+
+  Output Parameters:
++ m     - number of them
+- which - their numbers; room for parts*n
+@*/
+void ActiveSetRest(ActiveSet p, PetscInt *m, PetscInt *which)
+{
+  *m = 0;
+  for (PetscInt i = 0; i < p->parts * p->n; i++)
+    if (p->column[i] < 0) which[(*m)++] = i;
+}
+
 /* Sorts terms by depth where the step ends, the deepest first. */
 static int CompareDepth(const void *a, const void *b, void *context)
 {
