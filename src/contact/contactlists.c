@@ -28,10 +28,6 @@
 /* Motions that differ by less than this fraction differ by round-off. */
 #define CONTACT_SAME_MOTION 1e-9
 
-/* Depth behind the master, in faces of the slave, at which a point past a free edge no longer counts as behind it, as
-   at the end of a flank. Penetrations are much smaller, and a slave that hangs over the edge goes deeper. */
-#define CONTACT_EDGE_DEPTH 0.25
-
 /* Part of a slave point's area that takes part, from its foot on the facets: 1 inside, fading to 0 past a free edge.
    That takes one face size, of the slave or of the master, whichever is less. */
 static PetscReal EdgeFactor(const ContactPair *pair, NeighbourLists lists, PetscInt q)

@@ -129,6 +129,23 @@ static void CountAverse(const ContactPair *pair, PetscMPIInt rank, PetscInt coun
   }
 }
 
+/* Counts this rank's slave points past a free edge of the master that have lost half of their area for their depth. */
+static PetscErrorCode CountHanging(const ContactPair *pair, PetscMPIInt rank, PetscInt *hanging)
+{
+  const NeighbourLists lists = pair->lists;
+
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < lists->n_slaves && pair->master; q++) {
+    const SmootherResult *result = &pair->work->result;
+    PetscBool             found;
+
+    if (!SlavePointIsOwn(pair->slaves, q, rank) || lists->share[q] == 0) continue;
+    PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, lists->nearest[q], SMOOTHER_GAP, &found));
+    if (found && result->beyond > 0 && -result->gap > CONTACT_EDGE_DEPTH / 2 * pair->slaves->size[q]) (*hanging)++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactPairQuality - measures the penetrations of a pair in the present state, against the size of its faces and
   against what facets leave out.
@@ -145,7 +162,7 @@ static void CountAverse(const ContactPair *pair, PetscMPIInt rank, PetscInt coun
 PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *quality)
 {
   const ContactPair *pair     = &contact->pairs[p];
-  PetscInt           count[3] = {0, 0, 0}; /* nodes, points near, averse */
+  PetscInt           count[4] = {0, 0, 0, 0}; /* nodes, points near, averse, hanging */
   PetscMPIInt        rank;
   PetscReal          most[2] = {0, 0}, sum[2] = {0, 0}, *depth;
 
@@ -163,8 +180,9 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &rank));
   SumSagitta(pair, rank, sum);
   CountAverse(pair, rank, &count[1]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
-  *quality = (ContactQuality){.nodes = count[0], .near = count[1], .averse = count[2]};
+  PetscCall(CountHanging(pair, rank, &count[3]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 4, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  *quality = (ContactQuality){.nodes = count[0], .near = count[1], .averse = count[2], .hanging = count[3]};
   if (pair->master) quality->turned = pair->master->turned;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
   PetscCall(FindPlace(contact->mesh, pair, depth, most[0], &quality->deepest));
