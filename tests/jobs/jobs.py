@@ -170,7 +170,4 @@ JOBS = [
         Answer("radial", 100, 0.1, "limit"),
         Answer("peak", 1, 0.1, "limit"),
     ], steps=14, picture=["--mirror", "x"]),
-    Job("o_ring_stack", "three O-rings in one gland", [
-        Answer("force", -497.9, 0.1, "limit"),
-    ], steps=12, levels=(1, 1.3, 1.69)),
 ]
