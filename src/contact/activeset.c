@@ -5,8 +5,14 @@
    Sets that have not converged by then repeat themselves. */
 #define ACTIVE_SET_MAX_SETS 30
 
+/* Most steps of the search that follows then. Each lowers the energy, and a set does not come twice. */
+#define ACTIVE_SET_MAX_SEARCHES 100
+
 /* Rounding of a pressure, as a part of it. */
 #define ACTIVE_SET_ROUND_OFF 1e-12
+
+/* A slope of the energy is zero if it is this part of that where the search begins. */
+#define ACTIVE_SET_SLOPE 1e-9
 
 /* What friction's law says of a traction at the end may differ from what residual and tangent do by this part of the
    largest traction that any term can bear. Newton's method takes such differences in its stride, and columns for all
@@ -21,6 +27,8 @@ struct _n_Pressing {
   PetscInt      *column;       /* parts*n; -1: none */
   PetscInt      *term;         /* component of each column */
   PetscReal     *G, *excess;   /* m*parts*n, m */
+  PetscReal     *change;       /* m: of the excess, by the last iteration */
+  PetscBool      searches;     /* sets have repeated themselves: each step ends where the energy is least along it */
   PetscBool     *slipped;      /* n: the term slipped where friction was looked at last */
   PetscBool     *sticks;       /* n: its slip has turned round since, so that it is to stick in the next set */
   PetscReal     *slip;         /* 2*n: its slip there (length) */
@@ -131,6 +139,7 @@ PetscErrorCode ActiveSetDestroy(ActiveSet *pressing)
   PetscCall(PetscFree(p->term));
   PetscCall(PetscFree(p->G));
   PetscCall(PetscFree(p->excess));
+  PetscCall(PetscFree(p->change));
   PetscCall(PetscFree(*pressing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -153,6 +162,7 @@ PetscErrorCode ActiveSetAddColumns(ActiveSet p, PetscInt m, const PetscInt *whic
   PetscFunctionBeginUser;
   PetscCall(PetscRealloc((p->m + m) * sizeof(PetscInt), &p->term));
   PetscCall(PetscRealloc((p->m + m) * sizeof(PetscReal), &p->excess));
+  PetscCall(PetscRealloc((p->m + m) * sizeof(PetscReal), &p->change));
   PetscCall(PetscRealloc((p->m + m) * all * sizeof(PetscReal), &p->G));
   PetscCall(PetscArraycpy(&p->G[p->m * all], G, m * all));
   for (PetscInt k = 0; k < m; k++) {
@@ -256,8 +266,8 @@ static PetscInt MissingFriction(ActiveSet p, PetscInt *which)
   return p->m + m <= p->most ? m : 0;
 }
 
-/* Changes the excess e of all columns by one iteration of Newton's method for e = excess(travel - G e). *regular is
-   PETSC_TRUE if its matrix is not singular. */
+/* The change of the excess e of all columns by one iteration of Newton's method for e = excess(travel - G e). *regular
+   is PETSC_TRUE if its matrix is not singular. */
 static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
 {
   const PetscInt m = p->m, all = p->parts * p->n;
@@ -291,8 +301,8 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
     PetscCall(MatSolve(matrix, right, e));
     PetscCall(VecGetArray(e, &b));
     for (PetscInt j = 0; j < m; j++) {
-      p->excess[j] += PetscRealPart(b[j]);
-      if (PetscIsInfOrNanReal(p->excess[j])) *regular = PETSC_FALSE;
+      p->change[j] = PetscRealPart(b[j]);
+      if (PetscIsInfOrNanReal(p->change[j])) *regular = PETSC_FALSE;
     }
     PetscCall(VecRestoreArray(e, &b));
   }
@@ -302,6 +312,15 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* By how much an excess[m] of all columns closes a gap, or slides a term back. */
+static PetscReal Closing(const ActiveSet p, const PetscReal *excess, PetscInt component)
+{
+  PetscReal closing = 0;
+
+  for (PetscInt j = 0; j < p->m; j++) closing += p->G[j * p->parts * p->n + component] * excess[j];
+  return closing;
+}
+
 /* Finds the set that the excess at hand leads to, and says whether it is another one, or friction's excess another. */
 static PetscBool Follow(ActiveSet p)
 {
@@ -309,10 +328,7 @@ static PetscBool Follow(ActiveSet p)
   PetscBool      changed = PETSC_FALSE;
   PetscReal      by[ACTIVE_SET_PARTS], negligible;
 
-  for (PetscInt i = 0; i < all; i++) {
-    p->end[i] = p->travel[i];
-    for (PetscInt j = 0; j < p->m; j++) p->end[i] -= p->G[j * all + i] * p->excess[j];
-  }
+  for (PetscInt i = 0; i < all; i++) p->end[i] = p->travel[i] - Closing(p, p->excess, i);
   for (PetscInt i = 0; i < p->n; i++) {
     const PetscBool pressed = (PetscBool)(p->terms[i].opening + p->end[i] < 0);
 
@@ -325,6 +341,104 @@ static PetscBool Follow(ActiveSet p)
     if (p->term[j] >= p->n && PetscAbsReal(ComponentExcess(p, p->term[j], by) - p->excess[j]) > negligible)
       changed = PETSC_TRUE;
   return changed;
+}
+
+/* Slope of the energy of the step without friction, at a part of the change of the excess; closing[n]: of all gaps, by
+   the whole change. */
+static PetscReal Slope(const ActiveSet p, const PetscReal *closing, PetscReal part)
+{
+  PetscReal slope = 0, start, rate;
+
+  for (PetscInt i = 0; i < p->n; i++) {
+    const PetscReal end = p->end[i] - part * closing[i];
+    const PetscInt  j   = p->column[i];
+
+    Excess(&p->terms[i], (PetscBool)(p->terms[i].opening + end < 0), &start, &rate);
+    slope += p->terms[i].area * closing[i] * ((j < 0 ? 0 : p->excess[j] + part * p->change[j]) - start - rate * end);
+  }
+  return slope;
+}
+
+/* The part of the change of the excess at which the energy is least. Its slope is continuous, and linear between the
+   parts[] at which a gap opens or closes. */
+static PetscErrorCode LeastEnergy(const ActiveSet p, PetscReal *part)
+{
+  PetscReal *closing, *parts, low, high;
+  PetscInt   first = 0, last = 1;
+
+  PetscFunctionBeginUser;
+  *part = 1;
+  PetscCall(PetscMalloc2(p->n, &closing, p->n + 2, &parts));
+  parts[0] = 0;
+  for (PetscInt i = 0; i < p->n; i++) {
+    closing[i] = Closing(p, p->change, i);
+    if (closing[i] != 0) parts[last] = (p->terms[i].opening + p->end[i]) / closing[i];
+    if (closing[i] != 0 && parts[last] > 0 && parts[last] < 1) last++;
+  }
+  PetscCall(PetscSortReal(last, parts));
+  parts[last] = 1;
+  low         = Slope(p, closing, 0);
+  high        = Slope(p, closing, 1);
+  while (last > first + 1) {
+    const PetscInt  middle = (first + last) / 2;
+    const PetscReal slope  = Slope(p, closing, parts[middle]);
+
+    if (slope < 0) {
+      first = middle;
+      low   = slope;
+    } else {
+      last = middle;
+      high = slope;
+    }
+  }
+  if (low < 0 && high > -ACTIVE_SET_SLOPE * low)
+    *part = parts[first] - (parts[last] - parts[first]) * low / (high - low);
+  PetscCall(PetscFree2(closing, parts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Changes the excess of all columns as Balance() has found, in a search as far as the energy falls. *changed: the set
+   is another one, or the step was shortened. */
+static PetscErrorCode Advance(ActiveSet p, PetscBool *changed)
+{
+  PetscReal part = 1;
+
+  PetscFunctionBeginUser;
+  if (p->searches) PetscCall(LeastEnergy(p, &part));
+  for (PetscInt j = 0; j < p->m; j++) p->excess[j] += part * p->change[j];
+  *changed = (PetscBool)(Follow(p) || part < 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Follows the sets, at most so many, until a column is missing or one set leads to itself. */
+static PetscErrorCode FollowSets(ActiveSet p, PetscInt most, PetscInt *m, PetscInt *which, PetscBool *regular,
+                                 PetscBool *changed)
+{
+  PetscFunctionBeginUser;
+  *regular = *changed = PETSC_TRUE;
+  for (PetscInt i = 0; i < most && *changed && *regular; i++) {
+    *m = Missing(p, which);
+    if (!*m && !p->m) *m = MissingFriction(p, which);
+    if (*m || !p->m) break;
+    PetscCall(Balance(p, regular));
+    if (*regular) PetscCall(Advance(p, changed));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After sets that have repeated themselves: searches from where they have led to; with friction begins again with the
+   friction that residual and tangent have. */
+static PetscErrorCode ChangeWay(ActiveSet p)
+{
+  PetscFunctionBeginUser;
+  if (p->parts == 1)
+    p->searches = PETSC_TRUE;
+  else {
+    p->plain = PETSC_TRUE;
+    PetscCall(PetscArrayzero(p->excess, p->m));
+    Follow(p);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -341,11 +455,14 @@ static PetscBool Follow(ActiveSet p)
 - converged - where it ended: with a set of terms that is right
 
   Notes:
-  Where friction keeps it from an end, it is solved with the friction that residual and tangent have.
+  Where friction keeps it from an end, it is solved with the friction that residual and tangent have. Without friction
+  sets may repeat themselves where bodies bend, because a force at one place opens gaps at others. Each step then ends
+  where the energy is least along it, which always comes to an end if the tangent is positive definite.
 
   Newton's method is here that of active sets. Sources: Josephy, Newton's method for generalized equations, 1979 (the
   problem linearised except for its contact conditions); Hintermueller, Ito, Kunisch, The primal-dual active set
-  strategy as a semismooth Newton method, SIAM J. Optim. 13 (2003) 865-888; Alart, Curnier, A mixed formulation for
+  strategy as a semismooth Newton method, SIAM J. Optim. 13 (2003) 865-888; Sun, On piecewise quadratic Newton and
+  trust region problems, Math. Program. 76 (1997) 451-467 (the search ends); Alart, Curnier, A mixed formulation for
   frictional contact problems prone to Newton like solution methods, CMAME 92 (1991) 353-375.
 @*/
 PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool *converged)
@@ -354,23 +471,36 @@ PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBo
 
   PetscFunctionBeginUser;
   do {
-    regular = changed = PETSC_TRUE;
-    for (PetscInt i = 0; i < ACTIVE_SET_MAX_SETS && changed && regular; i++) {
-      *m = Missing(p, which);
-      if (!*m && !p->m) *m = MissingFriction(p, which);
-      *converged = (PetscBool)(!*m && !p->m);
-      if (*m || *converged) PetscFunctionReturn(PETSC_SUCCESS);
-      PetscCall(Balance(p, &regular));
-      if (regular) changed = Follow(p);
-    }
-    *converged = (PetscBool)(regular && !changed);
+    const PetscInt most = p->searches ? ACTIVE_SET_MAX_SEARCHES : ACTIVE_SET_MAX_SETS;
+
+    PetscCall(FollowSets(p, most, m, which, &regular, &changed));
+    *converged = (PetscBool)(!*m && (!p->m || (regular && !changed)));
+    if (*m || !p->m) PetscFunctionReturn(PETSC_SUCCESS);
     for (PetscInt i = 0; i < p->n && p->parts > 1; i++) p->sticks[i] = PETSC_FALSE;
     if (regular) *m = MissingFriction(p, which);
-    if (*m || *converged || p->plain || p->parts == 1) PetscFunctionReturn(PETSC_SUCCESS);
-    p->plain = PETSC_TRUE;
-    PetscCall(PetscArrayzero(p->excess, p->m));
-    Follow(p);
+    if (*m || *converged || p->plain || (p->parts == 1 && (p->searches || !regular)))
+      PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(ChangeWay(p));
   } while (PETSC_TRUE);
+}
+
+/*@
+  ActiveSetRest - finds all components that have no column.
+
+  Not collective
+
+  Input Parameter:
+. p - the active set
+
+  Output Parameters:
++ m     - number of them
+- which - their numbers; room for parts*n
+@*/
+void ActiveSetRest(ActiveSet p, PetscInt *m, PetscInt *which)
+{
+  *m = 0;
+  for (PetscInt i = 0; i < p->parts * p->n; i++)
+    if (p->column[i] < 0) which[(*m)++] = i;
 }
 
 /* Sorts terms by depth where the step ends, the deepest first. */

@@ -30,6 +30,7 @@ typedef struct {
   PetscReal         pressure;  /* in the residual there */
   PetscReal         stiffness; /* in the tangent; 0: the term takes no part in it */
   PetscReal         penalty;   /* stiffness when pressed */
+  PetscReal         area;      /* on which its pressure acts */
   ActiveSetFriction friction;
 } ActiveSetTerm;
 
@@ -40,5 +41,6 @@ PetscErrorCode ActiveSetCreate(PetscInt n, PetscInt parts, PetscInt most, const 
 PetscErrorCode ActiveSetDestroy(ActiveSet *);
 PetscErrorCode ActiveSetAddColumns(ActiveSet, PetscInt m, const PetscInt *which, const PetscReal *G);
 PetscErrorCode ActiveSetSolve(ActiveSet, PetscInt *m, PetscInt *which, PetscBool *converged);
+void           ActiveSetRest(ActiveSet, PetscInt *m, PetscInt *which);
 PetscErrorCode ActiveSetLimit(ActiveSet, PetscInt most, PetscInt *m, PetscInt *which);
 void           ActiveSetGet(ActiveSet, const PetscReal **excess, const PetscBool **pressed);

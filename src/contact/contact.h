@@ -96,6 +96,7 @@ typedef struct {
   PetscReal sagitta; /* of first-order facets of the master over the curved surface that they stand for: the mean over
                         the slave points near it (length) */
   PetscInt     near, averse; /* slave points near the master; of these, those that do not face it and take no part */
+  PetscInt     hanging;      /* slave points past a free edge of the master that are deep and hardly take part */
   PetscInt     turned;       /* faces of a rigid master whose normals were turned to the slave */
   ContactPlace deepest;      /* where the largest penetration is */
 } ContactQuality;

@@ -28,8 +28,19 @@
 /* Motions that differ by less than this fraction differ by round-off. */
 #define CONTACT_SAME_MOTION 1e-9
 
-/* Area factors of the slave points for these lists: 1 inside, fading to 0 one face size past a free edge, and where the
-   normals do not oppose each other. */
+/* Part of a slave point's area that takes part, from its foot on the facets: 1 inside, fading to 0 past a free edge.
+   That takes one face size, of the slave or of the master, whichever is less. */
+static PetscReal EdgeFactor(const ContactPair *pair, NeighbourLists lists, PetscInt q)
+{
+  const PetscReal size  = pair->slaves->size[q],
+                  width = PetscMin(size, lists->facet_size[lists->facet_ptr[q] + pair->work->result.seed]),
+                  past = pair->work->result.beyond / width, depth = PetscMax(0, -pair->work->result.gap) / size;
+
+  return (1 - SmoothStep(past)) * (1 - SmoothStep(2 * past) * SmoothStep(depth / CONTACT_EDGE_DEPTH));
+}
+
+/* Area factors of the slave points for these lists: less than 1 past a free edge, and where the normals do not oppose
+   each other. */
 static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists, PetscReal *factor)
 {
   PetscFunctionBeginUser;
@@ -41,9 +52,7 @@ static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists,
     if (found && !pair->master)
       factor[q] = NeighbourListsOpposed(lists, q, pair->work->result.normal);
     else if (found)
-      factor[q] =
-        lists->share[q] *
-        (1 - SmoothStep(pair->work->result.beyond / lists->facet_size[lists->facet_ptr[q] + pair->work->result.seed]));
+      factor[q] = lists->share[q] * EdgeFactor(pair, lists, q);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

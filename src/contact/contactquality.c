@@ -143,6 +143,23 @@ static void CountAverse(const ContactPair *pair, PetscMPIInt rank, PetscInt coun
   }
 }
 
+/* Counts this rank's slave points past a free edge of the master that have lost half of their area for their depth. */
+static PetscErrorCode CountHanging(const ContactPair *pair, PetscMPIInt rank, PetscInt *hanging)
+{
+  const NeighbourLists lists = pair->lists;
+
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < lists->n_slaves && pair->master; q++) {
+    const SmootherResult *result = &pair->work->result;
+    PetscBool             found;
+
+    if (!SlavePointIsOwn(pair->slaves, q, rank) || lists->share[q] == 0) continue;
+    PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, lists->nearest[q], SMOOTHER_GAP, &found));
+    if (found && result->beyond > 0 && -result->gap > CONTACT_EDGE_DEPTH / 2 * pair->slaves->size[q]) (*hanging)++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactPairQuality - measures the penetrations of a pair in the present state, against the size of its faces and
   against what facets leave out.
@@ -159,7 +176,7 @@ static void CountAverse(const ContactPair *pair, PetscMPIInt rank, PetscInt coun
 PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *quality)
 {
   const ContactPair *pair     = &contact->pairs[p];
-  PetscInt           count[2] = {0, 0}; /* points near, averse */
+  PetscInt           count[3] = {0, 0, 0}; /* points near, averse, hanging */
   ContactPressing    pressing;
   PetscMPIInt        rank;
   PetscReal          sum[2] = {0, 0}, *depth;
@@ -176,8 +193,10 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &rank));
   SumSagitta(pair, rank, sum);
   CountAverse(pair, rank, count);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, contact->mesh->comm));
-  *quality = (ContactQuality){.nodes = pressing.n, .faces = pressing.faces, .near = count[0], .averse = count[1]};
+  PetscCall(CountHanging(pair, rank, &count[2]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  *quality = (ContactQuality){
+    .nodes = pressing.n, .faces = pressing.faces, .near = count[0], .averse = count[1], .hanging = count[2]};
   if (pair->master) quality->turned = pair->master->turned;
   PetscCall(FindPlace(contact->mesh, pair, depth, pressing.depth, &quality->deepest));
   PetscCall(PetscFree(depth));

@@ -68,7 +68,8 @@ static PetscErrorCode AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
   step->terms[step->mine] = (ActiveSetTerm){.opening   = opening,
                                             .pressure  = value.pressure,
                                             .stiffness = pair->stiffness[c],
-                                            .penalty   = state.penalty};
+                                            .penalty   = state.penalty,
+                                            .area      = step->area[step->mine]};
   if (pair->friction)
     PetscCall(FrictionStepTerm(pair, c, t, &step->terms[step->mine].friction, step->tangent[step->mine]));
   step->pair[step->mine]   = p;

@@ -87,6 +87,15 @@ static double PenetrationStays(const RunFigures *figures, const PairFigures *pai
   return 1;
 }
 
+static double SlaveHangsOver(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  (void)figures;
+  if (!pair->quality.hanging) return 0;
+  snprintf(text, ADVICE_TEXT, "%s: %lld slave points hang over the end of '%s' and take no part there", pair->name,
+           (long long)pair->quality.hanging, pair->scene->master);
+  return 1;
+}
+
 static double MasterStandsIn(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   const NodeDepth *master = &pair->master;
@@ -290,6 +299,7 @@ typedef struct {
 static const Situation situations[] = {
   {.pair = PenetrationIsDeep, .changes = {CHANGE_FREE_PENALTY, CHANGE_STIFFER}},
   {.pair = PenetrationStays, .changes = {CHANGE_FINER_SLAVE}},
+  {.pair = SlaveHangsOver, .changes = {CHANGE_WHOLE_MASTER}},
   {.pair = MasterStandsIn, .changes = {CHANGE_FINER_SLAVE, CHANGE_ROLES}},
   {.pair = PressuresScatter, .changes = {CHANGE_SURFACE, CHANGE_FINER_SLAVE}},
   {.pair = SlipTurns, .changes = {CHANGE_SHORTER}},
@@ -312,14 +322,14 @@ static const Situation situations[] = {
 /* What is tried after each kind of failed solve, the most promising first. The last one of each can always be made. */
 static const ChangeKind tries[][ADVICE_CHANGES] = {
   [SOLVE_CONVERGED]   = {CHANGE_NONE},
-  [SOLVE_ITERATIONS]  = {CHANGE_ITERATIONS, CHANGE_SHORTER_MIN, CHANGE_DIFFUSE, CHANGE_SOFTER, CHANGE_SHORTER,
-                         CHANGE_CHECK},
-  [SOLVE_LINE_SEARCH] = {CHANGE_SHORTER_MIN, CHANGE_DIFFUSE, CHANGE_SOFTER, CHANGE_DISPLACEMENT, CHANGE_SHORTER,
-                         CHANGE_CHECK},
+  [SOLVE_ITERATIONS]  = {CHANGE_WHOLE_MASTER, CHANGE_ITERATIONS, CHANGE_SHORTER_MIN, CHANGE_DIFFUSE, CHANGE_SOFTER,
+                         CHANGE_SHORTER, CHANGE_CHECK},
+  [SOLVE_LINE_SEARCH] = {CHANGE_WHOLE_MASTER, CHANGE_SHORTER_MIN, CHANGE_DIFFUSE, CHANGE_SOFTER, CHANGE_DISPLACEMENT,
+                         CHANGE_SHORTER, CHANGE_CHECK},
   [SOLVE_DOMAIN]      = {CHANGE_SHORTER_MIN, CHANGE_LAW, CHANGE_FORMULATION, CHANGE_SHORTER, CHANGE_CHECK},
   [SOLVE_LINEAR]      = {CHANGE_STABILISE, CHANGE_SUPPORT, CHANGE_DISPLACEMENT, CHANGE_CHECK},
   [SOLVE_WORKSPACE]   = {CHANGE_WORKSPACE},
-  [SOLVE_LISTS]       = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_FINER_MASTER, CHANGE_CHECK},
+  [SOLVE_LISTS]       = {CHANGE_WHOLE_MASTER, CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_FINER_MASTER, CHANGE_CHECK},
   [SOLVE_CYCLE]       = {CHANGE_SHORTER_MIN, CHANGE_SYMMETRY, CHANGE_LINE_SEARCH},
   [SOLVE_LOST]        = {CHANGE_FREE_PENALTY, CHANGE_STIFFER, CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_FINER_MASTER,
                          CHANGE_CHECK},

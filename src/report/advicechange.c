@@ -28,6 +28,7 @@ typedef enum {
   AXIS_SYMMETRY,
   AXIS_ROLES,
   AXIS_SLAVE_MESH,
+  AXIS_MASTER_FACES,
   AXIS_MASTER_MESH,
   AXIS_HOLD, /* of bodies */
   AXIS_LAW,
@@ -239,6 +240,17 @@ static void WriteFinerSlave(const ChangePlace *at, char *text, size_t size)
 static void WriteFinerMaster(const ChangePlace *at, char *text, size_t size)
 {
   snprintf(text, size, "a finer or more even mesh at '%s'", PairScene(at)->master);
+}
+
+static int MasterEnds(const ChangePlace *at)
+{
+  return HasMeshedMaster(at) && at->pair->quality.hanging > 0;
+}
+
+static void WriteWholeMaster(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "the faces of the body that follow beyond the end of '%s', in this surface",
+           PairScene(at)->master);
 }
 
 static int IsLoose(const ChangePlace *at)
@@ -468,6 +480,7 @@ static const Change changes[CHANGES] = {
   [CHANGE_ROLES]          = {"contact.*.slave", AXIS_ROLES, 1, MayExchange, WriteRoles},
   [CHANGE_FINER_SLAVE]    = {"mesh of the slave", AXIS_SLAVE_MESH, 1, HasPair, WriteFinerSlave},
   [CHANGE_FINER_MASTER]   = {"mesh of the master", AXIS_MASTER_MESH, 1, HasMeshedMaster, WriteFinerMaster},
+  [CHANGE_WHOLE_MASTER]   = {"faces of the master", AXIS_MASTER_FACES, 1, MasterEnds, WriteWholeMaster},
   [CHANGE_STABILISE]      = {"contact.*.stabilise", AXIS_HOLD, 1, IsLoose, WriteStabilise},
   [CHANGE_DISPLACEMENT]   = {"loads", AXIS_HOLD, 1, HasForceLoad, WriteDisplacement},
   [CHANGE_SUPPORT]        = {"supports", AXIS_HOLD, 1, HasBody, WriteSupport},

@@ -7,6 +7,10 @@
 #include "kernels/elementkernel.h"
 #include "bodies/hinges.h"
 
+/* Bodies are moved by about their own size, and seldom by more than a few. A displacement of more diagonals of the
+   model than this is one in another unit; metres and millimetres differ by a thousand. */
+#define PRECHECK_FAR 20
+
 static PetscErrorCode PrintEffects(Model model, FILE *stream)
 {
   char        effects[512];
@@ -56,6 +60,37 @@ PetscErrorCode PrecheckPlasticity(Model model, FILE *stream)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Largest factor of a history, whatever its sign. */
+static double LargestFactor(const History *history)
+{
+  double most = 0;
+
+  for (int i = 0; i < history->n; i++) most = fmax(most, fabs(history->v[i]));
+  return most;
+}
+
+/* Warns of imposed displacements that are much larger than the model: a mesh in metres and loads in millimetres. */
+static void WarnOfLengths(Model model)
+{
+  static const char *const names[3] = {"ux", "uy", "uz"};
+  const Scene              scene    = model->scene;
+
+  for (int l = 0; l < scene->n_loads; l++) {
+    const SceneLoad *load = &scene->loads[l];
+
+    for (int d = 0; d < model->mesh->dim && load->kind == LOAD_DISPLACEMENT; d++) {
+      const double length = load->expression[d] ? 0 : fabs(load->value[d]) * LargestFactor(&load->history);
+
+      if (!load->has[d] || length <= PRECHECK_FAR * model->mesh->size) continue;
+      fprintf(stderr,
+              "burnish: warning: %s: a displacement of %g is %.3g times the diagonal of the model, which is %.4g; are "
+              "mesh and scene in the same unit of length?\n",
+              SceneWhere(scene, load->path, names[d]), length, length / (double)model->mesh->size,
+              (double)model->mesh->size);
+    }
+  }
+}
+
 /*@
   PrecheckModel - looks for what makes a scene fail before anything is solved.
 
@@ -75,10 +110,11 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
 
   PetscFunctionBeginUser;
   PetscCall(HingesWarn(model->mesh, model->scene, stderr));
+  PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &rank));
+  if (!rank) WarnOfLengths(model);
   if (report) {
     PetscCall(PrintEffects(model, stream));
     PetscCall(PrecheckPlasticity(model, stream));
-    PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &rank));
     if (!rank) LawReport(model->scene, stream);
     PetscCall(FreeModesReport(model->problem->modes, PETSC_TRUE, stream));
     PetscCall(ContactReport(model->contact, stream));

@@ -12,7 +12,8 @@
 /* Where bodies were moved into contact and more terms change, this share of the terms that are left is tried at first,
    and of the rest again and again. They touch in a point, and the first step presses everything around it. */
 #define LINEAR_CONTACT_SHARE 2
-/* Most rounds in which further terms are found to change. Each round computes the columns of the terms that are new. */
+/* Most rounds in which further terms are found to change. Each round computes the columns of the terms that are new.
+   The last one computes those of all terms if there is room: a thin body peels off another one term by term. */
 #define LINEAR_CONTACT_ROUNDS 16
 
 /* The contact problem of a linear step. The first rank alone solves it and keeps the influence of the terms on each
@@ -120,6 +121,12 @@ static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Asks for the columns of all components in the last round, if there is room. */
+static void LinearContactAskAll(const LinearContact *s, PetscInt *m, PetscInt *which)
+{
+  if (*m && s->rounds + 1 == LINEAR_CONTACT_ROUNDS && s->all <= s->most) ActiveSetRest(s->active, m, which);
+}
+
 /* Continues on the first rank as far as the columns that are known allow; the other ranks receive the components
    which[m] whose columns are missing. */
 static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt *m, PetscInt *which,
@@ -132,6 +139,7 @@ static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt
   if (!s->rank) PetscCall(ActiveSetSolve(s->active, m, which, converged));
   if (!s->rank && model->work->settled && s->m + *m > LINEAR_CONTACT_TERMS)
     PetscCall(ActiveSetLimit(s->active, (LINEAR_CONTACT_TERMS - s->m) / LINEAR_CONTACT_SHARE, m, which));
+  if (!s->rank) LinearContactAskAll(s, m, which);
   PetscCallMPI(MPI_Bcast(m, 1, MPIU_INT, 0, comm));
   PetscCallMPI(MPI_Bcast(converged, sizeof(PetscBool), MPI_BYTE, 0, comm));
   PetscCall(PetscMPIIntCast(*m, &n));

@@ -149,4 +149,22 @@ JOBS = [
     Job("wheel_rail", "crowned wheel on a rail by force", [
         Answer("peak", 796.2, 0.5, "Hertz"),
     ], steps=8),
+    # Stacks, rings and clamps
+    Job("leaf_spring", "three leaves of a spring by force", [
+        Answer("down", -5.65, 0.53, "limit"),
+    ], steps=12, pairs=2, levels=(1, 1.4, 1.96)),
+    Job("piston_ring", "piston ring under gas pressure", [
+        Answer("on_wall", 2100.5, 0.01, "limit"),
+        Answer("on_land", -3194.6, 0.01, "limit"),
+    ], steps=10, pairs=2),
+    Job("hose_clamp", "band clamp tightened around a hose", [
+        Answer("pull", -18.44, 1.2, "limit"),
+    ], steps=12, pairs=2, picture=["--mirror", "x"]),
+    Job("lip_inverted", "wiper lip turned inside out", [
+        Answer("radial", -12.044, 0.8, "limit"),
+        Answer("tip", 7.828, 0.08, "limit"),
+    ], steps=12, picture=["--mirror", "x"]),
+    Job("plug_orifice", "plug pushed into an orifice", [
+        Answer("radial", 90.89, 0.2, "limit"),
+    ], steps=14, picture=["--mirror", "x"]),
 ]

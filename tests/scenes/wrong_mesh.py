@@ -66,6 +66,9 @@ refused("a pair both ways", "slave and master swapped",
         "contact.1={name: back, slave: lower_top, master: upper_bottom}", scene="contact_patch.yaml")
 hinge = run(args, SCENES / "hinge.yaml", "-check", out="hinge")
 check.holds("bodies that share one node only are told of", "'low' and 'high' share 1 node" in hinge.text)
+far = run(args, SCENES / "hinge.yaml", "-check", out="far", must=None,
+          overrides=["loads=[{surface: floor, uy: -1000}]", "supports=[]"])
+check.holds("a displacement in another unit is told of", "in the same unit of length?" in far.text)
 sanitiser = os.environ.get("ASAN_OPTIONS", "")
 os.environ[
     # PETSc itself keeps 32 bytes of a group of options that it leaves by an error

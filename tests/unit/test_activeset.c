@@ -1,10 +1,11 @@
 /* A linear step with the wrong terms in its tangent ends in equilibrium with the right ones: bodies that overlap or
  * open on the way, terms that share their neighbours, pulled ones, terms with friction that begin or cease to stick;
- * where nothing holds a body once its term has opened, the step is left alone. */
+ * where nothing holds a body once its term has opened, the step is left alone; sets that repeat themselves are left. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <setjmp.h>
+#include <string.h>
 #include <cmocka.h>
 #include "contact/activeset.h"
 
@@ -186,6 +187,62 @@ static void test_loose_body_is_left_alone(void **state)
   assert_int_equal(ActiveSetDestroy(&pressing), 0);
 }
 
+/* Three springs that push each other away: forces on one term open others. Each set of terms leads to another one,
+   round and round; the search ends in equilibrium. */
+static void test_repeated_sets_are_left(void **state)
+{
+  const double     elastic[3][3] = {{4, 5, -5}, {5, 9, -5}, {-5, -5, 7}}, load[3] = {3, 1, -5}, penalty = 1000;
+  double           K[N][N] = {{0}}, A[N][N], b[N], x[3], G[9];
+  ActiveSetTerm    term[3];
+  PetscReal        travel[3];
+  PetscInt         m, which[3], order[3], n = 0;
+  PetscBool        settled;
+  const PetscReal *excess;
+  const PetscBool *pressed;
+  ActiveSet        active;
+
+  (void)state;
+  for (int i = 0; i < N; i++) K[i][i] = 1;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) K[i][j] = elastic[i][j];
+  memcpy(A, K, sizeof(A));
+  for (int i = 0; i < N; i++) b[i] = i < 3 ? load[i] : 0;
+  Solve(A, b);
+  for (int i = 0; i < 3; i++) {
+    x[i] = travel[i] = b[i];
+    term[i]          = (ActiveSetTerm){.penalty = penalty, .area = 1};
+  }
+  assert_int_equal(ActiveSetCreate(3, 1, 3, term, travel, &active), 0);
+  for (assert_int_equal(ActiveSetSolve(active, &m, which, &settled), 0); m;
+       assert_int_equal(ActiveSetSolve(active, &m, which, &settled), 0)) {
+    ActiveSetRest(active, &m, which);
+    for (int j = 0; j < m; j++, n++) {
+      memcpy(A, K, sizeof(A));
+      for (int i = 0; i < N; i++) b[i] = i == which[j];
+      Solve(A, b);
+      for (int i = 0; i < 3; i++) G[3 * j + i] = b[i];
+      order[n] = which[j];
+    }
+    assert_int_equal(ActiveSetAddColumns(active, m, which, G), 0);
+  }
+  assert_true(settled);
+  ActiveSetGet(active, &excess, &pressed);
+  for (int j = 0; j < n; j++) {
+    memcpy(A, K, sizeof(A));
+    for (int i = 0; i < N; i++) b[i] = i == order[j];
+    Solve(A, b);
+    for (int i = 0; i < 3; i++) x[i] -= excess[j] * b[i];
+  }
+  for (int i = 0; i < 3; i++) {
+    double force = load[i] + penalty * PetscMax(0, -x[i]);
+
+    for (int j = 0; j < 3; j++) force -= elastic[i][j] * x[j];
+    assert_true(PetscAbsReal(force) < 1e-9);
+    assert_int_equal(pressed[i], x[i] < 0);
+  }
+  assert_int_equal(ActiveSetDestroy(&active), 0);
+}
+
 /* One term with friction on an elastic body: unknowns are its gap and its slips, the first `parts` of three. */
 typedef struct {
   int           parts;
@@ -317,8 +374,8 @@ static void test_friction_at_the_end(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_ends_in_equilibrium),
-    cmocka_unit_test(test_right_set_needs_nothing),
+    cmocka_unit_test(test_ends_in_equilibrium),    cmocka_unit_test(test_right_set_needs_nothing),
+    cmocka_unit_test(test_repeated_sets_are_left),
     cmocka_unit_test(test_loose_body_is_left_alone),
     cmocka_unit_test(test_friction_at_the_end),
   };

@@ -372,7 +372,13 @@ static void test_sides(void **state)
   c.pair.master = (NodeDepth){.nodes = 1, .depth = 0.3, .over_h = 0.3};
   Expect(&c, "nodes of 'foot' stand up to 0.3 of a face deep between the slave's: a finer mesh at 'floor', or -set "
              "contact.0.slave=foot -set contact.0.master=floor");
-  c.body = (SceneBody){.path = "bodies.0", .name = "foot", .rigid = 1};
+  Good(&c);
+  c.pair.quality.hanging = 3;
+  Expect(&c, "3 slave points hang over the end of 'foot' and take no part there: the faces of the body that follow "
+             "beyond the end of 'foot', in this surface");
+  c.pair.quality.hanging = 0;
+  c.pair.master          = (NodeDepth){.nodes = 1, .depth = 0.3, .over_h = 0.3};
+  c.body                 = (SceneBody){.path = "bodies.0", .name = "foot", .rigid = 1};
   Expect(&c, "between the slave's: a finer mesh at 'floor'"); /* a tool is no slave */
 }
 
