@@ -36,14 +36,15 @@ PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest growth of the equivalent plastic strain of a group's points from states before to those of the group. */
+/* The largest growth of the equivalent plastic strain of a group's points from states before to those of the group.
+   Of a user's routine none is known. */
 static PetscReal GroupGrowth(const CellGroup *g, const PetscReal *before)
 {
-  const size_t states = ElasticityCellStates(g);
-  PetscReal    most   = 0;
+  const size_t states = ElasticityCellStates(g), step = (size_t)ElementStates(&g->plastic);
+  PetscReal    most = 0;
 
-  for (size_t batch = 0; batch < (size_t)g->n_batches; batch++) {
-    for (size_t k = PLASTIC_STRAIN; k < states; k += PLASTIC_STATE) {
+  for (size_t batch = 0; batch < (size_t)g->n_batches && !g->plastic.umat; batch++) {
+    for (size_t k = PLASTIC_STRAIN; k < states; k += step) {
       const size_t first = (batch * states + k) * KERNEL_LANES;
 
       for (size_t lane = 0; lane < KERNEL_LANES; lane++)
