@@ -71,6 +71,7 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
 
       *group = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes, .plastic = plastic};
       if (kernel.plastic) group->kernel.plastic = &group->plastic;
+      for (int i = 0; i < e->dim; i++) group->plastic.origin[i] = mesh->centre[i];
     }
     e->cell_group[c]   = g;
     e->cell_slot[c]    = e->groups[g].n_cells++;

@@ -39,6 +39,7 @@ typedef struct {
   int              lane;
   int              number[KERNEL_LANES]; /* of the elements, for umat */
   double           length[KERNEL_LANES]; /* CellLength() of the elements, for umat */
+  double           origin[3];            /* of the coordinates X, for umat */
 } PlasticBatch;
 
 typedef struct {

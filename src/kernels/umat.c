@@ -113,7 +113,7 @@ int UmatOpen(const char *path, const char *name, int n_constants, const double *
   *(void **)&routine = dlsym(library, "umat_");
   if (!routine) *(void **)&routine = dlsym(library, "umat");
   if (!routine) {
-    snprintf(message, UMAT_MESSAGE, "it has neither a routine umat_ nor umat");
+    snprintf(message, UMAT_MESSAGE, "%.200s has neither a routine umat_ nor umat", path);
     dlclose(library);
     return 1;
   }
@@ -315,6 +315,17 @@ static void Call(const Umat *umat, const UmatPlace *place, UmatData *x)
   crash.inside = 0;
 }
 
+/* Ends the process where the routine has written states that it was not given: its results would be wrong. */
+static void CheckStates(const Umat *umat, const UmatPlace *place, const UmatData *x)
+{
+  for (int k = umat->n_states; k < UMAT_MAX_STATES; k++) {
+    if (x->statev[k] == 0) continue;
+    fprintf(stderr, "burnish: %s: the routine umat wrote state %d in element %d, point %d, but material.states is %d\n",
+            umat->path, k + 1, place->element, place->point, umat->n_states);
+    _exit(CRASH_STATUS);
+  }
+}
+
 /* Returns whether the call failed, and tells it once for each time. */
 static int Fails(Umat *umat, const UmatPlace *place, const UmatData *x)
 {
@@ -426,6 +437,7 @@ int UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const doubl
   if (!(J > 0)) return 1;
   if (!same) {
     Call(umat, place, &x);
+    CheckStates(umat, place, &x);
     if (Fails(umat, place, &x)) return 1;
   }
   for (int c = 0; c < 6; c++) {

@@ -17,6 +17,7 @@ UmatPlace UmatPlaceAt(const Element *e, int finite, const PlasticBatch *plastic,
                      .dt      = plastic->dt,
                      .length  = plastic->length[number]};
 
+  memcpy(place.x, plastic->origin, sizeof place.x);
   for (int a = 0; a < e->nodes; a++) {
     for (int i = 0; i < e->dim; i++) {
       const int k = (a * e->dim + i) * stride;

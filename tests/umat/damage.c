@@ -1,7 +1,7 @@
-/* Damage that grows with the strain, for umat.py. PROPS: E, nu, rate, largest damage, slope of E along y, largest growth
-   of kappa in an increment. The stress is (1 - d) times Hooke's, with d = PROPS(4) (1 - exp(-rate CELENT kappa)), where
-   kappa is the largest norm of the strain so far. DDSDDE is not symmetric. STATEV: kappa, and the energy that the strain
-   would store without damage. As many routines do, it sets its states up where KSTEP and KINC are 1. */
+/* Damage that grows with the strain, for umat.py. PROPS: E, nu, rate, largest damage, slope of E along y, largest
+   growth of kappa in an increment. The stress is (1 - d) times Hooke's, with d = PROPS(4) (1 - exp(-rate CELENT
+   kappa)), where kappa is the largest norm of the strain so far. DDSDDE is not symmetric. STATEV: kappa, and the energy
+   that the strain would store without damage. As many routines do, it sets its states up where KSTEP and KINC are 1. */
 #include <math.h>
 
 void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd, double *rpl,

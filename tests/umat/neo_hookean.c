@@ -29,8 +29,10 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
       const int k = at[d][0], l = at[d][1];
 
       ddsdde[c + *ntens * d] =
-        left * (lambda * (i == j) * (k == l) +
-         mu / 2 * ((i == k) * b[j][l] + (j == l) * b[i][k] + (i == l) * b[j][k] + (j == k) * b[i][l])) / J -
+        left *
+          (lambda * (i == j) * (k == l) +
+           mu / 2 * ((i == k) * b[j][l] + (j == l) * b[i][k] + (i == l) * b[j][k] + (j == k) * b[i][l])) /
+          J -
         2 * rate * stress[c] * b[k][l];
     }
   }
