@@ -2,8 +2,8 @@
 
    UmatOpen() loads a library, UmatPoint() calls its routine for one point. A crash inside the routine ends the process
    with exit status 2 and a line that names library, element and point. A number that is not finite is told in a line,
-   and UmatPoint() returns a fault, as it does where the routine asks for a shorter step (PNEWDT below 1). A routine that
-   writes more states than it has ends the process as a crash does.
+   and UmatPoint() returns a fault, as it does where the routine asks for a shorter step (PNEWDT below 1). A routine
+   that writes more states than it has ends the process as a crash does.
 
    The routine gets, in finite strains, DFGRD0 and DFGRD1, the increment of strain and the rotation DROT of Hughes and
    Winget (International Journal for Numerical Methods in Engineering 15, 1980), and stress and strain turned by DROT.
