@@ -71,6 +71,7 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
 
       *group = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes, .plastic = plastic};
       if (kernel.plastic) group->kernel.plastic = &group->plastic;
+      for (int i = 0; i < e->dim; i++) group->plastic.origin[i] = mesh->centre[i];
     }
     e->cell_group[c]   = g;
     e->cell_slot[c]    = e->groups[g].n_cells++;
@@ -103,6 +104,7 @@ static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
                          lanes * g->nodes * g->nodes + PREFETCH_PAIRS * KERNEL_LANES, &g->block));
   PetscCall(PetscMalloc2(lanes * g->nodes * dim, &g->X, lanes * g->kernel.n_constants, &g->constants));
   if (g->kernel.plastic) PetscCall(PetscCalloc1(lanes * ElasticityCellStates(g), &g->state));
+  if (g->plastic.umat) PetscCall(PetscMalloc1(lanes, &g->length));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,11 +115,15 @@ static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, Pets
   const Material  material = BodyMaterial(scene, mesh->cell_body[c]);
   const PetscInt *nodes    = &mesh->cell_nodes[mesh->cell_ptr[c]];
   const PetscInt  end      = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+  PetscReal       X[MAX_DOFS];
 
+  for (int a = 0; a < g->nodes && g->length; a++)
+    for (int i = 0; i < e->dim; i++) X[a * e->dim + i] = mesh->coords[nodes[a] * e->dim + i];
   for (PetscInt s = slot; s < end; s++) {
     const size_t batch = s / KERNEL_LANES, lane = s % KERNEL_LANES;
 
     g->cell[s] = c;
+    if (g->length) g->length[s] = CellLength(g->kernel.type, e->dim, X);
     for (int k = 0; k < material.n_constants; k++)
       g->constants[(batch * material.n_constants + k) * KERNEL_LANES + lane] = material.constants[k];
     for (int a = 0; a < g->nodes; a++) {
@@ -336,6 +342,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
     PetscCall(PetscFree3(e->groups[g].cell, e->groups[g].node, e->groups[g].block));
     PetscCall(PetscFree2(e->groups[g].X, e->groups[g].constants));
     PetscCall(PetscFree(e->groups[g].state));
+    PetscCall(PetscFree(e->groups[g].length));
   }
   PetscCall(PetscFree(e->groups));
   PetscCall(PetscFree3(e->cell_group, e->cell_slot, e->cell_modulus));
@@ -354,8 +361,10 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
 static void SelectState(Elasticity e, CellGroup *g, PetscInt batch, int lane)
 {
   if (!g->state) return;
-  for (int k = 0; k < KERNEL_LANES && g->plastic.umat; k++)
+  for (int k = 0; k < KERNEL_LANES && g->plastic.umat; k++) {
     g->plastic.number[k] = (int)e->mesh->cell_tag[g->cell[(size_t)batch * KERNEL_LANES + k]];
+    g->plastic.length[k] = g->length[(size_t)batch * KERNEL_LANES + k];
+  }
   g->plastic.state = g->state + (size_t)batch * KERNEL_LANES * ElasticityCellStates(g);
   g->plastic.lane  = lane;
 }

@@ -54,7 +54,8 @@ static void CauchyStress(const double H[9], const double P[9], double pressure, 
 }
 
 /* Stress of a plastic law at one point */
-static void PlasticStress(const KernelCase *kernel, const double *constants, int p, const double H[9], double P[9])
+static void PlasticStress(const KernelCase *kernel, const double *X, const double *u, const double *constants, int p,
+                          const double H[9], double P[9])
 {
   const PlasticBatch *plastic = kernel->plastic;
   const int           states  = ElementStates(plastic);
@@ -63,16 +64,12 @@ static void PlasticStress(const KernelCase *kernel, const double *constants, int
   Lanes               lanes_H[9], lanes_P[9], state[PLASTIC_MAX_STATE], dilatation;
 
   if (plastic->umat) {
-    const UmatPlace place = {.finite  = kernel->kinematics == KINEMATICS_FINITE,
-                             .tensor  = ElementGet(kernel->type)->dim == 3 ? 6 : 4,
-                             .element = plastic->number[plastic->lane],
-                             .point   = p + 1,
-                             .t       = plastic->t,
-                             .dt      = plastic->dt};
+    const UmatPlace place = UmatPlaceAt(ElementGet(kernel->type), kernel->kinematics == KINEMATICS_FINITE, plastic,
+                                        plastic->lane, p, X, u, 1);
     double          W;
 
     (void)UmatPoint(plastic->umat, &place, H, &plastic->state[at * states * KERNEL_LANES + plastic->lane], KERNEL_LANES,
-                    &W, P, NULL, NULL);
+                    &W, P, NULL, NULL, NULL);
     return;
   }
   for (int r = 0; r < 9; r++) lanes_H[r] = (Lanes){0} + H[r];
@@ -116,7 +113,7 @@ void ElementPointStress(const KernelCase *kernel, const double *X, const double 
 
     volume[p] = PointVolume(e, p, e->dim, kernel->geometry, X, J);
     if (kernel->plastic)
-      PlasticStress(kernel, used, p, &H[9 * p], P);
+      PlasticStress(kernel, X, u, used, p, &H[9 * p], P);
     else
       MaterialEvaluate(kernel->law, n, used, &H[9 * p], NULL, P, NULL);
     CauchyStress(&H[9 * p], P, pressure[p], finite, &stress[6 * p]);
@@ -329,6 +326,23 @@ double CellVolume(ElementType type, int dim, Geometry geometry, const double *X)
 
   for (int p = 0; p < e->points; p++) volume += PointVolume(e, p, dim, geometry, X, J);
   return volume;
+}
+
+/*@
+  CellLength - returns a length of one cell: the side of the square or cube with its area or volume, over its order.
+
+  Not collective
+
+  Input Parameters:
++ type - of the cell
+. dim  - number of coordinates
+- X    - of its nodes (length) [nodes][dim]
+@*/
+double CellLength(ElementType type, int dim, const double *X)
+{
+  const double volume = CellVolume(type, dim, dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X);
+
+  return (dim == 3 ? cbrt(volume) : sqrt(volume)) / ElementGet(type)->order;
 }
 
 /*@

@@ -60,6 +60,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
     }
     if (K) AddTangent(n, dim, hoop, count, first == 0, first + count == points, &c, K);
   }
+  if (call->skew) AddSkewTangent(call, hoop);
 }
 
 #define BATCH_INSTANCE(name, nodes, points, dim, hoop) \
@@ -255,7 +256,8 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
   Note:
   Solids in plane strain have unit thickness. Axisymmetric quantities are over 360 degrees. A state with J <= 0 or NaN
   is not admissible, but all arrays hold finite numbers if X and u do. Every formulation has an energy; f and K are its
-  derivatives. K is full and symmetric. With a reference K is no derivative, but it differs from it only by the square
+  derivatives. K is full, and symmetric unless a routine of the user's has an
+  unsymmetric tangent. With a reference K is no derivative, but it differs from it only by the square
   of the way from there (rate 1) or by that way (rate 0). A reference is ignored unless ElementExtrapolates().
 
   Source:
@@ -266,11 +268,13 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
                    const double *constants, const double *multiplier, double *W, double *f, double *K, double *J)
 {
   const int extrapolates = reference && ElementExtrapolates(kernel);
+  const int unsymmetric  = K && kernel->plastic && kernel->plastic->umat && UmatIsUnsymmetric(kernel->plastic->umat);
   int       fault[LANES] = {0};
   BatchFn  *batch        = GetBatch(kernel);
-  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS], skew[ELEMENT_MAX_POINTS][UMAT_SKEW_SIZE];
   BatchCall call = StartCall(kernel, lanes_constants);
 
+  call.skew = unsymmetric ? skew : NULL;
   call.rate = extrapolates ? reference->rate : 0;
   call.held = extrapolates && reference->held;
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
@@ -498,7 +502,10 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
       LANE(lanes_state, k) = (Lanes){0} + kernel->plastic->state[k * KERNEL_LANES + kernel->plastic->lane];
     call.state = lanes_state;
     one        = *kernel->plastic;
-    for (int lane = 0; lane < LANES; lane++) one.number[lane] = kernel->plastic->number[kernel->plastic->lane];
+    for (int lane = 0; lane < LANES; lane++) {
+      one.number[lane] = kernel->plastic->number[kernel->plastic->lane];
+      one.length[lane] = kernel->plastic->length[kernel->plastic->lane];
+    }
     call.plastic = &one;
   }
   GetBatch(kernel)(&call);

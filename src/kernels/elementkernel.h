@@ -6,8 +6,8 @@
    ElementAcceptState() takes the plastic state on to given displacements; ElementStatePoints() counts its points,
    ElementStates() the numbers of each, and ElementStateVolumes() gives their volumes. ElementKernelExists() tells
    whether there is a kernel for a case. The other functions treat one cell or one face: ElementPointState(),
-   ElementPointStress(), ElementStress() and ElementVolumeEnergy() evaluate a state, ElementQuality() and CellVolume() a
-   shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes,
+   ElementPointStress(), ElementStress() and ElementVolumeEnergy() evaluate a state, ElementQuality(), CellVolume() and
+   CellLength() a shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes,
    FaceMassKernel() what springs on a face need.
 
    K may extrapolate the stress of its geometric part from an earlier state (stressreference.h), where
@@ -38,6 +38,8 @@ typedef struct {
   double          *state; /* [ElementStatePoints()][ElementStates()][lanes] */
   int              lane;
   int              number[KERNEL_LANES]; /* of the elements, for umat */
+  double           length[KERNEL_LANES]; /* CellLength() of the elements, for umat */
+  double           origin[3];            /* of the coordinates X, for umat */
 } PlasticBatch;
 
 typedef struct {
@@ -94,4 +96,5 @@ void   BodyForceKernel(ElementType, int dim, Geometry, const double *X, const do
 void   FaceAreaKernel(ElementType face, int dim, Geometry, const double *X, double *area, double *normal);
 void   FaceMassKernel(ElementType face, int dim, Geometry, const double *X, double *matrix);
 double CellVolume(ElementType, int dim, Geometry, const double *X);
+double CellLength(ElementType, int dim, const double *X);
 void   CellVolumeGradient(ElementType, int dim, Geometry, const double *X, double *gradient);

@@ -142,6 +142,24 @@ LANES_INLINE void AddMeanTangent(const int dofs, const double *q, const double *
   }
 }
 
+/* Adds the skew part of the tangent. m: variation of ln J' */
+LANES_INLINE void AddMeanSkew(const BatchCall *call, const int n, const int points, const int dim, const int hoop,
+                              const MeanDilatation *x, const Lanes factor[], const double *m)
+{
+  for (int q = 0; q < points; q++) {
+    Lanes V[MAX_NODES * 3][9], F[9], G[9], J;
+
+    PointMotion(call, q, x, F, G, &J);
+    PointGradientDerivatives(n, dim, hoop, q, &x->c, V);
+    for (int s = 0; s < n * dim; s++) {
+      const Lanes change = (CONST_LANE(m, s) - Contract(G, V[s])) / 3;
+
+      for (int r = 0; r < 9; r++) V[s][r] = (1 + factor[q]) * (V[s][r] + change * F[r]);
+    }
+    AddSkewPoint(n * dim, V, call->skew[q], &x->volume[q], call->K);
+  }
+}
+
 /* Computes energy, force and tangent. n, points, dim and hoop are constants of the instance. */
 LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, const int dim, const int hoop)
 {
@@ -198,6 +216,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   if (!K) return;
   AddTangent(n, dim, hoop, points, 1, 1, &x.c, K);
   AddMeanTangent(n * dim, q_force, m, &square, K);
+  if (call->skew) AddMeanSkew(call, n, points, dim, hoop, &x, factor, m);
 }
 
 static void BatchQuad4(const BatchCall *call)

@@ -32,7 +32,7 @@ struct Umat {
   void        *library;
   UmatRoutine *routine;
   char        *path, name[NAME_LENGTH];
-  int          n_constants, n_states;
+  int          n_constants, n_states, unsymmetric;
   double      *constants;
   double       told; /* time for which a number that is not finite has been told */
 };
@@ -113,7 +113,7 @@ int UmatOpen(const char *path, const char *name, int n_constants, const double *
   *(void **)&routine = dlsym(library, "umat_");
   if (!routine) *(void **)&routine = dlsym(library, "umat");
   if (!routine) {
-    snprintf(message, UMAT_MESSAGE, "it has neither a routine umat_ nor umat");
+    snprintf(message, UMAT_MESSAGE, "%.200s has neither a routine umat_ nor umat", path);
     dlclose(library);
     return 1;
   }
@@ -158,6 +158,26 @@ void UmatClose(Umat **umat)
 int UmatStates(const Umat *umat)
 {
   return UMAT_STATES + umat->n_states;
+}
+
+/*@
+  UmatSetUnsymmetric - lets the whole of DDSDDE be used, not its symmetric part alone.
+
+  Not collective
+@*/
+void UmatSetUnsymmetric(Umat *umat)
+{
+  umat->unsymmetric = 1;
+}
+
+/*@
+  UmatIsUnsymmetric - tells whether UmatSetUnsymmetric() has been called.
+
+  Not collective
+@*/
+int UmatIsUnsymmetric(const Umat *umat)
+{
+  return umat->unsymmetric;
 }
 
 static void Multiply(const double A[9], const double B[9], int transposed, double C[9])
@@ -272,12 +292,13 @@ static void Prepare(const Umat *umat, const UmatPlace *place, const double H[9],
 static void Call(const Umat *umat, const UmatPlace *place, UmatData *x)
 {
   double rpl = 0, ddsddt[6] = {0}, drplde[6] = {0}, drpldt = 0, time[2] = {place->t - place->dt, place->t - place->dt},
-         dtime = place->dt, none[3] = {0}, length = 1, columns[3][9];
+         dtime = place->dt, none[2] = {0}, length = place->length, x_point[3], columns[3][9];
   int ndi = 3, nshr = place->tensor - 3, ntens = place->tensor, nstatv = umat->n_states, nprops = umat->n_constants,
-      element = place->element, point = place->point, zero = 0, jstep[4] = {1, 0, 0, 0}, kinc = 1;
+      element = place->element, point = place->point, zero = 0, jstep[4] = {1, 0, 0, 0}, kinc = time[0] > 0 ? 2 : 1;
   char name[NAME_LENGTH];
 
   memcpy(name, umat->name, NAME_LENGTH);
+  memcpy(x_point, place->x, sizeof x_point);
   for (int k = 0; k < 9; k++) { /* Fortran's order */
     columns[0][k] = x->F[0][3 * (k % 3) + k / 3];
     columns[1][k] = x->F[1][3 * (k % 3) + k / 3];
@@ -289,9 +310,20 @@ static void Call(const Umat *umat, const UmatPlace *place, UmatData *x)
   crash.inside  = 1;
   umat->routine(x->stress, x->statev, x->tangent, &x->energy[0], &x->energy[1], &x->energy[2], &rpl, ddsddt, drplde,
                 &drpldt, x->strain, x->increment, time, &dtime, &none[0], &none[1], none, none, name, &ndi, &nshr,
-                &ntens, &nstatv, umat->constants, &nprops, none, columns[2], &x->shorter, &length, columns[0],
+                &ntens, &nstatv, umat->constants, &nprops, x_point, columns[2], &x->shorter, &length, columns[0],
                 columns[1], &element, &point, &zero, &zero, jstep, &kinc, NAME_LENGTH);
   crash.inside = 0;
+}
+
+/* Ends the process where the routine has written states that it was not given: its results would be wrong. */
+static void CheckStates(const Umat *umat, const UmatPlace *place, const UmatData *x)
+{
+  for (int k = umat->n_states; k < UMAT_MAX_STATES; k++) {
+    if (x->statev[k] == 0) continue;
+    fprintf(stderr, "burnish: %s: the routine umat wrote state %d in element %d, point %d, but material.states is %d\n",
+            umat->path, k + 1, place->element, place->point, umat->n_states);
+    _exit(CRASH_STATUS);
+  }
 }
 
 /* Returns whether the call failed, and tells it once for each time. */
@@ -311,20 +343,20 @@ static int Fails(Umat *umat, const UmatPlace *place, const UmatData *x)
   return 1;
 }
 
-/* Component of DDSDDE, made symmetric */
+/* Component of DDSDDE */
 static double Tangent(const UmatPlace *place, const UmatData *x, int i, int k, int j, int l)
 {
   static const int component[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const int        a = component[i][k], b = component[j][l];
 
   if (a >= place->tensor || b >= place->tensor) return 0;
-  return (x->tangent[a + place->tensor * b] + x->tangent[b + place->tensor * a]) / 2;
+  return x->tangent[a + place->tensor * b];
 }
 
 /* Computes dP/dH from Jaumann's tangent and the Kirchhoff stress T: in space it is
-   J C_ikjl + d_ij T_kl - 1/2 (d_ij T_kl + d_il T_kj + T_ij d_kl + T_il d_kj). */
+   J C_ikjl + d_ij T_kl - 1/2 (d_ij T_kl + d_il T_kj + T_ij d_kl + T_il d_kj). A is its symmetric part. */
 static void PiolaTangent(const UmatPlace *place, const UmatData *x, const double inverse[9], double J,
-                         const double T[9], double A[MATERIAL_TANGENT_SIZE])
+                         const double T[9], double A[MATERIAL_TANGENT_SIZE], double skew[UMAT_SKEW_SIZE])
 {
   double a[3][3][3][3];
 
@@ -337,13 +369,18 @@ static void PiolaTangent(const UmatPlace *place, const UmatData *x, const double
         (i == j) * T[3 * k + l] -
         ((i == j) * T[3 * k + l] + (i == l) * T[3 * k + j] + T[3 * i + j] * (k == l) + T[3 * i + l] * (k == j)) / 2;
   }
-  for (int r = 0, at = 0; r < 9; r++) {
-    for (int s = r; s < 9; s++, at++) {
-      A[at] = 0;
+  for (int r = 0; r < 9; r++) {
+    for (int s = r; s < 9; s++) {
+      double upper = 0, lower = 0;
+
       for (int k = 0; k < 3; k++) {
-        for (int l = 0; l < 3; l++)
-          A[at] += inverse[3 * (r % 3) + k] * inverse[3 * (s % 3) + l] * a[r / 3][k][s / 3][l];
+        for (int l = 0; l < 3; l++) {
+          upper += inverse[3 * (r % 3) + k] * inverse[3 * (s % 3) + l] * a[r / 3][k][s / 3][l];
+          lower += inverse[3 * (s % 3) + k] * inverse[3 * (r % 3) + l] * a[s / 3][k][r / 3][l];
+        }
       }
+      A[MATERIAL_TANGENT_INDEX(r, s)] = (upper + lower) / 2;
+      if (s > r) skew[UMAT_SKEW_INDEX(r, s)] = (upper - lower) / 2;
     }
   }
 }
@@ -375,7 +412,8 @@ static void Store(const Umat *umat, const UmatData *x, int stride, double *next)
   Output Parameters:
 + W    - SSE + SPD + SCD of the routine per reference volume
 . P    - first Piola-Kirchhoff stress; with small strains the stress
-. A    - tangent dP_r/dH_s at MATERIAL_TANGENT_INDEX(r, s), or NULL
+. A    - symmetric part of the tangent dP_r/dH_s at MATERIAL_TANGENT_INDEX(r, s), or NULL
+. skew - its skew part at UMAT_SKEW_INDEX(r, s), or NULL without A
 - next - the state at H, or NULL; it may be the same array as state
 
   Note:
@@ -383,7 +421,7 @@ static void Store(const Umat *umat, const UmatData *x, int stride, double *next)
   then. The routine is not called where nothing has changed and no tangent is asked for.
 @*/
 int UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const double *state, int stride, double *W,
-              double P[9], double A[], double *next)
+              double P[9], double A[], double skew[], double *next)
 {
   UmatData x;
   double   inverse[9], J, T[9];
@@ -394,10 +432,12 @@ int UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const doubl
   J = Invert(x.F[1], inverse);
   memset(P, 0, 9 * sizeof *P);
   if (A) memset(A, 0, MATERIAL_TANGENT_SIZE * sizeof *A);
+  if (A) memset(skew, 0, UMAT_SKEW_SIZE * sizeof *skew);
   *W = 0;
   if (!(J > 0)) return 1;
   if (!same) {
     Call(umat, place, &x);
+    CheckStates(umat, place, &x);
     if (Fails(umat, place, &x)) return 1;
   }
   for (int c = 0; c < 6; c++) {
@@ -407,7 +447,7 @@ int UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const doubl
   }
   *W = x.energy[0] + x.energy[1] + x.energy[2];
   Multiply(T, inverse, 1, P);
-  if (A) PiolaTangent(place, &x, inverse, J, T, A);
+  if (A) PiolaTangent(place, &x, inverse, J, T, A, skew);
   if (next) Store(umat, &x, stride, next);
   return 0;
 }

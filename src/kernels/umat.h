@@ -2,13 +2,15 @@
 
    UmatOpen() loads a library, UmatPoint() calls its routine for one point. A crash inside the routine ends the process
    with exit status 2 and a line that names library, element and point. A number that is not finite is told in a line,
-   and UmatPoint() returns a fault, as it does where the routine asks for a shorter step (PNEWDT below 1).
+   and UmatPoint() returns a fault, as it does where the routine asks for a shorter step (PNEWDT below 1). A routine
+   that writes more states than it has ends the process as a crash does.
 
    The routine gets, in finite strains, DFGRD0 and DFGRD1, the increment of strain and the rotation DROT of Hughes and
    Winget (International Journal for Numerical Methods in Engineering 15, 1980), and stress and strain turned by DROT.
    Its stress is Cauchy's, and DDSDDE is taken as the derivative of J times the stress by the strain in Jaumann's rate
    over J. In small strains both gradients are the unit tensor. Of DDSDDE the symmetric part is used, as in Abaqus
-   without UNSYMM. Temperature, fields, COORDS, LAYER and KSPT are 0, CELENT is 1, KSTEP is 1 and KINC is 1.
+   without UNSYMM, unless UmatSetUnsymmetric() is called. KSTEP is 1. KINC is 1 in the first step and 2 in all others,
+   so that routines which set up their states where both are 1 do so once. Temperature, fields, LAYER and KSPT are 0.
 
    State of a point: F - 1 at 3 i + I, stress (xx yy zz xy yz xz), strain in Abaqus's components, SSE, SPD and SCD, then
    STATEV. Zero is the virgin state. */
@@ -20,20 +22,28 @@ enum {
   UMAT_ENERGY     = 21,
   UMAT_STATES     = 24,
   UMAT_MAX_STATES = 100, /* STATEV of a point */
-  UMAT_MESSAGE    = 300
+  UMAT_MESSAGE    = 300,
+  UMAT_SKEW_SIZE  = 36 /* of the skew part of a tangent */
 };
+
+/* Place of the component r, s of a skew part, r < s */
+#define UMAT_SKEW_INDEX(r, s) ((r) * (17 - (r)) / 2 + (s) - (r) - 1)
 
 typedef struct Umat Umat;
 
 /* Where a point is and when. tensor is NTENS: 4 in the plane and around an axis, else 6. */
 typedef struct {
   int    finite, tensor, element, point;
-  double t, dt; /* time at the end of the increment, and its length */
+  double t, dt;  /* time at the end of the increment, and its length */
+  double x[3];   /* COORDS */
+  double length; /* CELENT */
 } UmatPlace;
 
 int  UmatOpen(const char *path, const char *name, int n_constants, const double *constants, int n_states, Umat **,
               char message[UMAT_MESSAGE]);
 void UmatClose(Umat **);
 int  UmatStates(const Umat *);
+void UmatSetUnsymmetric(Umat *);
+int  UmatIsUnsymmetric(const Umat *);
 int  UmatPoint(Umat *, const UmatPlace *, const double H[9], const double *state, int stride, double *W, double P[9],
-               double A[], double *next);
+               double A[], double skew[], double *next);

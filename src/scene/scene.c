@@ -826,6 +826,7 @@ static PetscErrorCode SceneReadContacts(Scene scene)
 static PetscErrorCode SceneReadStepping(Scene scene)
 {
   Document *document = SceneDocument(scene);
+  PetscBool flows    = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (SchemaHas(document, "stepping.N_c") && SchemaHas(document, "stepping.N_c_fraction"))
@@ -844,9 +845,11 @@ static PetscErrorCode SceneReadStepping(Scene scene)
   scene->stepping.growth           = SchemaReal(document, "stepping.growth");
   if (SchemaHas(document, "stepping.plastic_strain"))
     scene->stepping.plastic_strain = SchemaReal(document, "stepping.plastic_strain");
-  if (scene->stepping.plastic_strain > 0 && !SceneIsPlastic(scene))
+  for (int b = 0; b < scene->n_bodies; b++)
+    flows = (PetscBool)(flows || (!scene->bodies[b].rigid && scene->bodies[b].material.law == MATERIAL_VON_MISES));
+  if (scene->stepping.plastic_strain > 0 && !flows)
     PetscCall(SceneRefuse(scene, "stepping", "plastic_strain",
-                          "bounds plastic strains, but no body is plastic; allowed: with law: von_mises", NULL));
+                          "bounds plastic strains, which no body has; allowed: with law: von_mises", NULL));
   if (scene->stepping.dt_min > scene->stepping.dt_max)
     PetscCall(SceneRefuse(scene, "stepping", "dt_min", "is above dt_max; allowed: dt_min <= initial <= dt_max", NULL));
   if (SchemaHas(document, "stepping.initial") &&

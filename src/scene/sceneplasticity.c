@@ -145,7 +145,8 @@ static PetscErrorCode SceneReadConstants(Scene scene, const SceneBody *body, int
 @*/
 PetscErrorCode SceneReadRoutine(Scene scene, SceneBody *body)
 {
-  static const char *const Own[] = {"material.library", "material.constants", "material.states"};
+  static const char *const Own[] = {"material.library", "material.constants", "material.states",
+                                    "material.unsymmetric"};
   char                     path[PETSC_MAX_PATH_LEN], message[UMAT_MESSAGE];
   const char              *file;
   double                  *constants;
@@ -172,5 +173,6 @@ PetscErrorCode SceneReadRoutine(Scene scene, SceneBody *body)
     PetscCall(SceneRefuse(scene, body->path, Own[0],
                           "- the library cannot be loaded; allowed: one with a routine umat, see scripts/build_umat.sh",
                           message));
+  if (SchemaBoolean(SceneDocument(scene), "%s.%s", body->path, Own[3])) UmatSetUnsymmetric(body->material.umat);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

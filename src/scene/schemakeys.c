@@ -112,6 +112,8 @@ const SchemaKey SchemaKeys[] = {
    .help = "of umat, needed there: a shared library with Abaqus's UMAT interface; the path counts from the folder of "
            "the scene. E and nu are the moduli of the undeformed state there, for penalties"},
   {"bodies.*.material.constants", NUMBERS, .help = "of umat: PROPS"},
+  {"bodies.*.material.unsymmetric", BOOLEAN, .preset = "false",
+   .help = "of umat: true takes the whole of DDSDDE, false its symmetric part"},
   {"bodies.*.material.states", INTEGER, .range = "[0, 100]", .preset = "0", .help = "of umat: NSTATV"},
   {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar | mixed | auto", .preset = "auto",
    .help = "formulation of the elements; enhanced and fbar are for first-order quadrilaterals and bricks, of which "

@@ -24,12 +24,14 @@ typedef struct {
   double W[KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES], J[KERNEL_LANES], *K;
 } Batch;
 
-static double Random(void)
-{
-  static unsigned state = 12345;
+/* Largest displacement gradient of a random element (Frobenius norm). All stretches are between 1/2 and 3/2 then, far
+   from inversion, where the higher derivatives of the energies that differences see have no bound. */
+static const double largest_gradient = 0.5;
 
-  state = state * 1664525u + 1013904223u;
-  return (double)(state >> 8) / (1 << 24) - 0.5;
+static double Random(unsigned *state)
+{
+  *state = *state * 1664525u + 1013904223u;
+  return (double)(*state >> 8) / (1 << 24) - 0.5;
 }
 
 static Material LaneMaterial(const Batch *b, int lane)
@@ -44,11 +46,63 @@ static void SetConstants(Batch *b, int lane)
   for (int k = 0; k < material.n_constants; k++) b->constants[k * KERNEL_LANES + lane] = material.constants[k];
 }
 
+/* Norm of the displacement gradient of an element at one place xi */
+static double GradientAt(const Element *e, const double *xi, const double *X, const double *u)
+{
+  double N[ELEMENT_MAX_NODES], dN[ELEMENT_MAX_NODES * 3], A[2][9] = {{0, 0, 0, 0, 0, 0, 0, 0, 1}}, B[9], norm = 0,
+                                                          J = 0;
+
+  ElementShape(e->type, xi, N, dN, NULL); /* A: derivatives of X and u by xi */
+  for (int a = 0; a < e->nodes; a++) {
+    for (int i = 0; i < e->dim; i++) {
+      for (int k = 0; k < e->dim; k++) {
+        A[0][3 * i + k] += X[a * e->dim + i] * dN[a * e->dim + k];
+        A[1][3 * i + k] += u[a * e->dim + i] * dN[a * e->dim + k];
+      }
+    }
+  }
+  for (int i = 0; i < 3; i++) { /* B: the cofactors of the first */
+    for (int k = 0; k < 3; k++) {
+      const int i1 = 3 * ((i + 1) % 3), i2 = 3 * ((i + 2) % 3), k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+
+      B[3 * i + k] = A[0][i1 + k1] * A[0][i2 + k2] - A[0][i1 + k2] * A[0][i2 + k1];
+    }
+  }
+  for (int k = 0; k < 3; k++) J += A[0][k] * B[k];
+  for (int r = 0; r < 9; r++) {
+    double H = 0;
+
+    for (int k = 0; k < 3; k++) H += A[1][3 * (r / 3) + k] * B[3 * (r % 3) + k] / J;
+    norm += H * H;
+  }
+  return sqrt(norm);
+}
+
+static void TakeLane(const Batch *b, int lane, double *X, double *u)
+{
+  for (int k = 0; k < b->dofs; k++) {
+    X[k] = b->X[k * KERNEL_LANES + lane];
+    u[k] = b->u[k * KERNEL_LANES + lane];
+  }
+}
+
+/* Makes the displacements of an element smaller where its gradient at a node or a point is too large. */
+static void BoundGradient(Batch *b, int lane)
+{
+  double X[MAX_DOFS], u[MAX_DOFS], most = 0;
+
+  TakeLane(b, lane, X, u);
+  for (int a = 0; a < b->e->nodes; a++) most = fmax(most, GradientAt(b->e, b->e->node[a], X, u));
+  for (int p = 0; p < b->e->points; p++) most = fmax(most, GradientAt(b->e, b->e->point[p], X, u));
+  for (int k = 0; k < b->dofs && most > largest_gradient; k++) b->u[k * KERNEL_LANES + lane] *= largest_gradient / most;
+}
+
 /* Elements with random corners (radius about 3), middle nodes moved off their straight places by `curved`; random
- * displacements */
+ * displacements. They are the same for all laws and formulations. */
 static void BatchCreate(Batch *b, KernelCase kernel, double curved)
 {
-  const Element *e = ElementGet(kernel.type);
+  const Element *e     = ElementGet(kernel.type);
+  unsigned       state = 12345 + kernel.type;
 
   memset(b, 0, sizeof(*b));
   b->kernel = kernel;
@@ -63,7 +117,7 @@ static void BatchCreate(Batch *b, KernelCase kernel, double curved)
     b->nu[lane] = 0.2 + 0.02 * lane;
     SetConstants(b, lane);
     for (int a = 0; a < e->corners; a++) {
-      for (int i = 0; i < e->dim; i++) corner[a][i] = e->node[a][i] + 0.3 * Random() + (i == 0 ? 3 : 0);
+      for (int i = 0; i < e->dim; i++) corner[a][i] = e->node[a][i] + 0.3 * Random(&state) + (i == 0 ? 3 : 0);
     }
     for (int a = 0; a < e->nodes; a++) {
       const ElementType first_order = e->order == 1 ? e->type : (ElementType)(e->type - 1);
@@ -72,11 +126,12 @@ static void BatchCreate(Batch *b, KernelCase kernel, double curved)
       for (int i = 0; i < e->dim; i++) {
         const int k = (a * e->dim + i) * KERNEL_LANES + lane;
 
-        b->X[k] = a < e->corners ? 0 : curved * Random();
+        b->X[k] = a < e->corners ? 0 : curved * Random(&state);
         for (int c = 0; c < e->corners; c++) b->X[k] += linear[c] * corner[c][i];
-        b->u[k] = 0.1 * Random();
+        b->u[k] = 0.1 * Random(&state);
       }
     }
+    BoundGradient(b, lane);
   }
 }
 
@@ -101,14 +156,6 @@ static void SetGradient(Batch *b, const double H[9])
           b->u[(a * b->dim + i) * KERNEL_LANES + lane] += H[3 * i + m] * b->X[(a * b->dim + m) * KERNEL_LANES + lane];
       }
     }
-  }
-}
-
-static void TakeLane(const Batch *b, int lane, double *X, double *u)
-{
-  for (int k = 0; k < b->dofs; k++) {
-    X[k] = b->X[k * KERNEL_LANES + lane];
-    u[k] = b->u[k * KERNEL_LANES + lane];
   }
 }
 

@@ -27,6 +27,7 @@ typedef struct {
   PetscReal   *constants;   /* of the law [n_constants][lanes] */
   PetscInt     multipliers; /* where those of the first batch are in VolumeState; -1: the group has none */
   PetscReal   *state;       /* of a plastic law, accepted [points][states][lanes]; else NULL */
+  PetscReal   *length;      /* of the cells, for routines of users [lanes]; else NULL */
   PlasticBatch plastic;     /* what kernel.plastic points to, for the batch at hand */
 } CellGroup;
 

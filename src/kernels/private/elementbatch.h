@@ -56,6 +56,9 @@ typedef struct {
   const double *multiplier;
   int           held; /* of StressReference */
   double       *theta, *pressure, *follow;
+  /* Of routines of users whose tangent is not symmetric: the skew part of dP/dH at the points, which PointUmat() sets,
+     else NULL */
+  Lanes (*skew)[UMAT_SKEW_SIZE];
 } BatchCall;
 
 /* Computes the reference gradients of all nodes at a point with shape functions N and dN. They become point q of the
@@ -114,6 +117,19 @@ LANES_INLINE void PointDisplacementGradient(const int n, const int dim, const in
       for (int m = 0; m < dim; m++) H[3 * i + m] += CONST_LANE(u, a * dim + i) * c->g[a][q][m];
     }
     if (hoop) H[TENSOR_HOOP] += CONST_LANE(u, a * dim) * c->g[a][q][2];
+  }
+}
+
+/* Writes the derivatives of the displacement gradient at point q of a chunk by the displacements of the nodes. */
+LANES_INLINE void PointGradientDerivatives(const int n, const int dim, const int hoop, int q, const ChunkPoints *c,
+                                           Lanes V[][9])
+{
+  for (int a = 0; a < n; a++) {
+    for (int i = 0; i < dim; i++) {
+      for (int r = 0; r < 9; r++) V[a * dim + i][r] = (Lanes){0};
+      for (int m = 0; m < dim; m++) V[a * dim + i][3 * i + m] = c->g[a][q][m];
+    }
+    if (hoop) V[a * dim][TENSOR_HOOP] = c->g[a][q][2];
   }
 }
 
@@ -259,8 +275,12 @@ LANES_INLINE void KeepLeastJ(const BatchCall *call, const Lanes *dilatation)
   }
 }
 
-void PointUmat(const BatchCall *, int p, const Lanes H[9], double *next, Lanes *W, Lanes P[9],
-               Lanes A[MATERIAL_TANGENT_SIZE]);
+UmatPlace UmatPlaceAt(const Element *, int finite, const PlasticBatch *, int number, int p, const double *X,
+                      const double *u, int stride);
+void      PointUmat(const BatchCall *, int p, const Lanes H[9], double *next, Lanes *W, Lanes P[9],
+                    Lanes A[MATERIAL_TANGENT_SIZE]);
+void      AddSkewTangent(const BatchCall *, int hoop);
+void      AddSkewPoint(int dofs, Lanes V[][9], const Lanes skew[UMAT_SKEW_SIZE], const Lanes *volume, double *K);
 
 /* Evaluates the law at quadrature point p of the element. */
 LANES_INLINE void PointLaw(const BatchCall *call, int p, const Lanes H[9], const Lanes *dilatation, Lanes *W,
