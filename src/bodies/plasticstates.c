@@ -89,7 +89,8 @@ PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u, PetscRe
 @*/
 PetscErrorCode ElasticityPlasticGrowth(Elasticity e, const PetscReal *u, PetscReal t, PetscReal *growth)
 {
-  PetscReal **before;
+  const PetscReal accepted_t = e->accepted_t;
+  PetscReal     **before;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(e->n_groups, &before));
@@ -110,6 +111,8 @@ PetscErrorCode ElasticityPlasticGrowth(Elasticity e, const PetscReal *u, PetscRe
     PetscCall(PetscArraycpy(g->state, before[k], n));
     PetscCall(PetscFree(before[k]));
   }
+  e->accepted_t = accepted_t;
+  ElasticitySetTime(e, t);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, growth, 1, MPIU_REAL, MPI_MAX, e->mesh->comm));
   PetscCall(PetscFree(before));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -13,6 +13,10 @@
 #define SEARCH_GROW   2.0
 /* A step that leaves the contact lists or inverts an element is halved this many times. */
 #define SEARCH_HALVINGS 3
+/* Over a step as long as the linear problem says the work is half of what the slope promises, or more where the tangent
+   is indefinite. More than this multiple of the promise is no work, but the residual of an element that is all but
+   inverted at a point of Simpson's rule. */
+#define SEARCH_PROMISE 10
 /* Without an energy a step is shortened this many times, each time to between a tenth and a half. */
 #define SEARCH_CUTS 20
 
@@ -90,12 +94,28 @@ static PetscErrorCode EnergyRise(const Search *s, Vec from, Vec to, PetscReal *r
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How far the whole step turns a cell. */
+static PetscErrorCode Turn(const Search *s, PetscReal *turn)
+{
+  const PetscInt n = s->model->mesh->n_nodes * s->model->mesh->dim;
+  PetscReal     *u;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &u));
+  PetscCall(ProblemDisplacements(s->model->problem, s->x, s->model->t, u));
+  PetscCall(VecWAXPY(s->w, -1, s->y, s->x));
+  PetscCall(ProblemSetTrial(s->model->problem, s->w, s->model->t));
+  PetscCall(ModelLargestTurn(s->model, u, s->model->problem->trial, turn));
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The rise of the energy from x to x - lambda y, PETSC_MAX_REAL where an element is inverted. Loads that follow the
    surface have no energy. There it is the work that is done against the residual on the way, by Simpson's rule, which
    is exact for energies of fourth degree. */
 static PetscErrorCode Rise(const Search *s, PetscReal lambda, PetscReal *rise)
 {
-  PetscReal work, sum;
+  PetscReal work, slope, sum;
   PetscBool inverted = PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -104,7 +124,8 @@ static PetscErrorCode Rise(const Search *s, PetscReal lambda, PetscReal *rise)
     PetscCall(EnergyRise(s, s->x, s->w, rise));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(VecDotRealPart(s->F, s->y, &sum));
+  PetscCall(VecDotRealPart(s->F, s->y, &slope));
+  sum = slope;
   for (int i = 1; i <= 2 && !inverted; i++) {
     PetscCall(VecWAXPY(s->w, -lambda * i / 2, s->y, s->x));
     PetscCall(SNESComputeFunction(s->snes, s->w, s->G));
@@ -112,7 +133,9 @@ static PetscErrorCode Rise(const Search *s, PetscReal lambda, PetscReal *rise)
     PetscCall(VecDotRealPart(s->G, s->y, &work));
     sum += (i == 1 ? 4 : 1) * work;
   }
-  *rise = inverted || PetscIsInfOrNanReal(sum) ? PETSC_MAX_REAL : -lambda / 6 * sum;
+  inverted =
+    (PetscBool)(inverted || PetscIsInfOrNanReal(sum) || sum > 6 * SEARCH_PROMISE * PetscMax(1, lambda) * slope);
+  *rise = inverted ? PETSC_MAX_REAL : -lambda / 6 * sum;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -145,6 +168,32 @@ static PetscErrorCode Backtrack(const Search *s)
   PetscCall(SNESLineSearchSetLambda(s->search, lambda));
   PetscCall(SNESLineSearchSetReason(s->search, reason));
   PetscCall(SNESLineSearchComputeNorms(s->search));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes a step over which the energy falls by -rise. One that led uphill and was turned round leads away from a saddle.
+   Close to it the step is tiny and the way down is long. Without an energy such a step is doubled as long as the work
+   rises and cells do not turn far. */
+static PetscErrorCode Descend(const Search *s, PetscReal rise)
+{
+  PetscReal turn, next, lambda = 1;
+  PetscBool ok = s->model->work->uphill;
+
+  PetscFunctionBeginUser;
+  if (!ok || ProblemConservative(s->model->problem)) {
+    PetscCall(Take(s, 1));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(Turn(s, &turn));
+  while (ok && 2 * lambda * turn <= MODEL_FARTHEST) {
+    PetscCall(Rise(s, 2 * lambda, &next));
+    ok = (PetscBool)(next < rise);
+    if (!ok) break;
+    PetscCall(Try(s, 2 * lambda, &ok));
+    rise = next;
+    lambda *= ok ? 2 : 1;
+  }
+  PetscCall(Take(s, lambda));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,17 +248,11 @@ static PetscErrorCode Keep(const Search *s, PetscReal rise, PetscReal slope, Pet
    be judged from its start; not so where there is no energy, and the work on the way tells less. */
 static PetscErrorCode Relax(const Search *s, PetscReal rise, PetscReal slope, PetscBool *taken)
 {
-  ModelWork     *work = s->model->work;
-  const PetscInt n    = s->model->mesh->n_nodes * s->model->mesh->dim;
-  PetscReal     *u, turn, lambda;
+  ModelWork *work = s->model->work;
+  PetscReal  turn, lambda;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &u));
-  PetscCall(ProblemDisplacements(s->model->problem, s->x, s->model->t, u));
-  PetscCall(VecWAXPY(s->w, -1, s->y, s->x));
-  PetscCall(ProblemSetTrial(s->model->problem, s->w, s->model->t));
-  PetscCall(ModelLargestTurn(s->model, u, s->model->problem->trial, &turn));
-  PetscCall(PetscFree(u));
+  PetscCall(Turn(s, &turn));
   lambda = PetscMin(1, work->relaxed.farthest / turn);
   *taken = PETSC_FALSE;
   for (int i = 0; i <= SEARCH_HALVINGS && !*taken; i++, lambda /= *taken ? 1 : 2) {
@@ -268,6 +311,21 @@ static PetscErrorCode Judge(const Search *s, PetscReal rise)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Searches close to equilibrium where there is no energy: the step is taken if work is done against the residual over
+   it. Along the bent way of a soft motion the residual rises, however right the step is. *taken: it was. */
+static PetscErrorCode SearchClosely(const Search *s, PetscReal slope, PetscBool *taken)
+{
+  PetscReal rise;
+
+  PetscFunctionBeginUser;
+  *taken = PETSC_FALSE;
+  if (ProblemConservative(s->model->problem) || !(slope > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Rise(s, 1, &rise));
+  *taken = (PetscBool)(rise <= -SEARCH_FALL * slope);
+  if (*taken) PetscCall(Take(s, 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelSearchRelaxed - the line search of Newton's method without friction.
 
@@ -286,7 +344,7 @@ static PetscErrorCode Judge(const Search *s, PetscReal rise)
   and the bound follows whether the last ones have paid.
 
   Where residuals are compared, at iterates close to equilibrium, and where the contact set repeats itself, steps are
-  shortened as before.
+  shortened as before. Without an energy work is compared there first, which has no round-off of large energies.
 
   Source: Chamberlain, Powell, Lemarechal and Pedersen, The watchdog technique for forcing convergence in algorithms for
   constrained optimization, Math. Programming Study 16 (1982) 1-17.
@@ -305,16 +363,17 @@ PetscErrorCode ModelSearchRelaxed(SNESLineSearch search, void *context)
   PetscCall(SNESLineSearchPreCheck(search, s.x, s.y, &changed));
   work->relaxed.linear = PETSC_FALSE;
   if (lambda < 1) work->relaxed.waits = PETSC_FALSE;
+  PetscCall(VecDotRealPart(s.F, s.y, &slope));
   if (!work->relaxed.waits && (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL)) {
-    PetscCall(Backtrack(&s));
+    if (lambda == 1) PetscCall(SearchClosely(&s, slope, &taken));
+    if (!taken) PetscCall(Backtrack(&s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(VecDotRealPart(s.F, s.y, &slope));
   PetscCall(Rise(&s, 1, &rise));
   if (work->relaxed.waits)
     PetscCall(Judge(&s, rise));
   else if (rise <= -SEARCH_FALL * slope)
-    PetscCall(Take(&s, 1));
+    PetscCall(Descend(&s, rise));
   else {
     PetscCall(Relax(&s, rise, slope, &taken));
     if (!taken) PetscCall(Shorten(&s));
