@@ -195,8 +195,11 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   CountAverse(pair, rank, count);
   PetscCall(CountHanging(pair, rank, &count[2]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
-  *quality = (ContactQuality){
-    .nodes = pressing.n, .faces = pressing.faces, .near = count[0], .averse = count[1], .hanging = count[2]};
+  *quality = (ContactQuality){.nodes   = pressing.n,
+                              .faces   = pressing.faces,
+                              .near    = count[0],
+                              .averse  = count[1],
+                              .hanging = count[2]};
   if (pair->master) quality->turned = pair->master->turned;
   PetscCall(FindPlace(contact->mesh, pair, depth, pressing.depth, &quality->deepest));
   PetscCall(PetscFree(depth));

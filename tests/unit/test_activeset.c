@@ -375,8 +375,7 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_ends_in_equilibrium),    cmocka_unit_test(test_right_set_needs_nothing),
-    cmocka_unit_test(test_repeated_sets_are_left),
-    cmocka_unit_test(test_loose_body_is_left_alone),
+    cmocka_unit_test(test_repeated_sets_are_left), cmocka_unit_test(test_loose_body_is_left_alone),
     cmocka_unit_test(test_friction_at_the_end),
   };
   int failed;
