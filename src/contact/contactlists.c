@@ -131,14 +131,16 @@ static int FitRung(NeighbourLists lists, PetscInt q)
   return lists->fit_n[q] ? lists->rung[q] : RUNGS;
 }
 
-/* A fit that falls to a lower rung within a step stays there to the end of the step. The surface of that rung may lead
-   back to where the higher rung holds, whose surface leads to where it does not. */
+/* A fit that falls to a lower rung a second time within a step stays there to the end of the step. The surface of that
+   rung leads back to where the higher rung holds, whose surface leads to where it does not. */
 static void PairKeepRungs(ContactPair *pair)
 {
   for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.fitted; q++) {
     const int next = FitRung(pair->next, q);
 
-    if (next > FitRung(pair->lists, q)) pair->first_rung[q] = PetscMax(pair->first_rung[q], next);
+    if (next <= FitRung(pair->lists, q)) continue;
+    if (pair->fallen[q]) pair->first_rung[q] = PetscMax(pair->first_rung[q], next);
+    pair->fallen[q] = PETSC_TRUE;
   }
 }
 
@@ -224,6 +226,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscBool    changed = PETSC_FALSE, serve;
 
     PetscCall(PetscArrayzero(pair->first_rung, pair->slaves->n));
+    PetscCall(PetscArrayzero(pair->fallen, pair->slaves->n));
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(PetscLogEventBegin(contact->event_offset, 0, 0, 0, 0));
     if (pair->slave_offsets) PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next, &changed));

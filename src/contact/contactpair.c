@@ -174,7 +174,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
                          &pair->point_gap, 3 * slaves->n, &pair->point_normal, slaves->n, &pair->point_force));
   PetscCall(PetscCalloc4(slaves->n, &pair->factor_before, slaves->n, &pair->factor_change, slaves->n, &pair->factor_low,
                          slaves->n, &pair->factor_high));
-  PetscCall(PetscCalloc1(slaves->n, &pair->first_rung));
+  PetscCall(PetscCalloc2(slaves->n, &pair->first_rung, slaves->n, &pair->fallen));
   PetscCall(ContactVariationsCreate(mesh->dim, slaves->n, &pair->variations));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -406,7 +406,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree5(pair->force, pair->normal, pair->pressure, pair->stiffness, pair->stiffness_before));
   PetscCall(
     PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
-  PetscCall(PetscFree(pair->first_rung));
+  PetscCall(PetscFree2(pair->first_rung, pair->fallen));
   PetscCall(PetscFree4(pair->factor_before, pair->factor_change, pair->factor_low, pair->factor_high));
   PetscCall(ContactVariationsDestroy(&pair->variations));
   PetscCall(PetscFree(pair->before));

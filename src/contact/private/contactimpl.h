@@ -99,6 +99,7 @@ typedef struct {
   PetscReal         *factor_before, *factor_change;
   PetscReal         *factor_low, *factor_high; /* factors of this step between which the right one is */
   int               *first_rung;               /* rung with which the fit of each slave point begins in this step */
+  PetscBool         *fallen;                   /* slave points whose fit has fallen to a lower rung in this step */
   PetscBool          fresh;     /* the lists in force were made where they are, with the offsets in force */
   PetscBool          projected; /* the slave points were projected with these lists at their last update */
   int               *seed;      /* of each slave point: facet of the last projection */
