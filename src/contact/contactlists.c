@@ -52,7 +52,7 @@ static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists,
     if (found && !pair->master)
       factor[q] = NeighbourListsOpposed(lists, q, pair->work->result.normal);
     else if (found)
-      factor[q] = lists->share[q] * EdgeFactor(pair, lists, q);
+      factor[q] = PetscMin(lists->share[q], EdgeFactor(pair, lists, q));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,8 +10,12 @@
    counts as behind it. Penetrations are much smaller, and another side of the master is nearer then. */
 #define FLANK_DEPTH 0.25
 
-/* Nodes of a slave's face count as farthest past an edge within this part of its size. */
+/* Nodes of a slave's face count as farthest past an edge within this part of its size, and a slave that reaches so far
+   past the end of its master ends there: bodies of one length deform by less. */
 #define FLANK_FARTHEST 0.1
+
+/* So far past an end, in faces of the slave, another facet is looked for on which the surface goes on. */
+#define FLANK_SEAM 0.05
 
 /* An edge that two facets share, as seen from one of them. */
 typedef struct {
@@ -20,19 +24,29 @@ typedef struct {
   PetscBool convex;   /* the other facet lies below the plane of this one */
 } FlankEdge;
 
-/* Projects the slave point onto a facet, and returns the distance. */
-static PetscReal CandidateFoot(const Nearest *look, const Candidate *c, Foot *foot)
+/* Projects a place, relative to the slave point, onto a facet, and returns the distance. */
+static PetscReal PlaceFoot(const Nearest *look, const Candidate *c, const PetscReal place[3], Foot *foot)
 {
+  const int dim = look->lists->dim;
   PetscReal x[FACE_MAX_NODES * 3];
   Facet     facet = c->facet;
 
   facet.free_edges = 0;
   for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
-    NeighbourListsRelative(look->lists, look->q, facet.nodes[a], &x[a * look->lists->dim]);
+    NeighbourListsRelative(look->lists, look->q, facet.nodes[a], &x[a * dim]);
+    for (int d = 0; d < dim; d++) x[a * dim + d] -= place[d];
     facet.nodes[a] = a;
   }
-  FacetProject(look->lists->dim, &facet, x, foot);
+  FacetProject(dim, &facet, x, foot);
   return PetscAbsReal(foot->gap);
+}
+
+/* Projects the slave point onto a facet, and returns the distance. */
+static PetscReal CandidateFoot(const Nearest *look, const Candidate *c, Foot *foot)
+{
+  const PetscReal here[3] = {0, 0, 0};
+
+  return PlaceFoot(look, c, here, foot);
 }
 
 /* Distance of the slave point to a facet. */
@@ -70,8 +84,8 @@ static PetscBool SharedEdge(const Nearest *look, const Candidate *c, const Candi
   return PETSC_FALSE;
 }
 
-/* Distance of the slave point's foot to an edge. */
-static PetscReal FootToEdge(const Nearest *look, const FlankEdge *edge)
+/* Distance of the slave point's foot to an edge; place: the point of the edge, relative to the slave point. */
+static PetscReal FootToEdge(const Nearest *look, const FlankEdge *edge, PetscReal place[3])
 {
   const int dim = look->lists->dim;
   PetscReal a[3], b[3], along = 0, length = 0, square = 0;
@@ -83,8 +97,10 @@ static PetscReal FootToEdge(const Nearest *look, const FlankEdge *edge)
     length += PetscSqr(b[d] - a[d]);
   }
   along = length > 0 ? PetscClipInterval(along / length, 0, 1) : 0;
-  for (int d = 0; d < dim; d++)
-    square += PetscSqr(-look->foot.gap * look->foot.normal[d] - a[d] - along * (b[d] - a[d]));
+  for (int d = 0; d < dim; d++) {
+    place[d] = a[d] + along * (b[d] - a[d]);
+    square += PetscSqr(-look->foot.gap * look->foot.normal[d] - place[d]);
+  }
   return PetscSqrtReal(square);
 }
 
@@ -256,9 +272,9 @@ static PetscReal SlaveTurns(const Nearest *look, const PetscReal normal[3])
 static PetscReal EndShare(const Nearest *look, const Candidate *c, const FlankEdge *edge, PetscReal width,
                           PetscReal turns)
 {
-  const PetscReal inside = FootToEdge(look, edge);
+  PetscReal       at[3], place;
+  const PetscReal inside = FootToEdge(look, edge, at);
   const PetscReal past   = inside > FACET_COINCIDENT * look->size ? -inside : BesideFoot(look);
-  PetscReal       place;
 
   if (2 * PetscAbsReal(past) >= width) return past > 0 ? 0 : 1;
   place = past / width + 0.5;
@@ -300,8 +316,8 @@ static void WayOut(const Nearest *look, const Candidate *c, const FlankEdge *edg
 }
 
 /* How far the slave reaches past an edge of the master, the way out of it, around the point's own face: 0 where it ends
-   at that edge or before, 1 where it covers the width of the fading. It goes on at a node, or it ends there across that
-   way. */
+   close to that edge or before, 1 where it covers the width of the fading. It goes on at a node, or it ends there
+   across that way. */
 static PetscReal SlaveOverhangs(const Nearest *look, const FlankEdge *edge, const PetscReal out[3])
 {
   const NeighbourLists lists  = look->lists;
@@ -326,12 +342,31 @@ static PetscReal SlaveOverhangs(const Nearest *look, const FlankEdge *edge, cons
         goes_on = PetscMax(goes_on, 1 - (length > 0 ? SmoothStep(2 * way / PetscSqrtReal(length)) : 0));
     }
   }
-  return SmoothStep(2 * (farthest / look->size + goes_on));
+  return SmoothStep((farthest / look->size + goes_on - FLANK_FARTHEST) / (0.5 - FLANK_FARTHEST));
+}
+
+/* Whether the master goes on past an edge, the way out of it, on another facet that faces the point, as where two
+   bodies lie side by side and share no nodes: 1 if it does. */
+static PetscReal MasterGoesOn(const Nearest *look, const Candidate *c, const FlankEdge *edge, const PetscReal out[3],
+                              int facing, const int *found)
+{
+  const PetscReal step = FLANK_SEAM * look->size;
+  PetscReal       place[3], least = step;
+  Foot            foot;
+
+  FootToEdge(look, edge, place);
+  for (int d = 0; d < look->lists->dim; d++) place[d] += step * out[d];
+  for (int i = 0; i < facing; i++) {
+    const Candidate *other = &look->candidates[found[i]];
+
+    if (other != c) least = PetscMin(least, PlaceFoot(look, other, place, &foot));
+  }
+  return 1 - SmoothStep(2 * least / step);
 }
 
 /* Part of a slave point's area that takes part where the master's surface ends at an edge of facet c and the slave
    reaches past it. A slave that ends there too keeps all its area. */
-static PetscReal FreeShare(const Nearest *look, const Candidate *c)
+static PetscReal FreeShare(const Nearest *look, const Candidate *c, int facing, const int *found)
 {
   const Element *e     = ElementGet(c->facet.type);
   PetscReal      share = 1;
@@ -345,8 +380,10 @@ static PetscReal FreeShare(const Nearest *look, const Candidate *c)
 
     if (!(c->facet.free_edges >> k & 1)) continue;
     WayOut(look, c, &edge, out);
-    part  = 1 - EndShare(look, c, &edge, look->size, SlaveTurns(look, out));
-    share = PetscMin(share, 1 - (part > 0 ? part * SlaveOverhangs(look, &edge, out) : 0));
+    part = 1 - EndShare(look, c, &edge, look->size, SlaveTurns(look, out));
+    if (part > 0) part *= SlaveOverhangs(look, &edge, out);
+    if (part > 0) part *= 1 - MasterGoesOn(look, c, &edge, out, facing, found);
+    share = PetscMin(share, 1 - part);
   }
   return share;
 }
@@ -390,7 +427,7 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
 
   for (int i = 0; i < facing; i++) {
     ends[i] = 0;
-    share   = PetscMin(share, FreeShare(look, &look->candidates[found[i]]));
+    share   = PetscMin(share, FreeShare(look, &look->candidates[found[i]], facing, found));
     for (int k = facing; k < n; k++) {
       const Candidate *beyond = &look->candidates[found[k]];
       FlankEdge        edge;
@@ -443,11 +480,12 @@ PetscBool FlankNearRidge(const Nearest *look, Neighbourhoods neighbourhoods, int
     if (!NeighbourhoodsIsSharp(neighbourhoods, found[i])) continue;
     for (int k = 0; k < facing; k++) {
       FlankEdge edge;
+      PetscReal place[3];
 
       if (k == i || !NeighbourhoodsIsSharp(neighbourhoods, found[k])) continue;
       if (!SharedEdge(look, &look->candidates[found[i]], &look->candidates[found[k]], &edge)) continue;
       if (edge.convex && NeighbourhoodsMeetSharply(neighbourhoods, found[i], found[k]) &&
-          FootToEdge(look, &edge) <= 0.5 * look->size)
+          FootToEdge(look, &edge, place) <= 0.5 * look->size)
         return PETSC_TRUE;
     }
   }
