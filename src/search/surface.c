@@ -390,7 +390,7 @@ static void FaceOutward(const Facet *face, int edge, int dim, const double *X, P
 
 /*@
   SurfaceNodeEnds - finds which way a surface ends at its nodes: the sum of the ways out across the free edges around
-  each of them, in the plane of the surface.
+  each of them, in the plane of the surface, each of length 1, so that a corner ends both ways alike.
 
   Collective
 
@@ -414,12 +414,14 @@ PetscErrorCode SurfaceNodeEnds(ContactSurface surface, const PetscReal *u, Petsc
     const Element *of   = ElementGet(face->type);
 
     for (int e = 0; face->free_edges && e < FaceEdges(face); e++) {
-      PetscReal out[3];
+      PetscReal out[3], length = 0;
       int       ends[2];
 
       if (!(face->free_edges >> e & 1)) continue;
       FaceCoordinates(surface, face, u, X);
       FaceOutward(face, e, dim, X, out);
+      for (int d = 0; d < dim; d++) length += PetscSqr(out[d]);
+      for (int d = 0; d < dim && length > 0; d++) out[d] /= PetscSqrtReal(length);
       for (int d = 0; d < dim; d++) {
         for (int k = 0; k < FaceEdgeNodes(face, e, ends); k++) end[face->nodes[ends[k]] * dim + d] += out[d];
         if (of->dim == 2 && of->order == 2) end[face->nodes[of->corners + e] * dim + d] += out[d];
