@@ -44,6 +44,10 @@ def solve(args, case):
     return dict(zip(COLUMNS, (*case, summary["status"], summary["newton_iterations"], int(nodes), *figures)))
 
 
+def median(rows, order, slave, key):
+    return numpy.median([float(r[key]) for r in rows if (int(r["order"]), r["slave"]) == (order, slave)])
+
+
 def table(rows):
     print("| order | depth | block as slave: nodes in contact | across, along (%) | cylinder as slave: across, along (%) |")
     print("| --- " * 5 + "|")
@@ -53,6 +57,8 @@ def table(rows):
                                for s in ROLES)
             cells = [f"{float(r['noise_across']):.2g}, {float(r['noise_along']):.2g}" for r in (block, cylinder)]
             print(f"| {order} | {depth} | {block['nodes']} | {cells[0]} | {cells[1]} |")
+        cells = [", ".join(f"{median(rows, order, slave, key):.2g}" for key in COLUMNS[-2:]) for slave in ROLES]
+        print(f"| {order} | median | | {cells[0]} | {cells[1]} |")
 
 
 def main():
