@@ -134,6 +134,7 @@ PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
                                 PetscReal lag, PetscBool *hold);
+void           ContactForgetLost(Contact);
 PetscErrorCode ContactLocateLost(Contact, PetscBool *lost, char *text, size_t size);
 /* Residual */
 PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy,

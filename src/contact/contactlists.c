@@ -225,13 +225,14 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscReal    needed  = motion;
     PetscBool    changed = PETSC_FALSE, serve;
 
-    PetscCall(PetscArrayzero(pair->first_rung, pair->slaves->n));
-    PetscCall(PetscArrayzero(pair->fallen, pair->slaves->n));
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(PetscLogEventBegin(contact->event_offset, 0, 0, 0, 0));
     if (pair->slave_offsets) PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next, &changed));
     if (pair->master_offsets) PetscCall(OffsetsExtrapolate(pair->master_offsets, u, t, t_next, &changed));
     if (pair->slave_offsets) PetscCall(PetscLogEventEnd(contact->event_offset, 0, 0, 0, 0));
+    for (PetscInt q = 0; q < pair->slaves->n; q++) changed = (PetscBool)(changed || pair->first_rung[q]);
+    PetscCall(PetscArrayzero(pair->first_rung, pair->slaves->n));
+    PetscCall(PetscArrayzero(pair->fallen, pair->slaves->n));
     PetscCall(PairListsServe(pair, u, t, needed, changed, &serve));
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
     if (pair->next) PetscCall(PairTakeNext(pair));

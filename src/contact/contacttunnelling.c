@@ -135,6 +135,19 @@ void ContactNoteJumps(ContactPair *pair, PetscReal motion)
 }
 
 /*@
+  ContactForgetLost - forgets the slave points that were lost, where a solution before them is taken again.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact
+@*/
+void ContactForgetLost(Contact contact)
+{
+  for (int p = 0; p < contact->n_pairs; p++) contact->pairs[p].lost = (ContactLost){0, NAN, 0, -1};
+}
+
+/*@
   ContactLocateLost - says whether a slave point was lost since the last ContactGather(), and writes pair, node
   (gmsh's tag) and depth of the worst.
 

@@ -439,6 +439,16 @@ PetscErrorCode FrictionBegin(ContactPair *pair, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether a term presses. */
+static PetscBool TermPresses(const ContactPair *pair, PetscInt c, PetscReal t)
+{
+  LawValue  value;
+  PetscReal area;
+
+  ContactTermLaw(pair, c, t, &value, NULL, &area);
+  return (PetscBool)(value.stiffness > 0);
+}
+
 /*@
   FrictionAnchorLate - anchors slave points of pressed terms that had no master near when the step began.
 
@@ -461,25 +471,24 @@ PetscErrorCode FrictionAnchorLate(ContactPair *pair, PetscReal t, PetscBool *mad
   PetscFunctionBeginUser;
   *made = PETSC_FALSE;
   for (PetscInt c = 0; c < pair->n; c++) {
-    PetscBool     late = PETSC_FALSE;
-    FrictionInput in   = {.stiffness = 0};
-    LawValue      value;
-    PetscReal     area;
-
-    ContactTermLaw(pair, c, t, &value, NULL, &area);
-    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && value.stiffness > 0; k++) {
+    if (!TermPresses(pair, c, t)) continue;
+    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
       const PetscInt q = pair->term_point[k];
 
       if (!FrictionTermTakes(pair, k) || f->face[q] >= 0) continue;
       PetscCall(AnchorPoint(pair, q, t));
-      late = (PetscBool)(late || f->face[q] >= 0);
+      *made = (PetscBool)(*made || f->face[q] >= 0);
     }
-    if (!late) continue;
-    *made = PETSC_TRUE;
-    if (f->anchored[c]) continue;
+  }
+  for (PetscInt c = 0; c < pair->n; c++) { /* terms share points */
+    FrictionInput in = {.stiffness = 0};
+
+    if (f->anchored[c] || !TermPresses(pair, c, t)) continue;
     f->guide[c] = FrictionTermGuide(pair, c);
     PetscCall(TermSlip(pair, c, t, &in, &f->anchored[c]));
+    if (!f->anchored[c]) continue;
     KeepTraction(pair, c, t, &in);
+    *made = PETSC_TRUE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

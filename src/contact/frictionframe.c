@@ -40,6 +40,7 @@ int FrictionFrameMake(const double tangent[2][3], FrictionFrame *frame)
 {
   double normal[3];
 
+  memset(frame, 0, sizeof(*frame));
   memcpy(frame->tangent, tangent, sizeof(frame->tangent));
   Cross(tangent[0], tangent[1], normal);
   frame->length = sqrt(Dot(tangent[0], tangent[0]));

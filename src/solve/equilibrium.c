@@ -442,11 +442,13 @@ static PetscErrorCode ModelSoften(Model model, const PetscReal factor[], Vec x, 
   for (int p = 0; p < ContactPairs(model->contact); p++) PetscCall(ContactStiffen(model->contact, p, 1 / factor[p]));
   PetscCall(VecCopy(x, model->x));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  ContactForgetLost(model->contact);
   model->work->cycling     = PETSC_FALSE;
   model->problem->inverted = -1;
   report->detail[0]        = '\0';
   report->result           = SOLVE_CONVERGED;
   report->stiffened        = EQUILIBRIUM_MAX_STIFFEN;
+  ModelPenaltyStop(model, factor);
   PetscCall(ModelSolveHeld(model, report));
   if (report->result == SOLVE_CONVERGED) PetscCall(ModelEstimatePenalty(model));
   PetscFunctionReturn(PETSC_SUCCESS);

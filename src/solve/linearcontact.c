@@ -122,9 +122,16 @@ static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m
 }
 
 /* Asks for the columns of all components in the last round, if there is room. */
-static void LinearContactAskAll(const LinearContact *s, PetscInt *m, PetscInt *which)
+static PetscErrorCode LinearContactAskAll(Model model, const LinearContact *s, PetscInt *m, PetscInt *which)
 {
-  if (*m && s->rounds + 1 == LINEAR_CONTACT_ROUNDS && s->all <= s->most) ActiveSetRest(s->active, m, which);
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetSize(model->x, &n));
+  if (*m && s->rounds + 1 == LINEAR_CONTACT_ROUNDS && s->all <= s->most &&
+      (PetscReal)s->all * n <= LINEAR_CONTACT_VALUES)
+    ActiveSetRest(s->active, m, which);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Continues on the first rank as far as the columns that are known allow; the other ranks receive the components
@@ -139,7 +146,7 @@ static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt
   if (!s->rank) PetscCall(ActiveSetSolve(s->active, m, which, converged));
   if (!s->rank && model->work->settled && s->m + *m > LINEAR_CONTACT_TERMS)
     PetscCall(ActiveSetLimit(s->active, (LINEAR_CONTACT_TERMS - s->m) / LINEAR_CONTACT_SHARE, m, which));
-  if (!s->rank) LinearContactAskAll(s, m, which);
+  if (!s->rank) PetscCall(LinearContactAskAll(model, s, m, which));
   PetscCallMPI(MPI_Bcast(m, 1, MPIU_INT, 0, comm));
   PetscCallMPI(MPI_Bcast(converged, sizeof(PetscBool), MPI_BYTE, 0, comm));
   PetscCall(PetscMPIIntCast(*m, &n));

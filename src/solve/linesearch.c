@@ -266,11 +266,12 @@ static PetscErrorCode EndServes(Model model, Halvings *h, PetscBool *serves)
   PetscFunctionBeginUser;
   *serves = PETSC_FALSE;
   PetscCall(LinearSolverDirect(model->work->solver, &direct));
-  if (!direct || h->first < 1 || h->norm[0] == PETSC_MAX_REAL) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!direct || h->first < 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESLineSearchGetSNES(h->search, &snes));
   PetscCall(SNESLineSearchGetVecs(h->search, &x, &F, &y, &w, &G));
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(EvaluatePart(h, 0));
+  if (h->norm[0] == PETSC_MAX_REAL) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(y, &z));
   PetscCall(KSPSolve(ksp, G, z));
   PetscCall(VecNorm(y, NORM_2, &whole));

@@ -56,7 +56,9 @@ PetscErrorCode ModelArchivePenaltyError(Model model, Archive archive)
   const int n = ContactPairs(model->contact);
 
   PetscFunctionBeginUser;
-  if (n) PetscCall(ArchiveReals(archive, "model/penalty_error", 4 * n, &model->work->penalty_error[0].force));
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ArchiveReals(archive, "model/penalty_error", 4 * n, &model->work->penalty_error[0].force));
+  PetscCall(ArchiveReals(archive, "model/penalty_stiffened", n, model->work->stiffened_by));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -87,11 +89,18 @@ PenaltyError ModelPenaltyError(Model model, int pair)
 - pair  - number of the pair
 
   Note:
-  The last solve has made them stiffer, and the estimate fell by much less than was forecast.
+  The last solve has made them stiffer, and the estimate fell by much less than was forecast, or there was no solution.
 @*/
 PetscBool ModelPenaltyStays(Model model, int pair)
 {
   return (PetscBool)(model->work->stiffened_by[pair] < 0);
+}
+
+/* Notes that no solution was found with penalties that are factor[] times as stiff. */
+void ModelPenaltyStop(Model model, const PetscReal factor[])
+{
+  for (int p = 0; p < ContactPairs(model->contact); p++)
+    if (factor[p] > 1) model->work->stiffened_by[p] = -factor[p];
 }
 
 /* The derivative of the free residual to ln s at the trial state. The residual is linear in s where what slips goes on
@@ -225,17 +234,34 @@ static PetscErrorCode ModelComparePenalty(Model model, Vec slope)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Notes whether the last raise of a pair's penalties in this solve has brought too little of what was forecast. */
+static void JudgeStiffening(Model model, int pair)
+{
+  const PenaltyError *error = &model->work->penalty_error[pair];
+  const PetscReal     worst = PetscMax(error->displacement, error->force);
+  PetscReal          *at = &model->work->stiffened_at[pair], *by = &model->work->stiffened_by[pair];
+
+  if (*by > 0 && worst > *at * PetscPowReal(*by, -PENALTY_GAIN)) *by = -*by;
+}
+
 /* Estimates the errors at the trial state, in which the step has converged. The state stays as it is. */
 PetscErrorCode ModelEstimatePenalty(Model model)
 {
-  PetscBool known = PETSC_FALSE;
-  Vec       slope;
+  const PenaltyError unknown = {.force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN};
+  PetscBool          known   = PETSC_FALSE;
+  Vec                slope;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &slope));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(ModelPenaltySlope(model, slope, &known));
   if (known) PetscCall(ModelComparePenalty(model, slope));
+  for (int p = 0; p < ContactPairs(model->contact); p++) {
+    if (known)
+      JudgeStiffening(model, p);
+    else
+      model->work->penalty_error[p] = unknown;
+  }
   PetscCall(VecDestroy(&slope));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -245,16 +271,6 @@ static PetscReal Factor(PetscReal error)
 {
   return PetscMin(PENALTY_MOST_STIFFER,
                   PetscMin(error / PENALTY_ERROR_WANTED, 1 + PENALTY_RISE * (error / PENALTY_ERROR_LARGE - 1)));
-}
-
-/* Says whether the last raise of a pair's penalties in this solve has brought too little of what was forecast. worst:
-   its largest error now. */
-static PetscBool StiffeningFails(Model model, int pair, PetscReal worst)
-{
-  PetscReal *at = &model->work->stiffened_at[pair], *by = &model->work->stiffened_by[pair];
-
-  if (*by > 0 && worst > *at * PetscPowReal(*by, -PENALTY_GAIN)) *by = -*by;
-  return (PetscBool)(*by < 0);
 }
 
 /* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty().
@@ -278,7 +294,7 @@ PetscErrorCode ModelStiffen(Model model, PetscReal factor[], PetscBool *stiffene
     factor[p] = 1;
     if (!ContactPairScene(model->contact, p)->penalty_may_stiffen || !(worst > PENALTY_ERROR_LARGE) ||
         load[p].force < PENALTY_LIGHT_PAIR * most || PENALTY_ERROR_LARGE * load[p].force <= left ||
-        StiffeningFails(model, p, worst))
+        ModelPenaltyStays(model, p))
       continue;
     factor[p]                    = Factor(worst);
     model->work->stiffened_at[p] = worst;

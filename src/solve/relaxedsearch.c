@@ -133,9 +133,9 @@ static PetscErrorCode Rise(const Search *s, PetscReal lambda, PetscReal *rise)
     PetscCall(VecDotRealPart(s->G, s->y, &work));
     sum += (i == 1 ? 4 : 1) * work;
   }
-  inverted =
-    (PetscBool)(inverted || PetscIsInfOrNanReal(sum) || sum > 6 * SEARCH_PROMISE * PetscMax(1, lambda) * slope);
-  *rise = inverted ? PETSC_MAX_REAL : -lambda / 6 * sum;
+  inverted = (PetscBool)(inverted || PetscIsInfOrNanReal(sum) ||
+                         (slope > 0 && sum > 6 * SEARCH_PROMISE * PetscMax(1, lambda) * slope));
+  *rise    = inverted ? PETSC_MAX_REAL : -lambda / 6 * sum;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -137,3 +137,4 @@ void           ModelForgetPenaltyError(Model);
 PetscErrorCode ModelArchivePenaltyError(Model, Archive);
 PetscErrorCode ModelEstimatePenalty(Model);
 PetscErrorCode ModelStiffen(Model, PetscReal factor[], PetscBool *stiffened);
+void           ModelPenaltyStop(Model, const PetscReal factor[]);
