@@ -8,12 +8,13 @@
 
 /* Step along which forces and pressures are compared. Penetrations shrink by about this part of themselves, so that
    hardly any node opens or closes, and round-off of the gaps stays far below. Penalties grow as penetrations shrink, to
-   1 / (1 - step): then forces that stay as they are do so to the second order too. */
-#define PENALTY_STEP 0.02
-/* Penalties that the run may choose are made stiffer where an estimate is above this. */
+   1 / (1 - step): then forces that stay as they are do so to the second order too. What moves from faces at the bound
+   of their penalties to nodes does not, and shows as this part of itself. */
+#define PENALTY_STEP 0.002
+/* Penalties that the run may choose are made stiffer where an estimate is above this. The estimates for pressures do
+   not count for this. Where the slave's nodes are denser than the master's, pressures scatter, and stiffer penalties
+   only let them scatter more. */
 #define PENALTY_ERROR_LARGE 0.004
-/* The estimates for pressures do not count for this. Where the slave's nodes are denser than the master's, pressures
-   scatter, and stiffer penalties only let them scatter more. */
 /* They are made so stiff that this is to be expected. */
 #define PENALTY_ERROR_WANTED 0.002
 /* Close to the threshold the factor rises from 1, by this part of itself for each part of the estimate: an estimate
@@ -104,22 +105,24 @@ void ModelPenaltyStop(Model model, const PetscReal factor[])
 }
 
 /* The derivative of the free residual to ln s at the trial state. The residual is linear in s where what slips goes on
-   slipping. Friction that could choose would stick under twice the pressures. */
+   slipping, up to the bound of the penalties of faces. The loads are compared over the same step. */
 static PetscErrorCode ModelPenaltyForces(Model model, Vec forces)
 {
-  const Problem problem = model->problem;
-  Vec           single;
-  PetscBool     ok;
+  const Problem   problem = model->problem;
+  const PetscReal scale   = 1 / (1 - PENALTY_STEP);
+  Vec             single;
+  PetscBool       ok;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(forces, &single));
-  PetscCall(ContactScalePenalty(model->contact, 2));
+  PetscCall(ContactScalePenalty(model->contact, scale));
   PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
   PetscCall(ProblemCollectResidual(problem, model->x, forces));
   PetscCall(ContactScalePenalty(model->contact, 1));
   PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
   PetscCall(ProblemCollectResidual(problem, model->x, single));
   PetscCall(VecAXPY(forces, -1, single));
+  PetscCall(VecScale(forces, 1 / (scale - 1)));
   PetscCall(VecDestroy(&single));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
