@@ -54,7 +54,7 @@ ends("flies", flies, 2, "'upper': translation along y")
 # Plain Newton steps on facets repeat themselves where their contact is not settled, as with GMRES; with a factor, or
 # with the line search, they do not.
 COARSE = ("mesh.order=1", "mesh.parameters={n_arc: 12, n_wall: 1, n_len: 4}", "contact.0.symmetry=[]",
-          "stepping.initial=0.5", "probes=[]")
+          "stepping.initial=0.2", "probes=[]", "contact.0.penalty.scale=3000")
 plain = run(args, pipe, "-snes_linesearch_type", "basic", "-ksp_type", "gmres", out="plain", overrides=COARSE)
 cycles = plain.summary()["cycles"]
 check.holds("cycles: found", cycles["found"] >= 1, str(cycles["found"]))
