@@ -33,7 +33,13 @@ def row_at(steps, t):
     return {key: values[at] for key, values in steps.items()}
 
 
+def kogut_etsion(way):
+    """P/P_c of a ball on a plane at an approach of way times w_c."""
+    return 1.03 * way**1.425 if way <= 6 else 1.40 * way**1.263
+
+
 def jackson_green(w):
+    """P of a ball on a plane at an approach w."""
     c = 1.295 * math.exp(0.736 * NU)
     w_c, p_c = (math.pi * c * Y / (2 * MODULUS))**2, 4 / 3 / MODULUS**2 * (c / 2 * math.pi * Y)**3
     s = w / w_c
@@ -46,7 +52,7 @@ def jackson_green(w):
 
 def ball(steps):
     for way in (2, 6, 10, 50):
-        fit, row = 1.03 * way**1.425 if way <= 6 else 1.40 * way**1.263, row_at(steps, way / 110)
+        fit, row = kogut_etsion(way), row_at(steps, way / 110)
         yield way / 110, f"P/P_c at {way} w_c", row["force"] / P_C, fit, "Kogut and Etsion 2002"
         yield (way / 110, f"P/P_c at {way} w_c", row["force"] / P_C, jackson_green(way * W_C) / P_C,
                "Jackson and Green 2005")

@@ -36,7 +36,7 @@ static PetscReal EdgeFactor(const ContactPair *pair, NeighbourLists lists, Petsc
                   width = PetscMin(size, lists->facet_size[lists->facet_ptr[q] + pair->work->result.seed]),
                   past = pair->work->result.beyond / width, depth = PetscMax(0, -pair->work->result.gap) / size;
 
-  return (1 - SmoothStep(past)) * (1 - SmoothStep(2 * past) * SmoothStep(depth / CONTACT_EDGE_DEPTH));
+  return (1 - SmoothStep(past)) * (1 - SmoothStep(2 * past) * SmoothStep(depth / NEIGHBOUR_LISTS_DEEP));
 }
 
 /* Area factors of the slave points for these lists: less than 1 past a free edge, and where the normals do not oppose

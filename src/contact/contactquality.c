@@ -155,7 +155,7 @@ static PetscErrorCode CountHanging(const ContactPair *pair, PetscMPIInt rank, Pe
 
     if (!SlavePointIsOwn(pair->slaves, q, rank) || lists->share[q] == 0) continue;
     PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, lists->nearest[q], SMOOTHER_GAP, &found));
-    if (found && result->beyond > 0 && -result->gap > CONTACT_EDGE_DEPTH / 2 * pair->slaves->size[q]) (*hanging)++;
+    if (found && result->beyond > 0 && -result->gap > NEIGHBOUR_LISTS_DEEP / 2 * pair->slaves->size[q]) (*hanging)++;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,10 +6,6 @@
 /* A facet is below the plane of its neighbour if its centre is, by this part of the slave's face size. */
 #define FLANK_BELOW 1e-6
 
-/* Depth behind the plane of a facet, in faces of the slave, at which a point past the end of that facet no longer
-   counts as behind it. Penetrations are much smaller, and another side of the master is nearer then. */
-#define FLANK_DEPTH 0.25
-
 /* Nodes of a slave's face count as farthest past an edge within this part of its size, and a slave that reaches so far
    past the end of its master ends there: bodies of one length deform by less. */
 #define FLANK_FARTHEST 0.1
@@ -266,9 +262,9 @@ static PetscReal SlaveTurns(const Nearest *look, const PetscReal normal[3])
 }
 
 /* Part of a slave point's area that takes part at an end of facet c, fading over a width (length), half of it on either
-   side of the edge. Past the edge, a point that is deeper than FLANK_DEPTH is in front of another side of the master,
-   not behind this one. turns: 1 where the slave turns with the master, so that its next face meets the side beyond the
-   edge, and nothing of this one's area is left out inside. */
+   side of the edge. Past the edge, a point that is deeper than NEIGHBOUR_LISTS_DEEP is in front of another side of the
+   master, not behind this one. turns: 1 where the slave turns with the master, so that its next face meets the side
+   beyond the edge, and nothing of this one's area is left out inside. */
 static PetscReal EndShare(const Nearest *look, const Candidate *c, const FlankEdge *edge, PetscReal width,
                           PetscReal turns)
 {
@@ -280,7 +276,7 @@ static PetscReal EndShare(const Nearest *look, const Candidate *c, const FlankEd
   place = past / width + 0.5;
   place += turns * (PetscMax(0, 2 * place - 1) - place);
   return (1 - SmoothStep(place)) *
-         (1 - SmoothStep(2 * place) * SmoothStep(DepthAtEdge(look, c, edge) / (FLANK_DEPTH * look->size)));
+         (1 - SmoothStep(2 * place) * SmoothStep(DepthAtEdge(look, c, edge) / (NEIGHBOUR_LISTS_DEEP * look->size)));
 }
 
 /* The same where the flank ends at a convex edge, beyond which there is a facet that the point does not face. The width
@@ -396,11 +392,11 @@ static PetscReal DeepShare(const Nearest *look, int facing, int n, const int *fo
   const PetscReal depth = look->foot.gap < 0 ? look->distance : 0;
   PetscReal       side  = depth;
 
-  if (depth <= FLANK_DEPTH * look->size) return 1;
+  if (depth <= NEIGHBOUR_LISTS_DEEP * look->size) return 1;
   for (int k = facing; k < n; k++)
     if (NeighbourListsSquare(look->lists, look->q, look->candidates[found[k]].normal))
       side = PetscMin(side, CandidateDistance(look, &look->candidates[found[k]]));
-  return 1 - SmoothStep(depth / (FLANK_DEPTH * look->size) - 1) * (1 - SmoothStep(2 * side / depth - 1));
+  return 1 - SmoothStep(depth / (NEIGHBOUR_LISTS_DEEP * look->size) - 1) * (1 - SmoothStep(2 * side / depth - 1));
 }
 
 /*@

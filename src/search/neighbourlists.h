@@ -17,6 +17,11 @@ typedef struct _n_ContactSearch *ContactSearch; /* in search.h */
    lists stand still. */
 #define NEIGHBOUR_LISTS_MARGIN 0.3
 
+/* Depth behind the master, in faces of the slave, at which a point past the end of the facets that it faces no longer
+   counts as behind them. Penetrations are much smaller. Deeper points hang over a free edge, or are in front of another
+   side of the master, which is nearer then. */
+#define NEIGHBOUR_LISTS_DEEP 0.25
+
 /* The rung of the ladder of fall-backs on which a slave point's fit was found: fits of decreasing quality, then the
    facets. */
 enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_DEGREE_2 = 6, RUNG_LINEAR = 7, RUNGS = 8 };

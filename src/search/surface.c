@@ -365,8 +365,8 @@ PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, int n_images, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The way out of a face across one of its edges, in the plane of the face: as long as the edge, in 2D of length 1. X:
-   coordinates of the face's nodes. */
+/* The way out of a face across one of its edges, in the plane of the face, of length 1. X: coordinates of the face's
+   nodes. */
 static void FaceOutward(const Facet *face, int edge, int dim, const double *X, PetscReal out[3])
 {
   const int corners  = ElementGet(face->type)->corners;
@@ -385,7 +385,7 @@ static void FaceOutward(const Facet *face, int edge, int dim, const double *X, P
   }
   for (int d = 0; d < dim && square > 0; d++) out[d] -= part / square * along[d];
   for (int d = 0; d < dim; d++) length += PetscSqr(out[d]);
-  for (int d = 0; d < dim && length > 0; d++) out[d] *= PetscSqrtReal((dim == 3 ? square : 1) / length);
+  for (int d = 0; d < dim && length > 0; d++) out[d] /= PetscSqrtReal(length);
 }
 
 /*@
@@ -414,14 +414,12 @@ PetscErrorCode SurfaceNodeEnds(ContactSurface surface, const PetscReal *u, Petsc
     const Element *of   = ElementGet(face->type);
 
     for (int e = 0; face->free_edges && e < FaceEdges(face); e++) {
-      PetscReal out[3], length = 0;
+      PetscReal out[3];
       int       ends[2];
 
       if (!(face->free_edges >> e & 1)) continue;
       FaceCoordinates(surface, face, u, X);
       FaceOutward(face, e, dim, X, out);
-      for (int d = 0; d < dim; d++) length += PetscSqr(out[d]);
-      for (int d = 0; d < dim && length > 0; d++) out[d] /= PetscSqrtReal(length);
       for (int d = 0; d < dim; d++) {
         for (int k = 0; k < FaceEdgeNodes(face, e, ends); k++) end[face->nodes[ends[k]] * dim + d] += out[d];
         if (of->dim == 2 && of->order == 2) end[face->nodes[of->corners + e] * dim + d] += out[d];

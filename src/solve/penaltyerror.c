@@ -31,6 +31,9 @@
    own error hardly counts in the model. */
 #define PENALTY_LIGHT_PAIR 1e-3
 
+/* No estimate */
+static const PenaltyError unknown = {.force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN};
+
 /* Makes room for the estimates; none is known yet. */
 PetscErrorCode ModelCreatePenaltyError(Model model)
 {
@@ -47,7 +50,7 @@ void ModelForgetPenaltyError(Model model)
 {
   for (int p = 0; p < ContactPairs(model->contact); p++) {
     model->work->stiffened_at[p] = model->work->stiffened_by[p] = 0;
-    model->work->penalty_error[p] = (PenaltyError){.force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN};
+    model->work->penalty_error[p]                               = unknown;
   }
 }
 
@@ -250,9 +253,8 @@ static void JudgeStiffening(Model model, int pair)
 /* Estimates the errors at the trial state, in which the step has converged. The state stays as it is. */
 PetscErrorCode ModelEstimatePenalty(Model model)
 {
-  const PenaltyError unknown = {.force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN};
-  PetscBool          known   = PETSC_FALSE;
-  Vec                slope;
+  PetscBool known = PETSC_FALSE;
+  Vec       slope;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &slope));

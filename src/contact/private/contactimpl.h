@@ -23,10 +23,6 @@
 #include "search/search.h"
 #include "smooth/smoother.h"
 
-/* Depth behind the master, in faces of the slave, at which a point past a free edge no longer counts as behind it, as
-   at the end of a flank. Penetrations are much smaller, and a slave that hangs over the edge goes deeper. */
-#define CONTACT_EDGE_DEPTH 0.25
-
 /* What the scene's formulation means for a pair. ContactPairCreate() fills it, and nobody asks the question in another
  * way. */
 typedef struct {
