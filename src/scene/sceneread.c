@@ -202,3 +202,75 @@ const SceneBody *SceneFindBody(Scene scene, const char *name, int rigid)
   }
   return NULL;
 }
+
+/*@
+  SceneReadFactors - reads a list of breakpoints and factors.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+. path  - path of a part of the scene
+- key   - key of the list below it
+
+  Output Parameter:
+. history - the list, to be freed with PetscFree2(); n is 0 where the scene has none
+@*/
+PetscErrorCode SceneReadFactors(Scene scene, const char *path, const char *key, History *history)
+{
+  Node list = SceneNode(scene, path, key);
+
+  PetscFunctionBeginUser;
+  history->n = list ? list->n : 0;
+  if (!list) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(history->n, &history->t, history->n, &history->v));
+  for (int i = 0; i < list->n; i++) {
+    (void)NodeReal(list->child[i]->child[0], &history->t[i]);
+    (void)NodeReal(list->child[i]->child[1], &history->v[i]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SceneReadHistory - reads the history below a path.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+- path  - path of a part of the scene
+
+  Output Parameter:
+. history - the breakpoints and factors, to be freed with PetscFree2(); where the scene has none, the factor is the load
+            parameter itself
+@*/
+PetscErrorCode SceneReadHistory(Scene scene, const char *path, History *history)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SceneReadFactors(scene, path, "history", history));
+  if (history->n) PetscFunctionReturn(PETSC_SUCCESS);
+  history->n = 2;
+  PetscCall(PetscCalloc2(history->n, &history->t, history->n, &history->v));
+  history->t[1] = history->v[1] = 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SceneRefuseRigid - refuses a surface that belongs to a rigid tool.
+
+  Not collective
+
+  Input Parameters:
++ scene   - the scene
+. path    - path of a part of the scene
+. key     - key below it that names the surface
+- surface - name of the surface, may be NULL
+@*/
+PetscErrorCode SceneRefuseRigid(Scene scene, const char *path, const char *key, const char *surface)
+{
+  PetscFunctionBeginUser;
+  if (surface && SceneFindBody(scene, surface, 1))
+    PetscCall(SceneRefuse(
+      scene, path, key, "is a rigid tool, moved by its own motion; allowed: a surface of a deformable body", surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,97 @@
+/* What others ask of a scene that has been read, see scene.h. */
+#include "scene/scene.h"
+
+/*@
+  SceneIsPlastic - tells whether some body has a plastic law.
+
+  Not collective
+
+  Input Parameter:
+. scene - the scene
+@*/
+PetscBool SceneIsPlastic(Scene scene)
+{
+  for (int b = 0; b < scene->n_bodies; b++)
+    if (!scene->bodies[b].rigid && MaterialGetLaw(scene->bodies[b].material.law)->plastic) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/*@
+  SceneHasRoutine - tells whether the law of some body is a routine of the user, which has no potential.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. scene - the scene
+@*/
+PetscBool SceneHasRoutine(Scene scene)
+{
+  for (int b = 0; b < scene->n_bodies; b++)
+    if (scene->bodies[b].material.umat) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+static PetscBool MotionBreaks(const Motion *motion, PetscReal t)
+{
+  for (int m = 0; m < motion->n; m++)
+    if (HistoryBreaks(&motion->components[m].history, t)) return PETSC_TRUE;
+  return HistoryBreaks(&motion->history, t) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/*@
+  SceneBreaks - tells whether some load, imposed displacement or motion has a breakpoint at load parameter t.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+- t     - load parameter
+
+  Note:
+  At a breakpoint the rate of the load may change. The solution before it therefore predicts nothing about the solution
+  after it.
+@*/
+PetscBool SceneBreaks(Scene scene, PetscReal t)
+{
+  for (int l = 0; l < scene->n_loads; l++)
+    if (HistoryBreaks(&scene->loads[l].history, t)) return PETSC_TRUE;
+  for (int b = 0; b < scene->n_bodies; b++)
+    if (MotionBreaks(&scene->bodies[b].motion, t)) return PETSC_TRUE;
+  for (int c = 0; c < scene->n_contacts; c++)
+    if (MotionBreaks(&scene->contacts[c].motion, t)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/*@
+  SceneLoadVaries - tells whether a component of a load is an expression with t, to which no history applies.
+
+  Not collective
+
+  Input Parameters:
++ load      - the load
+- component - 0 to 2; 0 for a pressure
+@*/
+PetscBool SceneLoadVaries(const SceneLoad *load, int component)
+{
+  return ExpressionUses(load->expression[component], EXPRESSION_T);
+}
+
+/*@
+  SceneLoadValue - returns a component of a load at a place, without the factor of its history.
+
+  Not collective
+
+  Input Parameters:
++ load      - the load
+. component - 0 to 2; 0 for a pressure
+. X         - reference coordinates of the place (length); the third is 0 in the plane
+- t         - load parameter
+
+  Note:
+  Where SceneLoadVaries(), this is the whole value at t. Otherwise it does not depend on t. It is not finite where an
+  expression has no value.
+@*/
+PetscReal SceneLoadValue(const SceneLoad *load, int component, const PetscReal X[3], PetscReal t)
+{
+  return load->expression[component] ? ExpressionValue(load->expression[component], X, t) : load->value[component];
+}
