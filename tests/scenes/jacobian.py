@@ -7,9 +7,10 @@ from harness import Check, arguments, run, SCENES
 BOUND = 1e-6
 RUNS = SCENES.parent.parent / "runs"
 COARSE_PIPE = [
-    "mesh.parameters.n_arc=5", "mesh.parameters.n_len=2", "loads.0.uy=-10", "stepping={control: fixed, initial: 0.25}",
+    "mesh.parameters.n_arc=5", "mesh.parameters.n_len=1", "loads.0.uy=-10", "stepping={control: fixed, initial: 0.25}",
     "probes=[]"
 ]
+TURNING = ["mesh.parameters.n_x=3", "probes=[]", "stepping.initial=0.1"]
 FOLLOWER = [
     "kinematics=finite", "bodies.0.material.law=neo_hookean", "loads.0.pressure=200", "loads.0.follower=true",
     "stepping={control: fixed, initial: 0.5}", "mesh.parameters.n_arc=3", "mesh.parameters.n_wall=2"
@@ -21,7 +22,8 @@ CASES = {
      ["kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk", "stepping.initial=1"]),
     "flat blocks, second order": (SCENES / "contact_patch.yaml", [
         "kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk", "stepping.initial=1",
-        "mesh.order=2"
+        "mesh.order=2",
+        "mesh.parameters={solid: 1, n_lower: 2, n_upper: 3, n_height: 1, n_depth_lower: 1, n_depth_upper: 2}"
     ]),
     "coarse pinched pipe": (RUNS / "pipe_pinch.yaml", COARSE_PIPE),
     "meshed rigid cylinder": (RUNS / "slide_cylinder.yaml", ["stepping.initial=0.1"]),
@@ -36,8 +38,7 @@ CASES = {
 for degree in (4, 2):
     diffuse = ["contact.0.smoother=diffuse", f"contact.0.degree={degree}"]
     CASES[f"coarse pinched pipe, degree {degree}"] = (RUNS / "pipe_pinch.yaml", COARSE_PIPE + diffuse)
-    CASES[f"turning rigid cylinder, degree {degree}"] = (RUNS / "slide_facets.yaml",
-                                                         ["mesh.parameters.n_x=4", "stepping.initial=0.1"] + diffuse)
+    CASES[f"turning rigid cylinder, degree {degree}"] = (RUNS / "slide_facets.yaml", TURNING + diffuse)
     CASES[f"line contact, degree {degree}"] = (RUNS / "hertz_line.yaml",
                                                ["mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.25"] +
                                                diffuse)
@@ -60,8 +61,7 @@ CASES["line contact, surface to surface, multipliers"] = (RUNS / "hertz_line.yam
 ] + DIFFUSE)
 CASES["coarse pinched pipe, surface to surface"] = (RUNS / "pipe_pinch.yaml",
                                                     COARSE_PIPE + ["loads.0.uy=-2", "stepping.initial=0.5"] + DIFFUSE)
-CASES["turning rigid cylinder, surface to surface"] = (RUNS / "slide_facets.yaml",
-                                                       ["mesh.parameters.n_x=4", "stepping.initial=0.1"] + DIFFUSE)
+CASES["turning rigid cylinder, surface to surface"] = (RUNS / "slide_facets.yaml", TURNING + DIFFUSE)
 
 LIVE = DIFFUSE + ["contact.0.offset=live"]
 CASES["rings, live offsets, order 1"] = (RUNS / "ring_in_ring.yaml",
@@ -80,10 +80,9 @@ SLIPPING = ["contact.0.friction.mu=0.2"]
 STICKING = ["contact.0.friction.mu=2"]
 for name, own in (("sticks", STICKING), ("slips", SLIPPING)):
     CASES[f"turning rigid cylinder, surface to surface, {name}"] = (
-        RUNS / "slide_facets.yaml", ["mesh.parameters.n_x=4", "stepping.initial=0.1"] + DIFFUSE + own)
+        RUNS / "slide_facets.yaml", TURNING + DIFFUSE + own)
     CASES[f"turning rigid cylinder, facets, surface to surface, {name}"] = (
-        RUNS / "slide_facets.yaml",
-        ["mesh.parameters.n_x=4", "stepping.initial=0.1", "contact.0.smoother=facet"] + SURFACE + own)
+        RUNS / "slide_facets.yaml", TURNING + ["contact.0.smoother=facet"] + SURFACE + own)
     CASES[f"coarse pinched pipe, surface to surface, {name}"] = (
         RUNS / "pipe_pinch.yaml", COARSE_PIPE + ["loads.0.uy=-2", "stepping.initial=0.5"] + DIFFUSE + own)
 CASES["coarse pinched pipe, live offsets, slips"] = (
@@ -108,7 +107,7 @@ CASES["follower pressure, springs"] = (SCENES / "lame.yaml",
 
 # The fluid pushes the squeezed ring against the outer wall, and comes up to its contact with floor and lid.
 CASES["rubber ring, fluid up to the contact"] = (RUNS / "o_ring_pressure.yaml", [
-    "mesh.parameters.n=4", "loads.0.pressure=1", "stepping={control: fixed, initial: 0.5}",
+    "mesh.parameters.n=3", "loads.0.pressure=1", "stepping={control: fixed, initial: 0.5}",
     "contact.0.penalty.scale=1", "contact.1.penalty.scale=1"
 ])
 TOOL = ["mesh.parameters={lx: 10, ly: 5, nx: 6, ny: 3, skew: 0}", "stepping.initial=1"]
