@@ -266,8 +266,8 @@ static PetscInt MissingFriction(ActiveSet p, PetscInt *which)
   return p->m + m <= p->most ? m : 0;
 }
 
-/* Solves a x = b for dense columns a[m*m] and b[m], both overwritten; x is left in b. *regular is PETSC_TRUE if the matrix
-   is not singular. */
+/* Solves a x = b for dense columns a[m*m] and b[m], both overwritten; x is left in b. *regular is PETSC_TRUE if the
+   matrix is not singular. */
 static PetscErrorCode DenseSolve(PetscInt m, PetscReal *a, PetscReal *b, PetscBool *regular)
 {
   PetscErrorCode code;
@@ -304,8 +304,8 @@ static PetscReal Influence(const ActiveSet p, PetscInt j, const PetscReal by[ACT
 }
 
 /* The change of the excess e of all columns by one iteration of Newton's method for e = excess(travel - G e). *regular
-   is PETSC_TRUE if its matrix is not singular. Columns whose excess does not depend on travels have it at once, and only
-   the others are unknowns. */
+   is PETSC_TRUE if its matrix is not singular. Columns whose excess does not depend on travels have it at once, and
+   only the others are unknowns. */
 static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
 {
   PetscInt  *unknown, k = 0;
