@@ -266,49 +266,76 @@ static PetscInt MissingFriction(ActiveSet p, PetscInt *which)
   return p->m + m <= p->most ? m : 0;
 }
 
-/* The change of the excess e of all columns by one iteration of Newton's method for e = excess(travel - G e). *regular
-   is PETSC_TRUE if its matrix is not singular. */
-static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
+/* Solves a x = b for dense columns a[m*m] and b[m], both overwritten; x is left in b. *regular is PETSC_TRUE if the
+   matrix is not singular. */
+static PetscErrorCode DenseSolve(PetscInt m, PetscReal *a, PetscReal *b, PetscBool *regular)
 {
-  const PetscInt m = p->m, all = p->parts * p->n;
-  PetscScalar   *a, *b;
   PetscErrorCode code;
   Mat            matrix;
-  Vec            right, e;
+  Vec            right, x;
 
   PetscFunctionBeginUser;
-  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, m, m, NULL, &matrix));
-  PetscCall(MatCreateVecs(matrix, &e, &right));
-  PetscCall(MatDenseGetArray(matrix, &a));
-  PetscCall(VecGetArray(right, &b));
-  for (PetscInt j = 0; j < m; j++) {
-    PetscReal by[ACTIVE_SET_PARTS];
-
-    b[j] = ComponentExcess(p, p->term[j], by) - p->excess[j];
-    for (PetscInt l = 0; l < m; l++) {
-      a[l * m + j] = l == j;
-      for (PetscInt part = 0; part < p->parts; part++)
-        a[l * m + j] += by[part] * p->G[l * all + part * p->n + p->term[j] % p->n];
-    }
-  }
-  PetscCall(VecRestoreArray(right, &b));
-  PetscCall(MatDenseRestoreArray(matrix, &a));
+  *regular = PETSC_TRUE;
+  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, m, m, a, &matrix));
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, m, b, &right));
+  PetscCall(VecDuplicate(right, &x));
   PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL)); /* to PETSc a pivot of exactly zero is an error */
   code = MatLUFactor(matrix, NULL, NULL, NULL);
   PetscCall(PetscPopErrorHandler());
   *regular = code ? PETSC_FALSE : PETSC_TRUE;
-  if (*regular) {
-    PetscCall(MatSolve(matrix, right, e));
-    PetscCall(VecGetArray(e, &b));
-    for (PetscInt j = 0; j < m; j++) {
-      p->change[j] = PetscRealPart(b[j]);
-      if (PetscIsInfOrNanReal(p->change[j])) *regular = PETSC_FALSE;
-    }
-    PetscCall(VecRestoreArray(e, &b));
-  }
-  PetscCall(MatDestroy(&matrix));
+  if (*regular) PetscCall(MatSolve(matrix, right, x));
+  if (*regular) PetscCall(VecCopy(x, right));
+  PetscCall(VecDestroy(&x));
   PetscCall(VecDestroy(&right));
-  PetscCall(VecDestroy(&e));
+  PetscCall(MatDestroy(&matrix));
+  for (PetscInt j = 0; j < m && *regular; j++) *regular = (PetscBool)!PetscIsInfOrNanReal(b[j]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By how much the derivatives of a column's excess change it under 1 on column l. */
+static PetscReal Influence(const ActiveSet p, PetscInt j, const PetscReal by[ACTIVE_SET_PARTS], PetscInt l)
+{
+  PetscReal influence = 0;
+
+  for (PetscInt part = 0; part < p->parts; part++)
+    influence += by[part] * p->G[l * p->parts * p->n + part * p->n + p->term[j] % p->n];
+  return influence;
+}
+
+/* The change of the excess e of all columns by one iteration of Newton's method for e = excess(travel - G e). *regular
+   is PETSC_TRUE if its matrix is not singular. Columns whose excess does not depend on travels have it at once, and
+   only the others are unknowns. */
+static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
+{
+  PetscInt  *unknown, k = 0;
+  PetscReal *a, *b, *by;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(p->m, &unknown));
+  PetscCall(PetscMalloc1(ACTIVE_SET_PARTS * p->m, &by));
+  for (PetscInt j = 0; j < p->m; j++) {
+    PetscReal *d    = &by[ACTIVE_SET_PARTS * k];
+    PetscBool  free = PETSC_FALSE;
+
+    p->change[j] = ComponentExcess(p, p->term[j], d) - p->excess[j];
+    for (int part = 0; part < ACTIVE_SET_PARTS; part++) free = (PetscBool)(free || d[part] != 0);
+    if (free) unknown[k++] = j;
+  }
+  PetscCall(PetscMalloc2(k * k, &a, k, &b));
+  for (PetscInt i = 0; i < k; i++) b[i] = p->change[unknown[i]];
+  for (PetscInt i = 0; i < k; i++) p->change[unknown[i]] = 0;
+  for (PetscInt i = 0; i < k; i++) {
+    for (PetscInt l = 0; l < k; l++)
+      a[l * k + i] = (l == i) + Influence(p, unknown[i], &by[ACTIVE_SET_PARTS * i], unknown[l]);
+    for (PetscInt l = 0; l < p->m; l++)
+      if (p->change[l] != 0) b[i] -= p->change[l] * Influence(p, unknown[i], &by[ACTIVE_SET_PARTS * i], l);
+  }
+  PetscCall(DenseSolve(k, a, b, regular));
+  for (PetscInt i = 0; i < k; i++) p->change[unknown[i]] = b[i];
+  PetscCall(PetscFree2(a, b));
+  PetscCall(PetscFree(by));
+  PetscCall(PetscFree(unknown));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

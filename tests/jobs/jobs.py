@@ -167,4 +167,19 @@ JOBS = [
     Job("plug_orifice", "plug pushed into an orifice", [
         Answer("radial", 90.89, 0.2, "limit"),
     ], steps=14, picture=["--mirror", "x"]),
+    # Steel that yields
+    Job("autofrettage", "hollow ball yields under pressure and is released", [
+        Answer("grown", 0.00220375, 0.001, "Hill"),
+    ], steps=10, pairs=0, picture=["--mirror", "x"]),
+    Job("ball_dent", "ball pressed into steel by force and lifted", [
+        Answer("dent", -0.1560, 0.6, "limit"),
+    ], steps=15, picture=["--mirror", "x"]),
+    Job("ferrule", "ferrule crimped onto a rod and released", [
+        Answer("crimp", -0.25909, 0.02, "limit"),
+        Answer("pressure", 34.376, 0.3, "limit"),
+    ], steps=12, picture=["--mirror", "x"]),
+    Job("vee_bracket", "strip in a vee die, punch comes and leaves", [
+        Answer("end_x", -4.904, 0.21, "limit"),
+        Answer("end_y", 3.6454, 0.15, "limit"),
+    ], steps=30, pairs=2, picture=["--mirror", "x"]),
 ]
