@@ -64,9 +64,10 @@ for fault, text in ((1, "crashed (signal"), (2, "not finite")):
     finished = scene(f"fault_{fault}", routine, "finite", "stepping.dt_min=0.05", must=2)
     check.holds(f"fault {fault} is told", text in finished.text and "in element" in finished.text,
                 [line for line in finished.text.splitlines() if "umat" in line][:1])
-    blamed = "a routine of the user's" in finished.text and "point 1: the routine umat gave" in finished.text
+    blamed = "a routine of the user's (law: umat) failed; the routine umat gave a number" in finished.text
     check.holds(f"fault {fault}: the routine is blamed, no element", blamed == (fault == 2)
                 and "inside out" not in finished.text)
+
 
 def damaged(steps, slope, length):
     """Force of a bar of unit section: E grows by `slope` from y = 0 to 1, with nu = 0; else nu is NU."""
