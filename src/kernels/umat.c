@@ -417,10 +417,11 @@ static void Store(const Umat *umat, const UmatData *x, int stride, double *next)
 - next - the state at H, or NULL; it may be the same array as state
 
   Note:
-  P and A are 0 where it does not return UMAT_FINE. The routine is not called where nothing has changed and no tangent is asked for.
+  P and A are 0 where it does not return UMAT_FINE. The routine is not called where nothing has changed and no tangent
+  is asked for.
 @*/
-UmatFault UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const double *state, int stride, double *W,
-                    double P[9], double A[], double skew[], double *next)
+UmatFault UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const double *state, int stride,
+                    double *W, double P[9], double A[], double skew[], double *next)
 {
   UmatData  x;
   UmatFault fault = UMAT_FINE;

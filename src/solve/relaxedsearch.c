@@ -329,7 +329,7 @@ static PetscErrorCode SearchClosely(const Search *s, PetscReal slope, PetscBool 
 /* Does the energy rise over steps since stiffness jumps on the way? So it does where bodies yield: a point that unloads
    is stiffer by orders of magnitude than the tangent says. The energy then rises from the middle of the step on, and
    the steps after it do not make up for that. */
-static PetscBool JumpsRise(const Search *s)
+static PetscBool SearchJumps(const Search *s)
 {
   return (PetscBool)(ProblemConservative(s->model->problem) && ProblemIsPlastic(s->model->problem));
 }
@@ -352,7 +352,8 @@ static PetscBool JumpsRise(const Search *s)
   and the bound follows whether the last ones have paid.
 
   Where residuals are compared, at iterates close to equilibrium, where the contact set repeats itself, and where bodies
-  yield, steps are shortened as before. Without an energy work is compared there first, which has no round-off of large energies.
+  yield, steps are shortened as before. Without an energy work is compared there first, which has no round-off of large
+  energies.
 
   Source: Chamberlain, Powell, Lemarechal and Pedersen, The watchdog technique for forcing convergence in algorithms for
   constrained optimization, Math. Programming Study 16 (1982) 1-17.
@@ -372,7 +373,8 @@ PetscErrorCode ModelSearchRelaxed(SNESLineSearch search, void *context)
   work->relaxed.linear = PETSC_FALSE;
   if (lambda < 1) work->relaxed.waits = PETSC_FALSE;
   PetscCall(VecDotRealPart(s.F, s.y, &slope));
-  if (!work->relaxed.waits && (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL || JumpsRise(&s))) {
+  if (!work->relaxed.waits &&
+      (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL || SearchJumps(&s))) {
     if (lambda == 1) PetscCall(SearchClosely(&s, slope, &taken));
     if (!taken) PetscCall(Backtrack(&s));
     PetscFunctionReturn(PETSC_SUCCESS);
