@@ -1,18 +1,22 @@
 """Metal forming: runs the scenes of forming that are in tests/scenes and runs, leaves steps, iterations and the forces,
 places and angles that have a reference in a record, and prints the table; --print tables an existing record, --case
-runs one case and keeps the others of the record.
+runs one case and keeps the others of the record, --variant only those of its variants whose name the pattern is in.
     python scripts/forming_table.py [--burnish BINARY] [--record FILE] [--case "curved beams"]"""
 import math
+import re
 import shutil
 import subprocess
 
 import numpy
 
-from launch import ROOT, command, environment, read_records, read_steps, read_summary, replace_records, table_parser
+from launch import (ROOT, command, environment, read_records, read_steps, read_summary, replace_records,
+                    table_parser)
 
 SCENES = ROOT / "tests/scenes"
-COLUMNS = ("case", "variant", "t", "quantity", "value", "reference", "source", "status", "steps", "failed", "iterations")
+COLUMNS = ("case", "variant", "t", "quantity", "value", "reference", "source", "status", "steps", "failed",
+           "iterations")
 E, NU, Y = 200e3, 0.3, 200  # of the ball
+BALL_LIMIT = {2: 2.774, 6: 12.79, 10: 25.23, 50: 196.3}  # P/P_c over w/w_c on the finest mesh below
 K, MODULUS = 0.454 + 0.41 * NU, E / (1 - NU**2)
 W_C = (math.pi * K * 2.8 * Y / (2 * MODULUS))**2
 P_C = 2 / 3 * K * 2.8 * Y * math.pi * W_C
@@ -57,6 +61,12 @@ def ball(steps):
         yield (way / 110, f"P/P_c at {way} w_c", row["force"] / P_C, jackson_green(way * W_C) / P_C,
                "Jackson and Green 2005")
         yield way / 110, f"nodes in contact at {way} w_c", row["contact_nodes"], None, ""
+
+
+def plate(steps):
+    for way, limit in BALL_LIMIT.items():
+        row = row_at(steps, way / 110)
+        yield way / 110, f"P/P_c at {way} w_c", row["force"] / P_C, limit, "own limit"
 
 
 def ring(steps):
@@ -128,12 +138,20 @@ def pipe(steps):
 
 
 CASES = [("ball on a plane", name, SCENES / "sphere_flat.yaml", [f"mesh.parameters={mesh}"], ball)
-         for name, mesh in (("h 3e-4", "{h: 3e-4, growth: 0.06}"), ("h 6e-4", "{h: 6e-4, growth: 0.12}"))]
+         for name, mesh in (("h 1.5e-4", "{h: 1.5e-4, growth: 0.03}"), ("h 3e-4", "{h: 3e-4, growth: 0.06}"),
+                            ("h 6e-4", "{h: 6e-4, growth: 0.12}"))]
+PLATE = ["supports=[{surface: plate_base, ux: 0, uy: 0}]",
+         "bodies.1={volume: plate, material: {law: svk, E: 200e6, nu: 0.3}}"]
+CASES += [("ball on a plate", f"{smoother}, order {order}, h {h}", SCENES / "sphere_flat.yaml",
+           [f"mesh.order={order}", f"mesh.parameters={{h: {h}, growth: {200 * float(h):g}, plate: 0.05}}", *PLATE,
+            f"contact.0={{name: flat, slave: plate_top, master: skin, smoother: {smoother}}}"], plate)
+          for order in (1, 2) for smoother in ("facet", "diffuse") for h in ("2.4e-3", "1.2e-3", "6e-4", "3e-4")]
 CASES += [("ring between plates", name, SCENES / "ring_springback.yaml", ["stepping.at=[0.5]", *own], ring)
           for name, own in (("default steps", []), ("dt 0.02", ["stepping.dt_max=0.02"]),
                             ("full integration, dt 0.02", ["stepping.dt_max=0.02", "bodies.0.formulation=full"]))]
 CASES += [("vee die", name, SCENES / "vee_bend.yaml", own, vee)
-          for name, own in (("100 x 8, fbar", []), ("200 x 16, fbar", ["mesh.parameters.nx=200", "mesh.parameters.ny=16"]),
+          for name, own in (("100 x 8, fbar", []),
+                            ("200 x 16, fbar", ["mesh.parameters.nx=200", "mesh.parameters.ny=16"]),
                             ("100 x 8, second order", ["mesh.order=2"]))]
 CASES += [("upset billet", name, SCENES / "upset.yaml", own, billet)
           for name, own in (("default steps", []), *((f"plastic_strain {bound}", [f"stepping.plastic_strain={bound}"])
@@ -156,7 +174,8 @@ CASES += [("curved beams", f"{name}, mu {mu}", SCENES / "curved_beams.yaml", [f"
               ("smooth", []), ("facets", [FACET]), ("facets, node to surface", [FACET, NODES]),
               ("facets, sides swapped", [FACET, *SWAP]), ("smooth, second order, 32 x 2", grid(32, 2, 2)),
               ("smooth, second order", grid(64, 4, 2)),
-              ("smooth, second order, half the step", [*grid(64, 4, 2), *HALF]))]
+              ("smooth, second order, half the step", [*grid(64, 4, 2), *HALF]),
+              ("smooth, second order, 128 x 8, half the step", [*grid(128, 8, 2), *HALF]))]
 CASES += [("curved beams", f"smooth, {name}", SCENES / "curved_beams.yaml", own, beams)
           for name, own in (
               ("mu 0.3, node to surface", [NODES]), ("mu 0.3, half the step", HALF),
@@ -224,11 +243,15 @@ def print_table(records):
 def main():
     parser = table_parser(__doc__, "forming")
     parser.add_argument("--case", choices=sorted({case[0] for case in CASES}))
+    parser.add_argument("--variant", default="")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     for name in dict.fromkeys(case[0] for case in CASES):
         if not args.only_print and args.case in (None, name):
-            rows = [row for case in CASES if case[0] == name for row in solve(case, args)]
+            known = [row for row in read_records(args.record) if row["case"] == name] if args.variant else []
+            rows = [row for case in CASES if case[0] == name
+                    for row in (solve(case, args) if re.search(args.variant, case[1]) else
+                                [row for row in known if row["variant"] == case[1]])]
             replace_records(args.record, COLUMNS, name, rows)
     print_table(read_records(args.record))
 

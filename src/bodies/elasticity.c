@@ -72,6 +72,7 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
       *group = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes, .plastic = plastic};
       if (kernel.plastic) group->kernel.plastic = &group->plastic;
       for (int i = 0; i < e->dim; i++) group->plastic.origin[i] = mesh->centre[i];
+      if (plastic.umat) group->plastic.fault = group->fault;
     }
     e->cell_group[c]   = g;
     e->cell_slot[c]    = e->groups[g].n_cells++;
@@ -505,6 +506,7 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
   PetscCall(PetscLogEventBegin(event_residual, 0, 0, 0, 0));
   *ok         = PETSC_TRUE;
   e->inverted = -1;
+  e->fault    = 0;
   for (int k = 0; k < e->n_groups; k++) {
     CellGroup   *g    = &e->groups[k];
     const size_t dofs = (size_t)g->nodes * e->dim;
@@ -521,6 +523,7 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
         if (J[lane] > 0) continue;
         *ok         = PETSC_FALSE;
         e->inverted = g->cell[first + lane];
+        e->fault    = g->plastic.fault ? g->fault[lane] : 0;
       }
     }
   }
@@ -955,14 +958,19 @@ PetscReal ElasticityCellModulus(Elasticity e, PetscInt cell)
 }
 
 /*@
-  ElasticityInvertedCell - returns a local cell that the last ElasticityResidual() found with det F <= 0, or -1.
+  ElasticityInvertedCell - returns a local cell that the last ElasticityResidual() found with det F <= 0, or in which a
+  routine of the user failed, or -1.
 
   Not collective
 
   Input Parameter:
 . e - the elasticity
+
+  Output Parameter:
+. fault - of that routine, for UmatTell()
 @*/
-PetscInt ElasticityInvertedCell(Elasticity e)
+PetscInt ElasticityInvertedCell(Elasticity e, int *fault)
 {
+  *fault = e->fault;
   return e->inverted;
 }

@@ -52,4 +52,4 @@ PetscBool      ElasticityAugments(Elasticity);
 PetscErrorCode ElasticityFindEnclosed(Elasticity, Scene, const PetscBool *prescribed);
 PetscBool      ElasticityEnclosedChange(Elasticity);
 PetscReal      ElasticityCellModulus(Elasticity, PetscInt cell);
-PetscInt       ElasticityInvertedCell(Elasticity);
+PetscInt       ElasticityInvertedCell(Elasticity, int *fault);

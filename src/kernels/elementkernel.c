@@ -293,6 +293,7 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
     batch(&call);
     for (int lane = 0; lane < LANES; lane++) { /* as an element that is inverted: the step is taken back */
       if (fault[lane]) J[part + lane] = NAN;
+      if (kernel->plastic && kernel->plastic->fault) kernel->plastic->fault[part + lane] = fault[lane];
       fault[lane] = 0;
     }
   }

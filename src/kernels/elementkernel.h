@@ -40,6 +40,7 @@ typedef struct {
   int              number[KERNEL_LANES]; /* of the elements, for umat */
   double           length[KERNEL_LANES]; /* CellLength() of the elements, for umat */
   double           origin[3];            /* of the coordinates X, for umat */
+  int             *fault;                /* [lanes]: ElementKernel() writes UmatFaultAt() of each element; or NULL */
 } PlasticBatch;
 
 typedef struct {

@@ -326,21 +326,21 @@ static void CheckStates(const Umat *umat, const UmatPlace *place, const UmatData
   }
 }
 
-/* Returns whether the call failed, and tells it once for each time. */
-static int Fails(Umat *umat, const UmatPlace *place, const UmatData *x)
+/* Returns how the call ended, and tells a number that is not finite once for each time. */
+static UmatFault EndOfCall(Umat *umat, const UmatPlace *place, const UmatData *x)
 {
   double sum = 0;
 
   for (int c = 0; c < place->tensor; c++) sum += x->stress[c];
   for (int c = 0; c < place->tensor * place->tensor; c++) sum += x->tangent[c];
   for (int k = 0; k < umat->n_states; k++) sum += x->statev[k];
-  if (isfinite(sum)) return x->shorter < step_kept;
+  if (isfinite(sum)) return x->shorter < step_kept ? UMAT_SHORTER : UMAT_FINE;
   if (umat->told != place->t)
     fprintf(stderr,
             "burnish: %s: the routine umat gave a number that is not finite in element %d, point %d at t = %g\n",
             umat->path, place->element, place->point, place->t);
   umat->told = place->t;
-  return 1;
+  return UMAT_NOT_FINITE;
 }
 
 /* Component of DDSDDE */
@@ -417,15 +417,16 @@ static void Store(const Umat *umat, const UmatData *x, int stride, double *next)
 - next - the state at H, or NULL; it may be the same array as state
 
   Note:
-  It returns 0, or 1 where the routine fails or asks for a shorter step, or F has no positive determinant. P and A are 0
-  then. The routine is not called where nothing has changed and no tangent is asked for.
+  P and A are 0 where it does not return UMAT_FINE. The routine is not called where nothing has changed and no tangent
+  is asked for.
 @*/
-int UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const double *state, int stride, double *W,
-              double P[9], double A[], double skew[], double *next)
+UmatFault UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const double *state, int stride,
+                    double *W, double P[9], double A[], double skew[], double *next)
 {
-  UmatData x;
-  double   inverse[9], J, T[9];
-  int      same = place->dt <= 0 && !A;
+  UmatData  x;
+  UmatFault fault = UMAT_FINE;
+  double    inverse[9], J, T[9];
+  int       same = place->dt <= 0 && !A;
 
   Prepare(umat, place, H, state, stride, &x);
   for (int k = 0; k < 9; k++) same = same && H[k] == state[k * stride];
@@ -434,11 +435,11 @@ int UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const doubl
   if (A) memset(A, 0, MATERIAL_TANGENT_SIZE * sizeof *A);
   if (A) memset(skew, 0, UMAT_SKEW_SIZE * sizeof *skew);
   *W = 0;
-  if (!(J > 0)) return 1;
+  if (!(J > 0)) return UMAT_INVERTED;
   if (!same) {
     Call(umat, place, &x);
     CheckStates(umat, place, &x);
-    if (Fails(umat, place, &x)) return 1;
+    if ((fault = EndOfCall(umat, place, &x))) return fault;
   }
   for (int c = 0; c < 6; c++) {
     const double stress = c < place->tensor ? J * x.stress[c] : 0;
@@ -449,7 +450,40 @@ int UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const doubl
   Multiply(T, inverse, 1, P);
   if (A) PiolaTangent(place, &x, inverse, J, T, A, skew);
   if (next) Store(umat, &x, stride, next);
-  return 0;
+  return UMAT_FINE;
+}
+
+/*@
+  UmatFaultAt - joins a fault and the number of its point to one code, which is 0 without a fault.
+
+  Not collective
+@*/
+int UmatFaultAt(UmatFault fault, int point)
+{
+  return fault ? (int)fault + UMAT_FAULTS * point : 0;
+}
+
+/*@
+  UmatTell - puts a fault of a routine into words.
+
+  Not collective
+
+  Input Parameter:
+. code - from UmatFaultAt()
+
+  Output Parameter:
+. point - where it was
+
+  Note:
+  It returns NULL where the routine is not to blame: without a fault, or where the element was turned inside out.
+@*/
+const char *UmatTell(int code, int *point)
+{
+  static const char *const words[UMAT_FAULTS] = {[UMAT_NOT_FINITE] = "gave a number that is not finite",
+                                                 [UMAT_SHORTER]    = "asked for a shorter step (PNEWDT)"};
+
+  *point = code / UMAT_FAULTS;
+  return words[code % UMAT_FAULTS];
 }
 
 /* Without a routine, as for reports of the law: Hencky's law */

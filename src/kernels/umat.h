@@ -2,8 +2,8 @@
 
    UmatOpen() loads a library, UmatPoint() calls its routine for one point. A crash inside the routine ends the process
    with exit status 2 and a line that names library, element and point. A number that is not finite is told in a line,
-   and UmatPoint() returns a fault, as it does where the routine asks for a shorter step (PNEWDT below 1). A routine
-   that writes more states than it has ends the process as a crash does.
+   and UmatPoint() returns a fault, as it does where the routine asks for a shorter step (PNEWDT below 1). UmatTell()
+   puts a fault into words. A routine that writes more states than it has ends the process as a crash does.
 
    The routine gets, in finite strains, DFGRD0 and DFGRD1, the increment of strain and the rotation DROT of Hughes and
    Winget (International Journal for Numerical Methods in Engineering 15, 1980), and stress and strain turned by DROT.
@@ -29,6 +29,16 @@ enum {
 /* Place of the component r, s of a skew part, r < s */
 #define UMAT_SKEW_INDEX(r, s) ((r) * (17 - (r)) / 2 + (s) - (r) - 1)
 
+/* How a call ended: as it should, not made since F has no positive determinant, with a number that is not finite, or
+   with the wish for a shorter step. */
+typedef enum {
+  UMAT_FINE,
+  UMAT_INVERTED,
+  UMAT_NOT_FINITE,
+  UMAT_SHORTER,
+  UMAT_FAULTS
+} UmatFault;
+
 typedef struct Umat Umat;
 
 /* Where a point is and when. tensor is NTENS: 4 in the plane and around an axis, else 6. */
@@ -45,5 +55,7 @@ void UmatClose(Umat **);
 int  UmatStates(const Umat *);
 void UmatSetUnsymmetric(Umat *);
 int  UmatIsUnsymmetric(const Umat *);
-int  UmatPoint(Umat *, const UmatPlace *, const double H[9], const double *state, int stride, double *W, double P[9],
-               double A[], double skew[], double *next);
+UmatFault   UmatPoint(Umat *, const UmatPlace *, const double H[9], const double *state, int stride, double *W,
+                      double P[9], double A[], double skew[], double *next);
+int         UmatFaultAt(UmatFault, int point);
+const char *UmatTell(int code, int *point);

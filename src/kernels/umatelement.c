@@ -29,7 +29,7 @@ UmatPlace UmatPlaceAt(const Element *e, int finite, const PlasticBatch *plastic,
 }
 
 /* Evaluates a routine of the user at point p, one lane after the other. An element whose routine fails counts as one
-   that is turned inside out, so that the step is taken back. */
+   that is turned inside out, so that the step is taken back. Its first fault is kept. */
 void PointUmat(const BatchCall *call, int p, const Lanes H[9], double *next, Lanes *W, Lanes P[9],
                Lanes A[MATERIAL_TANGENT_SIZE])
 {
@@ -40,12 +40,12 @@ void PointUmat(const BatchCall *call, int p, const Lanes H[9], double *next, Lan
       UmatPlaceAt(call->e, call->finite, plastic, call->part + lane, p, call->X + lane, call->u + lane, KERNEL_LANES);
     const size_t at = (size_t)p * call->states * KERNEL_LANES + lane;
     double       h[9], energy, stress[9], tangent[MATERIAL_TANGENT_SIZE], skew[UMAT_SKEW_SIZE];
+    UmatFault    fault;
 
     for (int r = 0; r < 9; r++) h[r] = H[r][lane];
-    if (UmatPoint(plastic->umat, &place, h, &call->state[at], KERNEL_LANES, &energy, stress, A ? tangent : NULL, skew,
-                  next ? &next[at] : NULL) &&
-        call->fault)
-      call->fault[lane] = 1;
+    fault = UmatPoint(plastic->umat, &place, h, &call->state[at], KERNEL_LANES, &energy, stress, A ? tangent : NULL,
+                      skew, next ? &next[at] : NULL);
+    if (call->fault && !call->fault[lane]) call->fault[lane] = UmatFaultAt(fault, place.point);
     if (W) (*W)[lane] = energy;
     for (int r = 0; r < 9 && P; r++) P[r][lane] = stress[r];
     for (int k = 0; k < MATERIAL_TANGENT_SIZE && A; k++) A[k][lane] = tangent[k];

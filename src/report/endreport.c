@@ -203,7 +203,11 @@ static void PrintFailure(const RunFigures *figures, FILE *stream)
 
   fprintf(stream, "failed   on the way from t = %.6g to %.6g: %s\n", (double)way->t, (double)way->failed.t,
           SolveResults[way->failed.solve.result]);
-  if (failure->inverted >= 0)
+  if (failure->point)
+    fprintf(stream, "where    element %lld of '%s', point %d: the routine umat %s\n", (long long)failure->inverted,
+            failure->inverted_body >= 0 ? figures->scene->bodies[failure->inverted_body].name : "", failure->point,
+            failure->routine);
+  else if (failure->inverted >= 0)
     fprintf(stream, "where    element %lld of '%s' was turned inside out\n", (long long)failure->inverted,
             failure->inverted_body >= 0 ? figures->scene->bodies[failure->inverted_body].name : "");
   for (int i = 0; i < failure->n; i++) {

@@ -97,7 +97,8 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
 
   PetscFunctionBeginUser;
   PetscCall(FailureLocate(model->mesh, model->problem->loads, model->contact, model->u, model->problem->f,
-                          model->problem->inverted, &report->failure));
+                          model->problem->inverted, model->problem->fault, &report->failure));
+  if (report->result == SOLVE_DOMAIN && report->failure.point) report->result = SOLVE_ROUTINE;
   report->failure.enhanced = ProblemHasFormulation(model->problem, FORMULATION_ENHANCED);
   if (report->result == SOLVE_LEAK || report->result == SOLVE_LEAKED)
     FluidLeakText(model->problem->fluids, report->detail, sizeof(report->detail));

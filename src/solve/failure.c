@@ -1,5 +1,6 @@
 /* Where a solve failed: the nodes with the largest residuals. */
 #include "solve/failure.h"
+#include "kernels/umat.h"
 
 /* Square of the residual's free components at each owned node. It is 0 at other nodes and where it is not a number. */
 static PetscErrorCode NodeSquares(Mesh mesh, Loads loads, const PetscReal *f, PetscReal *square)
@@ -113,6 +114,23 @@ static PetscErrorCode LocateSqueeze(Mesh mesh, const PetscReal *u, Failure *fail
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds the inverted element of largest tag of all ranks, its body, and what a routine of the user did there. */
+static PetscErrorCode LocateInverted(Mesh mesh, PetscInt inverted, int fault, Failure *failure)
+{
+  int mine[2] = {-1, 0}, all[2]; /* body, fault */
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(&inverted, &failure->inverted, 1, MPIU_INT, MPI_MAX, mesh->comm));
+  for (PetscInt c = 0; c < mesh->n_cells && failure->inverted >= 0; c++)
+    if (mesh->cell_tag[c] == failure->inverted) mine[0] = mesh->cell_body[c];
+  if (inverted >= 0 && inverted == failure->inverted) mine[1] = fault;
+  PetscCallMPI(MPI_Allreduce(mine, all, 2, MPI_INT, MPI_MAX, mesh->comm));
+  failure->inverted_body = all[0];
+  failure->routine       = UmatTell(all[1], &failure->point);
+  if (!failure->routine) failure->point = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FailureLocate - finds the nodes that are farthest from equilibrium.
 
@@ -124,24 +142,21 @@ static PetscErrorCode LocateSqueeze(Mesh mesh, const PetscReal *u, Failure *fail
 . contact  - for the gaps of these nodes; may be NULL
 . u        - local displacements of the last accepted state, u[n_nodes*dim] (length)
 . f        - contributions of this rank to the residual (force) of the failed iterate, f[n_nodes*dim]
-- inverted - gmsh's tag of an element of this rank that was turned inside out, or -1
+. inverted - gmsh's tag of an element of this rank that was turned inside out, or -1
+- fault    - of a routine of the user there, from ElasticityInvertedCell()
 
   Output Parameter:
 . failure - the same on all ranks
 @*/
 PetscErrorCode FailureLocate(Mesh mesh, Loads loads, Contact contact, const PetscReal *u, const PetscReal *f,
-                             PetscInt inverted, Failure *failure)
+                             PetscInt inverted, int fault, Failure *failure)
 {
   PetscReal *square;
   PetscBool  found = PETSC_TRUE;
-  int        body  = -1;
 
   PetscFunctionBeginUser;
   *failure = (Failure){.n = 0};
-  PetscCallMPI(MPI_Allreduce(&inverted, &failure->inverted, 1, MPIU_INT, MPI_MAX, mesh->comm));
-  for (PetscInt c = 0; c < mesh->n_cells && failure->inverted >= 0; c++)
-    if (mesh->cell_tag[c] == failure->inverted) body = mesh->cell_body[c];
-  PetscCallMPI(MPI_Allreduce(&body, &failure->inverted_body, 1, MPI_INT, MPI_MAX, mesh->comm));
+  PetscCall(LocateInverted(mesh, inverted, fault, failure));
   PetscCall(LocateSqueeze(mesh, u, failure));
   PetscCall(PetscMalloc1(mesh->n_nodes, &square));
   PetscCall(NodeSquares(mesh, loads, f, square));
@@ -170,9 +185,13 @@ void FailureText(Scene scene, const Failure *failure, char *text, size_t size)
 {
   const FailureNode  *node         = &failure->node[0];
   const ContactPlace *place        = &node->place;
-  char                element[128] = "", of[128] = "", at[128] = "";
+  char                element[256] = "", of[256] = "", at[256] = "";
 
-  if (failure->inverted >= 0)
+  if (failure->point)
+    snprintf(element, sizeof(element), "the routine umat %s in element %lld, point %d of '%s'%s", failure->routine,
+             (long long)failure->inverted, failure->point, scene->bodies[PetscMax(0, failure->inverted_body)].name,
+             failure->n ? "; " : "");
+  else if (failure->inverted >= 0)
     snprintf(element, sizeof(element), "element %lld of '%s' was inverted%s on the way%s", (long long)failure->inverted,
              scene->bodies[PetscMax(0, failure->inverted_body)].name,
              failure->enhanced ? ", or its enhanced strains found no equilibrium," : "", failure->n ? "; " : "");

@@ -1,5 +1,5 @@
 /* Where a solve failed: the nodes with the largest residuals, in gmsh's tags and reference coordinates, and an element
-   that was turned inside out.
+   that was turned inside out or in which a routine of the user failed.
 
    FailureLocate() finds them after a failed solve, FailureText() puts them into a message. */
 #pragma once
@@ -21,12 +21,14 @@ typedef struct {
   int         n;
   FailureNode node[FAILURE_NODES]; /* the largest residual comes first */
   PetscInt    inverted;            /* gmsh's tag of an inverted element, or -1 */
+  int         point;               /* of that element, where a routine of the user failed (NPT); 0: none did */
+  const char *routine;             /* what it did, where there is a point */
   PetscReal   squeeze;             /* smallest distance of two corners of a cell over that before any load */
   int         squeezed_body;       /* where that is, as a number in the scene */
   int         inverted_body;       /* its body, as a number in the scene, or -1 */
   PetscBool   enhanced;            /* the scene has enhanced strains, which may have found no equilibrium */
 } Failure;
 
-PetscErrorCode FailureLocate(Mesh, Loads, Contact, const PetscReal *u, const PetscReal *f, PetscInt inverted,
+PetscErrorCode FailureLocate(Mesh, Loads, Contact, const PetscReal *u, const PetscReal *f, PetscInt inverted, int fault,
                              Failure *);
 void           FailureText(Scene, const Failure *, char *text, size_t size);

@@ -19,6 +19,7 @@ const char *const SolveResults[] = {
   "a fluid leaks, and the step is too long to say at which pressure",
   "a fluid leaks",
   "a rigid tool turned too far in one step",
+  "a routine of the user's (law: umat) failed",
   "not-a-number in the residual"};
 
 /*@

@@ -27,6 +27,7 @@ typedef enum {
   SOLVE_LEAK,
   SOLVE_LEAKED,
   SOLVE_TURNED,
+  SOLVE_ROUTINE,
   SOLVE_NAN
 } SolveResult;
 extern const char *const SolveResults[]; /* in words, for messages */

@@ -326,6 +326,14 @@ static PetscErrorCode SearchClosely(const Search *s, PetscReal slope, PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Does the energy rise over steps since stiffness jumps on the way? So it does where bodies yield: a point that unloads
+   is stiffer by orders of magnitude than the tangent says. The energy then rises from the middle of the step on, and
+   the steps after it do not make up for that. */
+static PetscBool SearchJumps(const Search *s)
+{
+  return (PetscBool)(ProblemConservative(s->model->problem) && ProblemIsPlastic(s->model->problem));
+}
+
 /*@
   ModelSearchRelaxed - the line search of Newton's method without friction.
 
@@ -343,8 +351,9 @@ static PetscErrorCode SearchClosely(const Search *s, PetscReal slope, PetscBool 
   steps, and does what it would have done at once: it shortens the step. How far cells turn in such a step is bounded,
   and the bound follows whether the last ones have paid.
 
-  Where residuals are compared, at iterates close to equilibrium, and where the contact set repeats itself, steps are
-  shortened as before. Without an energy work is compared there first, which has no round-off of large energies.
+  Where residuals are compared, at iterates close to equilibrium, where the contact set repeats itself, and where bodies
+  yield, steps are shortened as before. Without an energy work is compared there first, which has no round-off of large
+  energies.
 
   Source: Chamberlain, Powell, Lemarechal and Pedersen, The watchdog technique for forcing convergence in algorithms for
   constrained optimization, Math. Programming Study 16 (1982) 1-17.
@@ -364,7 +373,8 @@ PetscErrorCode ModelSearchRelaxed(SNESLineSearch search, void *context)
   work->relaxed.linear = PETSC_FALSE;
   if (lambda < 1) work->relaxed.waits = PETSC_FALSE;
   PetscCall(VecDotRealPart(s.F, s.y, &slope));
-  if (!work->relaxed.waits && (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL)) {
+  if (!work->relaxed.waits &&
+      (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL || SearchJumps(&s))) {
     if (lambda == 1) PetscCall(SearchClosely(&s, slope, &taken));
     if (!taken) PetscCall(Backtrack(&s));
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -64,6 +64,10 @@ for fault, text in ((1, "crashed (signal"), (2, "not finite")):
     finished = scene(f"fault_{fault}", routine, "finite", "stepping.dt_min=0.05", must=2)
     check.holds(f"fault {fault} is told", text in finished.text and "in element" in finished.text,
                 [line for line in finished.text.splitlines() if "umat" in line][:1])
+    blamed = "a routine of the user's (law: umat) failed; the routine umat gave a number" in finished.text
+    check.holds(f"fault {fault}: the routine is blamed, no element", blamed == (fault == 2)
+                and "inside out" not in finished.text)
+
 
 def damaged(steps, slope, length):
     """Force of a bar of unit section: E grows by `slope` from y = 0 to 1, with nu = 0; else nu is NU."""
@@ -79,14 +83,18 @@ OFF = ["supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_
        "mesh.parameters={lx: 2, ly: 1, lz: 1, nx: 4, ny: 2, nz: 2, tet: 0, skew: 0}",
        "loads.0={surface: x_max, ux: 0.01, history: [[0, 0], [0.5, 1], [1, 0.2]]}"]
 for what, slope, limit in (("damage", 0, 1), ("modulus over y", 0.5, 1), ("shorter steps", 0, 3e-4)):
-    routine = (f"{{law: umat, E: {E}, nu: {NU}, library: {built}, constants: [{E}, {0 if slope else NU}, 400, 0.6, {slope}, "
-               f"{limit}], states: 2, unsymmetric: true}}")
+    routine = (f"{{law: umat, E: {E}, nu: {NU}, library: {built}, states: 2, unsymmetric: true, "
+               f"constants: [{E}, {0 if slope else NU}, 400, 0.6, {slope}, {limit}]}}")
     finished = scene(what.replace(" ", "_"), routine, "small", *OFF, "stepping.dt_min=1e-3")
     expected = list(damaged(finished.steps(), slope, 0.5 / int(args.order)))
     check.near(f"{what}: force", [row["force"] for row in finished.steps()], expected, 1e-9 * max(expected))
     check.holds(f"{what}: steps that failed", (finished.summary()["steps_failed"] > 0) == (limit < 1))
-sheared = [scene(f"sheared_{unsymmetric}", f"{{law: umat, E: {E}, nu: {NU}, library: {built}, constants: [{E}, {NU}, 400, 0.6, 0, 1], "
-                 f"states: 2, unsymmetric: {unsymmetric}}}", "small", "loads.0.ux=0.01", "stepping.initial=0.125")
+finished = scene("too_short", routine, "small", *OFF, "stepping.dt_min=0.05", must=2)
+check.holds("a routine that asks for too short a step is named",
+            "the routine umat asked for a shorter step" in finished.text)
+sheared = [scene(f"sheared_{unsymmetric}", f"{{law: umat, E: {E}, nu: {NU}, library: {built}, states: 2, "
+                 f"constants: [{E}, {NU}, 400, 0.6, 0, 1], unsymmetric: {unsymmetric}}}", "small", "loads.0.ux=0.01",
+                 "stepping.initial=0.125")
            for unsymmetric in ("true", "false")]
 iterations = [finished.summary()["newton_iterations"] for finished in sheared]
 check.holds("the whole tangent takes fewer iterations", iterations[0] < 0.8 * iterations[1], iterations)

@@ -1,5 +1,6 @@
-"""Routines of users (law: umat) in every kind of element: they agree with the laws of the program in plane strain, about
-an axis and in space, in contact and on any ranks, and the tangent of the scene is the derivative of its residual."""
+"""Routines of users (law: umat) in every kind of element: they agree with the laws of the program in plane strain,
+about an axis and in space, in contact and on any ranks, and the tangent of the scene is the derivative of its
+residual."""
 import pathlib
 import re
 import subprocess
@@ -14,11 +15,12 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Error of the differences: they are forward ones, so that it is their step over the way on which the law bends, which
 # is an element's size in hyperelastic laws and a thousandth of it where the law yields.
 JACOBIAN = {"j2": 1e-5, "damage": 1e-5, "neo_hookean": 1e-6, "weakened": 1e-6}
-SOLID = ["mesh={file: ../../meshes/block.geo, order: 1, parameters: {lx: 2, ly: 1, lz: 1, nx: 2, ny: 2, nz: 1, tet: 0}}",
+SOLID = ["mesh={file: ../../meshes/block.geo, order: 1, "
+         "parameters: {lx: 2, ly: 1, lz: 1, nx: 2, ny: 2, nz: 1, tet: 0}}",
          "supports=[{surface: x_min, ux: 0, uy: 0, uz: 0}]"]
 FLAT = ["mesh={file: ../../meshes/square.geo, order: 1, parameters: {lx: 2, ly: 1, nx: 4, ny: 2}}",
-        "supports=[{surface: x_min, ux: 0, uy: 0}]", "loads.0={surface: x_max, ux: 0, uy: 0, history: [[0, 0], [0.5, 1], "
-        "[1, 0.3]]}"]
+        "supports=[{surface: x_min, ux: 0, uy: 0}]",
+        "loads.0={surface: x_max, ux: 0, uy: 0, history: [[0, 0], [0.5, 1], [1, 0.3]]}"]
 GEOMETRIES = {"solid": SOLID, "plane_strain": FLAT, "axisymmetric": FLAT}
 ELEMENTS = {"full_1": ("full", 1), "fbar_1": ("fbar", 1), "full_2": ("full", 2)}
 # routine, constants, states, kinematics, built-in law, displacements
@@ -63,10 +65,12 @@ for element in ELEMENTS:
     for name, (source, constants, states, kinematics, own, way) in CASES.items():
         what = f"{name}, {element}"
         material = routine(source, constants, states)
-        built_in, umat = scene(name + "_own", own, kinematics, element, way), scene(name, material, kinematics, element, way)
+        built_in = scene(name + "_own", own, kinematics, element, way)
+        umat = scene(name, material, kinematics, element, way)
         force = [forces(built_in), forces(umat)]
         size = max(abs(value) for value in force[0].values())
-        check.near(f"{what}: force", [force[1][t] / size for t in force[0]], [force[0][t] / size for t in force[0]], 1e-8)
+        check.near(f"{what}: force", [force[1][t] / size for t in force[0]],
+                   [force[0][t] / size for t in force[0]], 1e-8)
         fields = [finished.fields()["stress"] for finished in (built_in, umat)]
         size = numpy.max(numpy.abs(fields[0]))
         check.near(f"{what}: stress", fields[1] / size, fields[0] / size, 1e-8)

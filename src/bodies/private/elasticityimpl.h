@@ -29,6 +29,7 @@ typedef struct {
   PetscReal   *state;       /* of a plastic law, accepted [points][states][lanes]; else NULL */
   PetscReal   *length;      /* of the cells, for routines of users [lanes]; else NULL */
   PlasticBatch plastic;     /* what kernel.plastic points to, for the batch at hand */
+  int          fault[KERNEL_LANES]; /* of routines of users, in the batch at hand */
 } CellGroup;
 
 /* Multipliers of the volume, [pressures][lanes] for each batch of the groups that have some: all that mixed elements
@@ -58,6 +59,7 @@ struct _n_Elasticity {
   PetscReal  *f, *K;        /* of one batch */
   void       *buffer;       /* what u, u_0, f and K are in */
   PetscInt    inverted;     /* a local cell that the last residual found inverted, or -1 */
+  int         fault;        /* of the routine of the user there, or 0 */
   PetscBool   symmetric;
   NodeMatrix  matrix;
   PetscReal   accepted_t; /* time of the accepted plastic state */

@@ -44,7 +44,7 @@ typedef struct {
   const double       *state;        /* of a plastic law [points][states], or NULL; its first lane */
   int                 states, part; /* part: of the batch, its first lane */
   int                 all;          /* H takes all points of the state */
-  int                *fault;        /* [LANES], set where a routine of the user fails, or NULL */
+  int                *fault;        /* [LANES], UmatFaultAt() where a routine of the user fails, or NULL */
   const double       *X, *u;
   const double       *u_0;  /* displacements from which K extrapolates the stress, or NULL */
   double              rate; /* of StressReference */
