@@ -17,9 +17,11 @@ MU = 80.1938  # of Cook's membrane
 ELEMENTS = {  # name -> (order, simplex, solid)
     "quad4": (1, 0, 0),
     "quad9": (2, 0, 0),
+    "tri3": (1, 1, 0),
     "tri6": (2, 1, 0),
     "hex8": (1, 0, 1),
     "hex27": (2, 0, 1),
+    "tet4": (1, 1, 1),
     "tet10": (2, 1, 1)
 }
 # case -> (probe, length of a side, elements of second order along it; of first order there are twice as many)

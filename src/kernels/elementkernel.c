@@ -93,6 +93,11 @@ static BatchFn *const full_batches[ELEMENT_TYPES][2] = {
   [ELEMENT_HEX27] = {BatchHex27, NULL},
 };
 
+static int HasNodalPressure(const KernelCase *kernel)
+{
+  return kernel->formulation == FORMULATION_MIXED && nodal_pressure_batches[kernel->type][0] != NULL;
+}
+
 static BatchFn *GetBatch(const KernelCase *kernel)
 {
   const int         axisymmetric = kernel->geometry == GEOMETRY_AXISYMMETRIC;
@@ -102,7 +107,9 @@ static BatchFn *GetBatch(const KernelCase *kernel)
   switch (kernel->formulation) { /* the modes of enhanced elements are found by an energy, which a routine has not */
   case FORMULATION_ENHANCED: return kernel->law == MATERIAL_UMAT ? NULL : enhanced_batches[kernel->type][axisymmetric];
   case FORMULATION_FBAR: return mean_dilatation_batches[kernel->type][axisymmetric];
-  case FORMULATION_MIXED: return splits ? mixed_batches[kernel->type][axisymmetric] : NULL;
+  case FORMULATION_MIXED:
+    if (!splits) return NULL;
+    return (HasNodalPressure(kernel) ? nodal_pressure_batches : mixed_batches)[kernel->type][axisymmetric];
   default: return full_batches[kernel->type][axisymmetric];
   }
 }
@@ -113,7 +120,7 @@ static BatchFn *GetBatch(const KernelCase *kernel)
   Not collective
 
   Note:
-  Mixed exists for all cells but tri3 and tet4, with separable laws, see material.h. With small strains all laws are.
+  Mixed exists for separable laws, see material.h. With small strains all laws are.
 @*/
 int ElementKernelExists(const KernelCase *kernel)
 {
@@ -160,7 +167,7 @@ int ElementExtrapolates(const KernelCase *kernel)
 {
   const ElasticLaw *law = MaterialGetLaw(kernel->law);
 
-  if (kernel->kinematics == KINEMATICS_SMALL) return 0;
+  if (kernel->kinematics == KINEMATICS_SMALL || HasNodalPressure(kernel)) return 0;
   return law->separable || (law->extrapolate && kernel->formulation != FORMULATION_FBAR);
 }
 
@@ -174,6 +181,7 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
                      .finite      = kernel->kinematics == KINEMATICS_FINITE,
                      .n_constants = kernel->n_constants ? kernel->n_constants : law->constants,
                      .plastic     = kernel->plastic,
+                     .length      = kernel->length,
                      .states      = kernel->plastic ? ElementStates(kernel->plastic) : 0,
                      .constants   = constants};
 }
@@ -229,6 +237,7 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
     const VolumeModuli split = SplitVolume(kernel, lanes_constants[0][lane], call->mu[lane]);
 
     call->kappa[lane]        = split.kappa;
+    call->modulus[lane]      = split.projected;
     call->rest[lane]         = 1 - split.kappa / split.projected;
     lanes_constants[0][lane] = split.local;
   }
@@ -255,9 +264,9 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
 
   Note:
   Solids in plane strain have unit thickness. Axisymmetric quantities are over 360 degrees. A state with J <= 0 or NaN
-  is not admissible, but all arrays hold finite numbers if X and u do. Every formulation has an energy; f and K are its
-  derivatives. K is full, and symmetric unless a routine of the user's has an
-  unsymmetric tangent. With a reference K is no derivative, but it differs from it only by the square
+  is not admissible, but all arrays hold finite numbers if X and u do. f and K are derivatives of the energy, but for
+  elements whose nodes have pressures; there W is what is stored where the pressure is in equilibrium. K is full. It is
+  symmetric, unless a routine of the user's has an unsymmetric tangent or nodes have pressures. With a reference K is no derivative, but it differs from it only by the square
   of the way from there (rate 1) or by that way (rate 0). A reference is ignored unless ElementExtrapolates().
 
   Source:
@@ -369,6 +378,23 @@ int ElementPressures(const KernelCase *kernel)
 }
 
 /*@
+  ElementNodes - returns the number of nodes that a kernel has: twice that of the element where nodes have pressures.
+
+  Not collective
+
+  Input Parameter:
+. kernel - element type and formulation
+
+  Note:
+  The nodes of the element come first. Those of the pressures follow in the same order; nodalpressurekernel.c tells what
+  their displacements are.
+@*/
+int ElementNodes(const KernelCase *kernel)
+{
+  return ElementGet(kernel->type)->nodes * (HasNodalPressure(kernel) ? 2 : 1);
+}
+
+/*@
   ElementDilatation - computes the dilatations of a batch of mixed elements, from which the pressures follow.
 
   Not collective
@@ -475,7 +501,7 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
 {
   Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
   BatchCall call = StartCall(kernel, lanes_constants);
-  const int dofs = call.e->nodes * call.e->dim;
+  const int dofs = ElementNodes(kernel) * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
     lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], lanes_state[ELEMENT_MAX_POINTS * MAX_STATE * KERNEL_LANES],
     lanes_pressure[ELEMENT_MAX_POINTS * KERNEL_LANES] = {0}, lanes_multiplier[MIXED_PRESSURES * KERNEL_LANES];

@@ -51,6 +51,7 @@ typedef struct {
   int         n_constants; /* of the law; 0: as many as MaterialGetLaw() says */
   /* of a plastic law, or NULL: its elastic part alone */
   const PlasticBatch *plastic;
+  double length; /* of mixed elements whose nodes have pressures: that which makes these unknowns lengths */
 } KernelCase;
 
 /* Parts of the modulus of the volume in a mixed element (stress). local acts at the points, projected on the mean that
@@ -76,6 +77,7 @@ void   ElementPointStress(const KernelCase *, const double *X, const double *u, 
 void   ElementStress(const KernelCase *, const double *X, const double *u, const double *constants,
                      const double *multiplier, double stress[6], double *volume);
 int    ElementPressures(const KernelCase *);
+int    ElementNodes(const KernelCase *);
 void   ElementVolumeModuli(const KernelCase *, const double *constants, int stride, VolumeModuli *);
 void   ElementFollow(const KernelCase *, const double *X, const double *u, const StressReference *,
                      const double *constants, const double *multiplier, double *next);

@@ -17,9 +17,11 @@ MU, A, B, STRETCH = 1.0, 1.0, 2.0, 1.3  # shear modulus, radii, stretch of the i
 # 4 and 2 for order 1, 8 and 4 for order 2). The bounds are what was measured, rounded: they guard against change.
 INFLATED = {
     ("tube", "1", "0"): (8, 2.2e-3, 5.4e-3, 3.8, 2.4),
+    ("tube", "1", "1"): (8, 1, 1, 1, 1),
     ("tube", "2", "0"): (4, 6.5e-5, 8.5e-4, 10, 3.5),
     ("tube", "2", "1"): (4, 4e-4, 3.3e-3, 8, 2.3),
     ("sphere", "1", "0"): (8, 4.1e-3, 8.3e-3, 3.8, 2.3),
+    ("sphere", "1", "1"): (8, 1, 1, 1, 1),
     ("sphere", "2", "0"): (4, 8e-5, 4e-3, 10, 3.5),
     ("sphere", "2", "1"): (4, 6e-4, 5.1e-3, 8, 2.7),
 }
