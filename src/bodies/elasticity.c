@@ -323,10 +323,11 @@ static PetscErrorCode SetLength(Elasticity e)
   PetscFunctionBeginUser;
   if (!mesh->has_pressures) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    PetscReal X[MAX_DOFS];
+    const PetscInt *nodes = &mesh->cell_nodes[mesh->cell_ptr[c]];
+    PetscReal       X[MAX_DOFS];
 
-    MeshGatherNodes(mesh, mesh->cell_ptr[c + 1] - mesh->cell_ptr[c], &mesh->cell_nodes[mesh->cell_ptr[c]], mesh->coords,
-                    X);
+    for (int k = 0; k < ElementGet(mesh->cell_type[c])->nodes * e->dim; k++)
+      X[k] = mesh->coords[nodes[k / e->dim] * e->dim + k % e->dim];
     volume += CellVolume(mesh->cell_type[c], e->dim, e->dim == 2 ? GEOMETRY_PLANE_STRAIN : GEOMETRY_SOLID, X);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &volume, 1, MPIU_REAL, MPI_SUM, mesh->comm));

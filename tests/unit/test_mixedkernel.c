@@ -72,7 +72,7 @@ static int NextCase(KernelCase *kernel)
                            .formulation = FORMULATION_MIXED};
     if (ElementGet(kernel->type)->dim == 3) kernel->geometry = next & 1 ? GEOMETRY_AXISYMMETRIC : GEOMETRY_SOLID;
     next++;
-    if (ElementGet(kernel->type)->dim > 1 && ElementKernelExists(kernel)) return 1;
+    if (ElementGet(kernel->type)->dim > 1 && ElementKernelExists(kernel) && ElementPressures(kernel) > 0) return 1;
   }
   return next = 0;
 }
