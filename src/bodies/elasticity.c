@@ -288,7 +288,7 @@ static PetscBool VolumeIsStiff(Scene scene, PetscInt body)
    the volume of one of its cells is too stiff. */
 static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
 {
-  PetscInt   n = 0;
+  PetscInt   n = 0, n_yielding = 0;
   PetscBool *stiff;
 
   PetscFunctionBeginUser;
@@ -304,12 +304,15 @@ static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
 
     for (PetscInt c = 0; c < g->n_cells && ElementPressures(&g->kernel); c++)
       some = (PetscBool)(some || stiff[e->mesh->cell_body[g->cell[c]]]);
+    g->yielding    = ElementPressures(&g->kernel) ? n_yielding : -1;
     g->multipliers = some ? n : -1;
+    n_yielding += g->n_batches * ElementPressures(&g->kernel) * KERNEL_LANES;
     if (some) n += g->n_batches * ElementPressures(&g->kernel) * KERNEL_LANES;
   }
   PetscCall(PetscFree(stiff));
   e->state.n = e->accepted.n = n;
   PetscCall(PetscCalloc2(n, &e->state.multiplier, n, &e->accepted.multiplier));
+  PetscCall(PetscMalloc1(n_yielding, &e->yielding));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -399,6 +402,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   PetscCall(PetscFree(e->value));
   PetscCall(PetscFree(e->buffer));
   PetscCall(PetscFree2(e->state.multiplier, e->accepted.multiplier));
+  PetscCall(PetscFree(e->yielding));
   PetscCall(PetscFree(e->enclosed.body));
   PetscCall(NodeMatrixDestroy(&e->matrix));
   PetscCall(PetscFree(*elasticity));
@@ -475,6 +479,12 @@ void ElasticityGather(Elasticity e, CellGroup *g, PetscInt batch, const PetscRea
 PetscReal *ElasticityMultipliersOf(const CellGroup *g, PetscInt batch, PetscReal *multipliers)
 {
   return &multipliers[g->multipliers + batch * ElementPressures(&g->kernel) * KERNEL_LANES];
+}
+
+/* The multipliers of a batch while energies are compared. */
+PetscReal *ElasticityYieldingOf(Elasticity e, const CellGroup *g, PetscInt batch)
+{
+  return &e->yielding[g->yielding + batch * ElementPressures(&g->kernel) * KERNEL_LANES];
 }
 
 /*@
@@ -554,15 +564,18 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
   *ok         = PETSC_TRUE;
   e->inverted = -1;
   for (int k = 0; k < e->n_groups; k++) {
-    CellGroup   *g    = &e->groups[k];
-    const size_t dofs = (size_t)g->nodes * e->dim;
+    CellGroup      *g      = &e->groups[k];
+    const size_t    dofs   = (size_t)g->nodes * e->dim;
+    const PetscBool yields = (PetscBool)(e->yields && !forces && g->yielding >= 0);
+    KernelCase      kernel = g->kernel;
 
+    kernel.yields = yields;
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
 
       ElasticityGather(e, g, batch, u, e->u);
-      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, NULL, &g->constants[first * g->kernel.n_constants],
-                    ElasticityMultipliers(e, g, batch), energy ? W : NULL, forces ? e->f : NULL, NULL, J);
+      ElementKernel(&kernel, &g->X[first * dofs], e->u, NULL, &g->constants[first * g->kernel.n_constants],
+                    yields ? ElasticityYieldingOf(e, g, batch) : ElasticityMultipliers(e, g, batch), energy ? W : NULL, forces ? e->f : NULL, NULL, J);
       if (forces) ScatterForce(e, g, batch, f, force2);
       for (int lane = 0; lane < ElasticityBatchCells(g, batch); lane++) {
         if (energy) *energy += W[lane];

@@ -8,6 +8,9 @@
    change of the multipliers makes it 1e4 times smaller. The condition number of the tangent grows with kappa, and its
    round-off is small with 1e4 still. */
 static const double largest_kappa = 1e4;
+/* The same where energies are compared. A step that is right changes volumes by the square of its length, which full
+   moduli make into more energy than the step gains. This is the modulus up to which solids need no mixed elements. */
+static const double yielding_kappa = 20;
 /* Part of the modulus of the volume that mixed elements with linear pressures evaluate at their points, over the shear
    modulus and over the modulus itself. Laws whose shape part does not depend on the volume resist changes of it inside
    an element that the projection does not see by their shear alone. One shear modulus more keeps Newton's method from
@@ -194,7 +197,7 @@ static VolumeModuli SplitVolume(const KernelCase *kernel, double modulus, double
   if (ElementPressures(kernel) > 1 && !MaterialGetLaw(kernel->law)->plastic)
     split.local = fmax(0, fmin(largest_local * mu, local_share * modulus));
   split.projected = modulus - split.local;
-  split.kappa     = fmin(split.projected, largest_kappa * mu);
+  split.kappa     = fmin(split.projected, (kernel->yields ? yielding_kappa : largest_kappa) * mu);
   return split;
 }
 
@@ -433,6 +436,29 @@ void ElementDilatation(const KernelCase *kernel, const double *X, const double *
   }
 }
 
+/* Extrapolates the pressures of a batch from an earlier state; multiplier as for ElementKernel(). */
+static void Follow(const KernelCase *kernel, const double *X, const double *u, const StressReference *reference,
+                   const double *constants, const double *multiplier, double *pressure)
+{
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
+  double    J[LANES];
+
+  call.rate = reference->rate;
+  for (int part = 0; part < KERNEL_LANES; part += LANES) {
+    SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
+    call.X          = X + part;
+    call.u          = u + part;
+    call.u_0        = reference->u + part;
+    call.part       = part;
+    call.state      = kernel->plastic ? kernel->plastic->state + part : NULL;
+    call.J          = J;
+    call.multiplier = multiplier ? multiplier + part : NULL;
+    call.follow     = pressure + part;
+    GetBatch(kernel)(&call);
+  }
+}
+
 /*@
   ElementFollow - computes the multipliers with which a batch of mixed elements has the pressures that extrapolate from
   an earlier state.
@@ -456,23 +482,49 @@ void ElementDilatation(const KernelCase *kernel, const double *X, const double *
 void ElementFollow(const KernelCase *kernel, const double *X, const double *u, const StressReference *reference,
                    const double *constants, const double *multiplier, double *next)
 {
-  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
-  BatchCall call = StartCall(kernel, lanes_constants);
-  double    J[LANES];
+  Follow(kernel, X, u, reference, constants, multiplier, next);
+  for (int lane = 0; lane < KERNEL_LANES; lane++) {
+    VolumeModuli moduli;
 
-  call.rate = reference->rate;
-  for (int part = 0; part < KERNEL_LANES; part += LANES) {
-    SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
-    call.X          = X + part;
-    call.u          = u + part;
-    call.u_0        = reference->u + part;
-    call.part       = part;
-    call.state      = kernel->plastic ? kernel->plastic->state + part : NULL;
-    call.J          = J;
-    call.multiplier = multiplier + part;
-    call.follow     = next + part;
-    GetBatch(kernel)(&call);
-    for (int k = 0; k < ElementPressures(kernel); k++) LANE(next + part, k) *= call.rest;
+    ElementVolumeModuli(kernel, constants + lane, KERNEL_LANES, &moduli);
+    for (int k = lane; k < ElementPressures(kernel) * KERNEL_LANES; k += KERNEL_LANES)
+      next[k] *= 1 - moduli.kappa / moduli.projected;
+  }
+}
+
+/*@
+  ElementYield - computes the multipliers with which elements of a soft volume have the pressures that extrapolate from
+  an earlier state.
+
+  Not collective
+
+  Input Parameters:
++ kernel     - as for ElementFollow()
+. X          - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
+. u          - displacements (length) [nodes][dim][lanes]
+. reference  - the earlier state, u as above
+. constants  - of the law [n_constants][lanes]
+- multiplier - present ones (stress times root of volume) [pressures][lanes]; NULL: they are 0
+
+  Output Parameter:
+. next - multipliers [pressures][lanes] for a KernelCase that yields
+
+  Note:
+  The energy of such elements with these multipliers has the same minimum in an equilibrium with these pressures.
+@*/
+void ElementYield(const KernelCase *kernel, const double *X, const double *u, const StressReference *reference,
+                  const double *constants, const double *multiplier, double *next)
+{
+  KernelCase soft = *kernel;
+
+  Follow(kernel, X, u, reference, constants, multiplier, next);
+  soft.yields = 1;
+  for (int lane = 0; lane < KERNEL_LANES; lane++) {
+    VolumeModuli moduli;
+
+    ElementVolumeModuli(&soft, constants + lane, KERNEL_LANES, &moduli);
+    for (int k = lane; k < ElementPressures(kernel) * KERNEL_LANES; k += KERNEL_LANES)
+      next[k] *= 1 - moduli.kappa / moduli.projected;
   }
 }
 

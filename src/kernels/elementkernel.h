@@ -51,6 +51,7 @@ typedef struct {
   int         n_constants; /* of the law; 0: as many as MaterialGetLaw() says */
   /* of a plastic law, or NULL: its elastic part alone */
   const PlasticBatch *plastic;
+  int    yields; /* of mixed elements: the energy is that of a soft volume about the multipliers, see ElementYield() */
   double length; /* of mixed elements whose nodes have pressures: that which makes these unknowns lengths */
 } KernelCase;
 
@@ -81,6 +82,8 @@ int    ElementNodes(const KernelCase *);
 void   ElementVolumeModuli(const KernelCase *, const double *constants, int stride, VolumeModuli *);
 void   ElementFollow(const KernelCase *, const double *X, const double *u, const StressReference *,
                      const double *constants, const double *multiplier, double *next);
+void   ElementYield(const KernelCase *, const double *X, const double *u, const StressReference *,
+                    const double *constants, const double *multiplier, double *next);
 void   ElementDilatation(const KernelCase *, const double *X, const double *u, const double *constants,
                          const double *multiplier, double *theta);
 double ElementVolumeEnergy(const KernelCase *, const double *X, const double *u, const double *constants,
