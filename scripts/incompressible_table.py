@@ -25,8 +25,8 @@ ELEMENTS = {  # name -> (order, simplex, solid)
     "tet10": (2, 1, 1)
 }
 # case -> (probe, length of a side, elements of second order along it; of first order there are twice as many)
-CASES = {"cook": ("tip_uy", 48, (8, 16)), "punch": ("force", 0.5, (4, 8))}
-FINE = {"cook": 64, "punch": 32}
+CASES = {"cook": ("tip_uy", 48, (8, 16)), "punch": ("force", 0.5, (4, 8, 16))}
+FINE = {"cook": 64, "punch": 48}
 NUS = (0.3, 0.4999, 0.5)
 COLUMNS = ("case", "element", "nu", "n", "value", "error", "steps", "failed", "iterations", "cpu_s")
 

@@ -162,7 +162,7 @@ static void SetGradient(Batch *b, const double H[9])
 static int NextOfAll(KernelCase *kernel)
 {
   static const KernelCase first = {
-    ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FULL, 0, NULL, 0};
+    ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FULL, 0, NULL, 0, 0};
 
   if (kernel->type == ELEMENT_TYPES) {
     *kernel = first;
