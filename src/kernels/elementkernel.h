@@ -13,8 +13,8 @@
    K may extrapolate the stress of its geometric part from an earlier state (stressreference.h), where
    ElementExtrapolates().
 
-   ElementPressures(), ElementVolumeModuli(), ElementDilatation() and ElementFollow() are for mixed elements, whose
-   multipliers the caller holds.
+   ElementPressures(), ElementVolumeModuli(), ElementDilatation(), ElementFollow() and ElementYield() are for mixed
+   elements, whose multipliers the caller holds. ElementNodes() counts nodes with those of pressures.
 
    Source of the forms: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis". */
 #pragma once
