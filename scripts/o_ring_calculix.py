@@ -125,7 +125,8 @@ def swept(lines):
             ring += sorted(set(nodes) - set(ring))
             out += [f"{words[0]}, {', '.join(map(str, nodes[:10]))},", ", ".join(map(str, nodes[10:]))]
         elif kind == "*ELEMENT" and len(words) == 5:
-            out.append(f"{words[0]}, {', '.join(str(int(word) + plane) for plane in (0, planes[2]) for word in words[1:])}")
+            nodes = [str(int(word) + plane) for plane in (0, planes[2]) for word in words[1:]]
+            out.append(f"{words[0]}, {', '.join(nodes)}")
         elif kind == "*SURFACE" and words[1].startswith("S"):
             out.append(f"{words[0]}, S{int(words[1][1:]) + 2}")
         elif kind == "*NSET" and generated:

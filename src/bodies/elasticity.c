@@ -575,7 +575,8 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
 
       ElasticityGather(e, g, batch, u, e->u);
       ElementKernel(&kernel, &g->X[first * dofs], e->u, NULL, &g->constants[first * g->kernel.n_constants],
-                    yields ? ElasticityYieldingOf(e, g, batch) : ElasticityMultipliers(e, g, batch), energy ? W : NULL, forces ? e->f : NULL, NULL, J);
+                    yields ? ElasticityYieldingOf(e, g, batch) : ElasticityMultipliers(e, g, batch), energy ? W : NULL,
+                    forces ? e->f : NULL, NULL, J);
       if (forces) ScatterForce(e, g, batch, f, force2);
       for (int lane = 0; lane < ElasticityBatchCells(g, batch); lane++) {
         if (energy) *energy += W[lane];
