@@ -26,7 +26,8 @@ static void AddVolumeGradient(Elasticity e, PetscInt body, PetscReal *gradient)
       if (e->mesh->cell_body[g->cell[slot]] != body) continue;
       ElasticitySlotCoordinates(e, g, slot, X);
       CellVolumeGradient(g->kernel.type, e->dim, g->kernel.geometry, X, f);
-      for (int a = 0; a < ElementGet(g->kernel.type)->nodes * e->dim; a++) gradient[nodes[a / e->dim] * e->dim + a % e->dim] += f[a];
+      for (int a = 0; a < ElementGet(g->kernel.type)->nodes * e->dim; a++)
+        gradient[nodes[a / e->dim] * e->dim + a % e->dim] += f[a];
     }
   }
 }

@@ -6,11 +6,12 @@
      int W_s dV + int p (J - j) + tau^2 / (2 lambda) dV - 1/2 int (1 / mu + 1 / lambda) (tau - tau')^2 dV.
 
    W_s is the energy of the law without its modulus lambda of the volume, and mu the law's shear modulus. tau is the
-   unknown, the derivative of the energy of the volume by ln j. The volume is j = exp(tau / lambda), and p = tau / j. tau'
-   is the mean of tau in the element. The first two integrals have one point, the middle, and tau' there. The last
-   integral is the projection of Dohrmann and Bochev (International Journal for Numerical Methods in Fluids 46, 2004): it
-   makes the pair of displacements and pressures of equal order stable, and its error is of the order of the elements. In
-   small strains the trace of the strain takes the place of J - 1, tau that of p, and tau / lambda that of j - 1.
+   unknown, the derivative of the energy of the volume by ln j. The volume is j = exp(tau / lambda), and p = tau / j.
+   tau' is the mean of tau in the element. The first two integrals have one point, the middle, and tau' there. The last
+   integral is the projection of Dohrmann and Bochev (International Journal for Numerical Methods in Fluids 46, 2004).
+   It makes the pair of displacements and pressures of equal order stable, and its error is of the order of the
+   elements. In small strains the trace of the strain takes the place of J - 1, tau that of p, and tau / lambda that of
+   j - 1.
 
    The nodes of an element are followed by as many nodes for the pressure. The first component of the displacement of
    such a node is tau length / mu, with the length of the KernelCase; the others do not count. The rows of the pressures

@@ -142,7 +142,8 @@ PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
              body->name, ElementGet(mesh->cell_type[c])->name);
   }
   if (mesh->has_pressures && scene->solver.type == SOLVER_ITERATIVE)
-    Complain(&complaint, "%s: iterative is not for mixed tri3 and tet4, whose tangents are of a saddle; allowed: direct",
+    Complain(&complaint,
+             "%s: iterative is not for mixed tri3 and tet4, whose tangents are of a saddle; allowed: direct",
              SceneWhere(scene, "solver", "type"));
   PetscCall(ComplaintRefuse(mesh->comm, &complaint));
   PetscCall(FindLocking(mesh, scene));
