@@ -269,7 +269,8 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
   Solids in plane strain have unit thickness. Axisymmetric quantities are over 360 degrees. A state with J <= 0 or NaN
   is not admissible, but all arrays hold finite numbers if X and u do. f and K are derivatives of the energy, but for
   elements whose nodes have pressures; there W is what is stored where the pressure is in equilibrium. K is full. It is
-  symmetric, unless a routine of the user's has an unsymmetric tangent or nodes have pressures. With a reference K is no derivative, but it differs from it only by the square
+  symmetric, unless a routine of the user's has an unsymmetric tangent or nodes have pressures. With a reference K is
+  no derivative, but it differs from it only by the square
   of the way from there (rate 1) or by that way (rate 0). A reference is ignored unless ElementExtrapolates().
 
   Source:
