@@ -17,14 +17,16 @@ MU = 80.1938  # of Cook's membrane
 ELEMENTS = {  # name -> (order, simplex, solid)
     "quad4": (1, 0, 0),
     "quad9": (2, 0, 0),
+    "tri3": (1, 1, 0),
     "tri6": (2, 1, 0),
     "hex8": (1, 0, 1),
     "hex27": (2, 0, 1),
+    "tet4": (1, 1, 1),
     "tet10": (2, 1, 1)
 }
 # case -> (probe, length of a side, elements of second order along it; of first order there are twice as many)
-CASES = {"cook": ("tip_uy", 48, (8, 16)), "punch": ("force", 0.5, (4, 8))}
-FINE = {"cook": 64, "punch": 32}
+CASES = {"cook": ("tip_uy", 48, (8, 16)), "punch": ("force", 0.5, (4, 8, 16))}
+FINE = {"cook": 64, "punch": 48}
 NUS = (0.3, 0.4999, 0.5)
 COLUMNS = ("case", "element", "nu", "n", "value", "error", "steps", "failed", "iterations", "cpu_s")
 

@@ -1,6 +1,7 @@
 """The O-ring of runs/o_ring.yaml in Burnish and in CalculiX (ccx, Debian's package calculix-ccx) side by side, on one
-mesh of second-order quadrilaterals: mixed quad9, which has an inner node more, and CAX8R, reduced integration. CalculiX
-has no mixed elements. Both laws are neo-Hooke's of the shape, with K/2 (ln J)^2 in Burnish and K/2 (J - 1)^2 in
+mesh of second-order quadrilaterals: mixed quad9, which has an inner node more, and CAX8R, reduced integration; also
+C3D20R, a sector of 2 degrees of the same mesh with one element across, without motion around the axis. CalculiX has no
+mixed elements. Both laws are neo-Hooke's of the shape, with K/2 (ln J)^2 in Burnish and K/2 (J - 1)^2 in
 CalculiX. Its contact is surface to surface, penalty, on a row of fixed elements along the groove and one that comes
 down as the lid. Prints a table and writes runs/records/o_ring_calculix.csv. CPU seconds are of the process that solves.
     build/venv/bin/python scripts/o_ring_calculix.py [--burnish build/burnish] [--ccx ccx] [--stiffness 200]
@@ -97,6 +98,46 @@ def deck(results, nu, increment, stiffness):
     return lines
 
 
+def swept(lines):
+    """The deck of axisymmetric elements as a sector of 2 degrees: C3D20R and C3D8 on planes of -1, 0 and 1 degree."""
+    angle, planes = math.pi / WEDGE, (0, 1000000, 2000000)
+    out, kind, ring = [], "", []
+    for line in lines:
+        words = [word.strip() for word in line.split(",")]
+        if line.startswith("*"):
+            kind = words[0]
+            if kind == "*BOUNDARY" and ring:
+                out += ["*NSET, NSET=ring_nodes", *(str(node) for node in ring), "*TRANSFORM, NSET=ring_nodes, TYPE=C",
+                        "0, 0, 0, 0, 1, 0", "*BOUNDARY", "ring_nodes, 2, 2"]
+                ring = []
+            solid = line.replace("CAX8R", "C3D20R").replace("CAX4", "C3D8")
+            out.append(solid.replace(", GENERATE", ""))
+            generated = "GENERATE" in line
+        elif kind == "*NODE":
+            number, x, y = int(words[0]), float(words[1]), float(words[2])
+            out += [f"{number + plane}, {x * math.cos(turn):.12g}, {y:.12g}, {x * math.sin(turn):.12g}"
+                    for plane, turn in zip(planes, (-angle, 0, angle))]
+        elif kind == "*ELEMENT" and len(words) == 9:
+            corner, middle = words[1:5], words[5:9]
+            nodes = [int(word) + plane for plane in (0, planes[2]) for word in corner]
+            nodes += [int(word) + plane for plane in (0, planes[2]) for word in middle]
+            nodes += [int(word) + planes[1] for word in corner]
+            ring += sorted(set(nodes) - set(ring))
+            out += [f"{words[0]}, {', '.join(map(str, nodes[:10]))},", ", ".join(map(str, nodes[10:]))]
+        elif kind == "*ELEMENT" and len(words) == 5:
+            nodes = [str(int(word) + plane) for plane in (0, planes[2]) for word in words[1:]]
+            out.append(f"{words[0]}, {', '.join(nodes)}")
+        elif kind == "*SURFACE" and words[1].startswith("S"):
+            out.append(f"{words[0]}, S{int(words[1][1:]) + 2}")
+        elif kind == "*NSET" and generated:
+            out += [str(node + plane) for plane in (0, planes[2]) for node in range(int(words[0]), int(words[1]) + 1)]
+        elif kind == "*BOUNDARY" and words[0] in ("groove_nodes", "lid_nodes") and words[1] == "1":
+            out += [line, f"{words[0]}, 3, 3"]
+        else:
+            out.append(line)
+    return out
+
+
 def rows_of(path):
     if not path.exists():
         return []
@@ -129,16 +170,17 @@ def burnish(nu, directory):
                      "force": f"{summary['probes']['force']:.2f}" if code == 0 else ""}
 
 
-def calculix(nu, increment, results, directory):
+def calculix(element, nu, increment, results, directory):
     for old in directory.glob("ring.*"):
         old.unlink()
-    (directory / "ring.inp").write_text("\n".join(deck(results, nu, increment, args.stiffness)) + "\n")
+    lines = deck(results, nu, increment, args.stiffness)
+    (directory / "ring.inp").write_text("\n".join(swept(lines) if element == "C3D20R" else lines) + "\n")
     _, cpu = timed([args.ccx, "-i", "ring"], directory, directory / "ccx.log", args.limit)
     accepted, iterations = rows_of(directory / "ring.sta"), rows_of(directory / "ring.cvg")
     done = bool(accepted) and abs(float(accepted[-1][4]) - 1) < 1e-9
     steps = len({line[1] for line in accepted})
     totals = [line.split() for line in (directory / "ring.dat").read_text().splitlines() if len(line.split()) == 3]
-    return {"code": "CalculiX", "element": "CAX8R", "nu": nu, "increment": increment, "steps": steps,
+    return {"code": "CalculiX", "element": element, "nu": nu, "increment": increment, "steps": steps,
             "status": "done" if done else f"stops at {float(accepted[-1][4]) if accepted else 0:.3g} of the way",
             "failed": len({tuple(line[:3]) for line in iterations}) - steps, "iterations": len(iterations),
             "cpu_s": f"{cpu:.2f}", "force": f"{WEDGE * abs(float(totals[-1][1])):.2f}" if done else ""}
@@ -162,7 +204,8 @@ with open(args.record, "w", newline="") as record, tempfile.TemporaryDirectory()
         mesh, figures = burnish(ratio, pathlib.Path(temporary))
         lines = [figures]
         if ratio <= 0.499:
-            lines += [calculix(ratio, step, mesh, pathlib.Path(temporary)) for step in args.increments]
+            lines += [calculix(element, ratio, step, mesh, pathlib.Path(temporary))
+                      for element in ("CAX8R", "C3D20R") for step in args.increments]
         for line in lines:
             table.writerow(line)
             print("| " + " | ".join(str(line[name]) for name in COLUMNS) + " |", flush=True)

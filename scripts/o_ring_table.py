@@ -19,6 +19,7 @@ from launch import ROOT, environment
 ELEMENTS = {  # name -> order, triangles, elements along a quarter of the cord
     "quad4": (1, 0, (16, 24)),
     "quad9": (2, 0, (8, 12)),
+    "tri3": (1, 1, (16, 24)),
     "tri6": (2, 1, (8, 10, 12, 14))
 }
 FINE = ("quad9", 24)
@@ -79,7 +80,7 @@ def cases(nus):
             if LIMITS[way] == way:
                 yield way, *FINE, nu
             for element, (_, _, sizes) in ELEMENTS.items():
-                for n in sizes if way not in PRESSED else PRESSED_SIZES[element]:
+                for n in sizes if way not in PRESSED else PRESSED_SIZES.get(element, ()):
                     yield way, element, n, nu
 
 
@@ -97,12 +98,13 @@ parser.add_argument("--burnish", default=str(ROOT / "build/burnish"))
 parser.add_argument("--record", default=str(ROOT / "runs/records/o_ring.csv"))
 parser.add_argument("--nu", nargs="*", type=float, default=NUS)
 parser.add_argument("--on", action="store_true", help="goes on with a record: runs that it has are not made again")
+parser.add_argument("--again", nargs="*", choices=list(WAYS), default=(), help="with --on, makes these again")
 args = parser.parse_args()
 known = {}
 if args.on:
     with open(args.record) as file:
         for row in csv.DictReader(file):
-            if row["status"] != "stopped":
+            if row["status"] != "stopped" and row["squeeze"] not in args.again:
                 known[row["squeeze"], row["element"], int(row["n"]), float(row["nu"])] = row
 rows = []
 for case in cases(args.nu):

@@ -1,5 +1,6 @@
 /* Assembly of the elastic problem from batched element kernels. */
 #include "elasticityimpl.h"
+#include "mesh/pressurenodes.h"
 
 static PetscLogEvent event_residual, event_tangent, event_insert;
 
@@ -69,7 +70,7 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
     if (g == e->n_groups) {
       CellGroup *group = &e->groups[e->n_groups++];
 
-      *group = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes, .plastic = plastic};
+      *group = (CellGroup){.kernel = kernel, .nodes = ElementNodes(&kernel), .plastic = plastic};
       if (kernel.plastic) group->kernel.plastic = &group->plastic;
       for (int i = 0; i < e->dim; i++) group->plastic.origin[i] = mesh->centre[i];
       if (plastic.umat) group->plastic.fault = group->fault;
@@ -109,15 +110,28 @@ static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Lists the nodes of a cell, with those of its pressures. */
+static void GetNodes(Elasticity e, const CellGroup *g, PetscInt c, PetscInt nodes[ELEMENT_MAX_NODES])
+{
+  const Mesh mesh  = e->mesh;
+  const int  count = ElementGet(g->kernel.type)->nodes;
+
+  for (int a = 0; a < count; a++) {
+    nodes[a] = mesh->cell_nodes[mesh->cell_ptr[c] + a];
+    if (count + a < g->nodes) nodes[count + a] = PressureNodeOf(mesh, nodes[a]);
+  }
+}
+
 /* Fills a slot of a group with a cell. The last cell also fills the rest of its batch. */
 static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, PetscInt c)
 {
   const Mesh      mesh     = e->mesh;
   const Material  material = BodyMaterial(scene, mesh->cell_body[c]);
-  const PetscInt *nodes    = &mesh->cell_nodes[mesh->cell_ptr[c]];
   const PetscInt  end      = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+  PetscInt        nodes[ELEMENT_MAX_NODES];
   PetscReal       X[MAX_DOFS];
 
+  GetNodes(e, g, c, nodes);
   for (int a = 0; a < g->nodes && g->length; a++)
     for (int i = 0; i < e->dim; i++) X[a * e->dim + i] = mesh->coords[nodes[a] * e->dim + i];
   for (PetscInt s = slot; s < end; s++) {
@@ -136,19 +150,22 @@ static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, Pets
 }
 
 /* Lists the cells around every node as a CSR. */
-static PetscErrorCode NodeCells(Mesh mesh, PetscInt **ptr, PetscInt **cells)
+static PetscErrorCode NodeCells(Elasticity e, PetscInt **ptr, PetscInt **cells)
 {
-  PetscInt *p, *list;
+  const Mesh mesh = e->mesh;
+  PetscInt   nodes[ELEMENT_MAX_NODES], *p, *list;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_nodes + 2, &p));
-  PetscCall(PetscMalloc1(mesh->n_cells ? mesh->cell_ptr[mesh->n_cells] : 0, &list));
+  PetscCall(PetscMalloc1((mesh->has_pressures ? 2 : 1) * (mesh->n_cells ? mesh->cell_ptr[mesh->n_cells] : 0), &list));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++) p[mesh->cell_nodes[k] + 2]++;
+    GetNodes(e, &e->groups[e->cell_group[c]], c, nodes);
+    for (int k = 0; k < e->groups[e->cell_group[c]].nodes; k++) p[nodes[k] + 2]++;
   }
   for (PetscInt n = 0; n < mesh->n_nodes; n++) p[n + 2] += p[n + 1];
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++) list[p[mesh->cell_nodes[k] + 1]++] = c;
+    GetNodes(e, &e->groups[e->cell_group[c]], c, nodes);
+    for (int k = 0; k < e->groups[e->cell_group[c]].nodes; k++) list[p[nodes[k] + 1]++] = c;
   }
   *ptr   = p;
   *cells = list;
@@ -157,17 +174,23 @@ static PetscErrorCode NodeCells(Mesh mesh, PetscInt **ptr, PetscInt **cells)
 
 /* Lists the nodes that share a cell with a node, ascending. mark[] holds the last node for which each one was counted.
  */
-static PetscErrorCode NodeNeighbours(Mesh mesh, PetscInt node, const PetscInt *ptr, const PetscInt *cells,
+static PetscErrorCode NodeNeighbours(Elasticity e, PetscInt node, const PetscInt *ptr, const PetscInt *cells,
                                      PetscInt *mark, PetscInt *neighbours, PetscInt *count)
 {
+  const Mesh mesh = e->mesh;
+
   PetscFunctionBeginUser;
   *count = 0;
   for (int k = 0; k < mesh->n_tools && node >= mesh->n_body_nodes; k++) /* of a tool, which has no cells */
     for (PetscInt n = mesh->tools[k].node; n < mesh->tools[k].node + TOOL_NODES; n++)
       if (node >= mesh->tools[k].node && node < mesh->tools[k].node + TOOL_NODES) neighbours[(*count)++] = n;
   for (PetscInt k = ptr[node]; k < ptr[node + 1]; k++) {
-    for (PetscInt m = mesh->cell_ptr[cells[k]]; m < mesh->cell_ptr[cells[k] + 1]; m++) {
-      const PetscInt n = mesh->cell_nodes[m];
+    const CellGroup *g = &e->groups[e->cell_group[cells[k]]];
+    PetscInt         nodes[ELEMENT_MAX_NODES];
+
+    GetNodes(e, g, cells[k], nodes);
+    for (int m = 0; m < g->nodes; m++) {
+      const PetscInt n = nodes[m];
 
       if (mark[n] == node) continue;
       mark[n]                = node;
@@ -184,9 +207,10 @@ static void SetBlocks(Elasticity e, PetscInt node, const PetscInt *ptr, const Pe
   for (PetscInt k = ptr[node]; k < ptr[node + 1]; k++) {
     const PetscInt  c     = cells[k];
     CellGroup      *g     = &e->groups[e->cell_group[c]];
-    const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[c]], slot = e->cell_slot[c];
-    const PetscInt  end = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+    const PetscInt  slot = e->cell_slot[c], end = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+    PetscInt        nodes[ELEMENT_MAX_NODES];
 
+    GetNodes(e, g, c, nodes);
     for (int a = 0; a < g->nodes; a++) {
       if (nodes[a] != node) continue;
       for (PetscInt s = slot; s < end; s++) {
@@ -206,13 +230,13 @@ static PetscErrorCode CreateBlocks(Elasticity e)
   PetscCount total = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(NodeCells(mesh, &ptr, &cells));
+  PetscCall(NodeCells(e, &ptr, &cells));
   PetscCall(PetscMalloc2(mesh->n_nodes, &mark, mesh->n_nodes, &neighbours));
   PetscCall(PetscMalloc1(mesh->n_nodes + 1, &e->row));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) mark[n] = -1;
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
     PetscCall(PetscIntCast(total, &e->row[n]));
-    PetscCall(NodeNeighbours(mesh, n, ptr, cells, mark, neighbours, &count));
+    PetscCall(NodeNeighbours(e, n, ptr, cells, mark, neighbours, &count));
     total += count;
   }
   PetscCall(PetscIntCast(total, &e->row[mesh->n_nodes]));
@@ -220,7 +244,7 @@ static PetscErrorCode CreateBlocks(Elasticity e)
   PetscCall(PetscCalloc1(total * e->dim * e->dim, &e->value));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) mark[n] = -1;
   for (PetscInt n = 0; n < mesh->n_nodes; n++)
-    PetscCall(NodeNeighbours(mesh, n, ptr, cells, mark, &e->column[e->row[n]], &count));
+    PetscCall(NodeNeighbours(e, n, ptr, cells, mark, &e->column[e->row[n]], &count));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
     PetscInt *place = mark;
 
@@ -265,7 +289,7 @@ static PetscBool VolumeIsStiff(Scene scene, PetscInt body)
    the volume of one of its cells is too stiff. */
 static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
 {
-  PetscInt   n = 0;
+  PetscInt   n = 0, n_yielding = 0;
   PetscBool *stiff;
 
   PetscFunctionBeginUser;
@@ -281,12 +305,38 @@ static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
 
     for (PetscInt c = 0; c < g->n_cells && ElementPressures(&g->kernel); c++)
       some = (PetscBool)(some || stiff[e->mesh->cell_body[g->cell[c]]]);
+    g->yielding    = ElementPressures(&g->kernel) ? n_yielding : -1;
     g->multipliers = some ? n : -1;
+    n_yielding += g->n_batches * ElementPressures(&g->kernel) * KERNEL_LANES;
     if (some) n += g->n_batches * ElementPressures(&g->kernel) * KERNEL_LANES;
   }
   PetscCall(PetscFree(stiff));
   e->state.n = e->accepted.n = n;
   PetscCall(PetscCalloc2(n, &e->state.multiplier, n, &e->accepted.multiplier));
+  PetscCall(PetscMalloc1(n_yielding, &e->yielding));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives the kernels the length that makes pressures of nodes unknowns like displacements: the mean size of the cells.
+   All these unknowns then have forces and stiffnesses of one magnitude. */
+static PetscErrorCode SetLength(Elasticity e)
+{
+  const Mesh mesh   = e->mesh;
+  PetscReal  volume = 0;
+
+  PetscFunctionBeginUser;
+  if (!mesh->has_pressures) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const PetscInt *nodes = &mesh->cell_nodes[mesh->cell_ptr[c]];
+    PetscReal       X[MAX_DOFS];
+
+    for (int k = 0; k < ElementGet(mesh->cell_type[c])->nodes * e->dim; k++)
+      X[k] = mesh->coords[nodes[k / e->dim] * e->dim + k % e->dim];
+    volume += CellVolume(mesh->cell_type[c], e->dim, e->dim == 2 ? GEOMETRY_PLANE_STRAIN : GEOMETRY_SOLID, X);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &volume, 1, MPIU_REAL, MPI_SUM, mesh->comm));
+  for (int g = 0; g < e->n_groups; g++)
+    e->groups[g].kernel.length = PetscPowReal(volume / (PetscReal)mesh->n_cells_global, 1. / e->dim);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -313,6 +363,7 @@ PetscErrorCode ElasticityCreate(Mesh mesh, Scene scene, Elasticity *elasticity)
   e->dim       = mesh->dim;
   e->symmetric = PETSC_TRUE;
   PetscCall(GroupCells(e, scene));
+  PetscCall(SetLength(e));
   for (int g = 0; g < e->n_groups; g++) PetscCall(AllocateGroup(&e->groups[g], e->dim));
   for (PetscInt c = 0; c < mesh->n_cells; c++) SetCell(e, scene, &e->groups[e->cell_group[c]], e->cell_slot[c], c);
   PetscCall(CreateBlocks(e));
@@ -352,6 +403,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   PetscCall(PetscFree(e->value));
   PetscCall(PetscFree(e->buffer));
   PetscCall(PetscFree2(e->state.multiplier, e->accepted.multiplier));
+  PetscCall(PetscFree(e->yielding));
   PetscCall(PetscFree(e->enclosed.body));
   PetscCall(NodeMatrixDestroy(&e->matrix));
   PetscCall(PetscFree(*elasticity));
@@ -428,6 +480,12 @@ void ElasticityGather(Elasticity e, CellGroup *g, PetscInt batch, const PetscRea
 PetscReal *ElasticityMultipliersOf(const CellGroup *g, PetscInt batch, PetscReal *multipliers)
 {
   return &multipliers[g->multipliers + batch * ElementPressures(&g->kernel) * KERNEL_LANES];
+}
+
+/* The multipliers of a batch while energies are compared. */
+PetscReal *ElasticityYieldingOf(Elasticity e, const CellGroup *g, PetscInt batch)
+{
+  return &e->yielding[g->yielding + batch * ElementPressures(&g->kernel) * KERNEL_LANES];
 }
 
 /*@
@@ -508,15 +566,19 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
   e->inverted = -1;
   e->fault    = 0;
   for (int k = 0; k < e->n_groups; k++) {
-    CellGroup   *g    = &e->groups[k];
-    const size_t dofs = (size_t)g->nodes * e->dim;
+    CellGroup      *g      = &e->groups[k];
+    const size_t    dofs   = (size_t)g->nodes * e->dim;
+    const PetscBool yields = (PetscBool)(e->yields && !forces && g->yielding >= 0);
+    KernelCase      kernel = g->kernel;
 
+    kernel.yields = yields;
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
 
       ElasticityGather(e, g, batch, u, e->u);
-      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, NULL, &g->constants[first * g->kernel.n_constants],
-                    ElasticityMultipliers(e, g, batch), energy ? W : NULL, forces ? e->f : NULL, NULL, J);
+      ElementKernel(&kernel, &g->X[first * dofs], e->u, NULL, &g->constants[first * g->kernel.n_constants],
+                    yields ? ElasticityYieldingOf(e, g, batch) : ElasticityMultipliers(e, g, batch), energy ? W : NULL,
+                    forces ? e->f : NULL, NULL, J);
       if (forces) ScatterForce(e, g, batch, f, force2);
       for (int lane = 0; lane < ElasticityBatchCells(g, batch); lane++) {
         if (energy) *energy += W[lane];
@@ -843,9 +905,10 @@ static void GatherCell(Elasticity e, CellGroup *g, PetscInt slot, const PetscRea
                        PetscReal m[MIXED_PRESSURES])
 {
   const size_t     batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
-  const PetscInt  *nodes       = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
   const PetscReal *multipliers = ElasticityMultipliers(e, g, (PetscInt)batch);
+  PetscInt         nodes[ELEMENT_MAX_NODES];
 
+  GetNodes(e, g, g->cell[slot], nodes);
   for (int k = 0; k < ElementPressures(&g->kernel); k++) m[k] = multipliers ? multipliers[k * KERNEL_LANES + lane] : 0;
   for (int a = 0; a < g->nodes; a++) {
     for (int i = 0; i < e->dim; i++) {
@@ -902,7 +965,7 @@ static void AddCellStress(Elasticity e, CellGroup *g, PetscInt slot, const Petsc
   GatherCell(e, g, slot, u, X, cell_u, constants, m);
   ElementPointStress(&g->kernel, X, cell_u, constants, m, point_stress, point_volume);
   for (int p = 0; p < element->points; p++) volume += point_volume[p];
-  for (int a = 0; a < g->nodes; a++) {
+  for (int a = 0; a < element->nodes; a++) {
     weight[nodes[a]] += volume;
     for (int p = 0; p < element->points; p++) {
       for (int c = 0; c < 6; c++) stress[nodes[a] * 6 + c] += volume * element->fit[a][p] * point_stress[p * 6 + c];

@@ -45,6 +45,8 @@ PetscInt64     ElasticityPlasticPoints(Elasticity, PetscInt64 *bytes);
 PetscErrorCode ElasticityPlasticWork(Elasticity, PetscReal *work, PetscReal *strain);
 PetscErrorCode ElasticityAugment(Elasticity, const PetscReal *u, PetscBool *holds);
 PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const StressReference *);
+PetscErrorCode ElasticityYield(Elasticity, const PetscReal *u, const PetscReal *next);
+void           ElasticityYieldEnd(Elasticity);
 PetscErrorCode ElasticityAccept(Elasticity);
 PetscErrorCode ElasticityRestore(Elasticity);
 PetscErrorCode ElasticityArchive(Elasticity, Archive);

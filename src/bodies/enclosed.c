@@ -1,5 +1,7 @@
 /* The level of pressure of bodies whose volume is enclosed, see enclosed.h. */
 #include "enclosed.h"
+#include "base/complaint.h"
+#include "mesh/pressurenodes.h"
 
 /* Derivatives of the volume of a body by its nodes are zero below this part of the largest one: interior nodes have
    round-off only. */
@@ -24,7 +26,8 @@ static void AddVolumeGradient(Elasticity e, PetscInt body, PetscReal *gradient)
       if (e->mesh->cell_body[g->cell[slot]] != body) continue;
       ElasticitySlotCoordinates(e, g, slot, X);
       CellVolumeGradient(g->kernel.type, e->dim, g->kernel.geometry, X, f);
-      for (int a = 0; a < g->nodes * e->dim; a++) gradient[nodes[a / e->dim] * e->dim + a % e->dim] += f[a];
+      for (int a = 0; a < ElementGet(g->kernel.type)->nodes * e->dim; a++)
+        gradient[nodes[a / e->dim] * e->dim + a % e->dim] += f[a];
     }
   }
 }
@@ -53,6 +56,23 @@ static PetscErrorCode FindEnclosed(Elasticity e, PetscInt body, PetscBool *enclo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Refuses an enclosed body whose nodes have pressures: nothing would tell an impossible change of its volume. */
+static PetscErrorCode RefusePressureNodes(Elasticity e, Scene scene, PetscInt body)
+{
+  Complaint complaint = {""};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < e->mesh->n_cells && !complaint.text[0]; c++)
+    if (e->mesh->cell_body[c] == body && CellHasPressureNodes(e->mesh, scene, c))
+      Complain(&complaint,
+               "%s: body '%s' keeps its volume exactly, and displacements are prescribed on its whole surface: its "
+               "pressure is not determined, which mixed tri3 and tet4 do not treat; allowed: mesh.order: 2, or nu "
+               "below 0.5",
+               SceneWhere(scene, scene->bodies[body].path, "material"), scene->bodies[body].name);
+  PetscCall(ComplaintRefuse(e->mesh->comm, &complaint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ElasticityFindEnclosed - finds bodies that keep their volume exactly and have no free node whose motion would change
   it.
@@ -65,7 +85,8 @@ static PetscErrorCode FindEnclosed(Elasticity e, PetscInt body, PetscBool *enclo
 - prescribed - whether a displacement is supported or imposed [n_nodes*dim]; it is kept
 
   Note:
-  The pressure of such a body is determined up to a constant only; its mean becomes zero.
+  The pressure of such a body is determined up to a constant only; its mean becomes zero. A body with cells whose nodes
+  have pressures is refused.
 @*/
 PetscErrorCode ElasticityFindEnclosed(Elasticity e, Scene scene, const PetscBool *prescribed)
 {
@@ -78,6 +99,7 @@ PetscErrorCode ElasticityFindEnclosed(Elasticity e, Scene scene, const PetscBool
         !PetscIsInfReal(scene->bodies[b].material.constants[0]))
       continue;
     PetscCall(FindEnclosed(e, b, &e->enclosed.body[b]));
+    if (e->enclosed.body[b]) PetscCall(RefusePressureNodes(e, scene, b));
     e->enclosed.any = (PetscBool)(e->enclosed.any || e->enclosed.body[b]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

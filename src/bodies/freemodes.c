@@ -3,6 +3,7 @@
 #include "bodies/tools.h"
 #include "kernels/elementkernel.h"
 #include "mesh/meshpieces.h"
+#include "mesh/pressurenodes.h"
 #include "base/refusal.h"
 
 /* Supports hold a rotation if their lever arm is more than a millionth of the body's size; this is the square of it.
@@ -163,7 +164,7 @@ static PetscErrorCode FindSupported(FreeModes modes, Loads loads)
     const PetscInt p = modes->piece[n];
     double         x[3], row[RIGID_MODES];
 
-    if (mesh->node_owner[n] != rank || modes->pieces[p].tool) continue;
+    if (mesh->node_owner[n] != rank || modes->pieces[p].tool || IsPressureNode(mesh, n)) continue;
     PlaceInPiece(&modes->pieces[p], dim, &mesh->coords[n * dim], x);
     for (int d = 0; d < dim; d++) {
       if (!LoadsHeld(loads, n * dim + d)) continue;

@@ -5,6 +5,7 @@
 #include "bodies/loads.h"
 #include "bodies/loadvalues.h"
 #include "bodies/tools.h"
+#include "mesh/pressurenodes.h"
 #include "base/refusal.h"
 
 /* Stands in the place of a load's index where the axisymmetric geometry itself holds u_r on the axis. */
@@ -202,6 +203,7 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
   PetscCall(PetscFree(loads->owner));
   PetscCall(ComplaintRefuse(mesh->comm, &loads->complaint));
   ToolsConstrain(mesh, loads->constrained);
+  PetscCall(PressureNodesConstrain(mesh, scene, loads->constrained));
   PetscCall(MeshSetConstraints(mesh, loads->constrained));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -178,7 +178,7 @@ static void CellCoordinates(Elasticity e, const CellGroup *g, PetscInt slot, Pet
 {
   const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
 
-  for (int a = 0; a < g->nodes; a++)
+  for (int a = 0; a < ElementGet(g->kernel.type)->nodes; a++)
     for (int i = 0; i < e->dim; i++) X[a * e->dim + i] = e->mesh->coords[nodes[a] * e->dim + i];
 }
 
@@ -234,7 +234,7 @@ static void AddCellStrain(Elasticity e, PetscInt c, PetscReal *strain, PetscReal
     volume += volumes[p];
     CellPlasticStrains(g, e->cell_slot[c], first + p, points[p]);
   }
-  for (int a = 0; a < g->nodes; a++) {
+  for (int a = 0; a < element->nodes; a++) {
     for (int k = 0; k < PLASTIC_FIELDS; k++) {
       PetscReal fit = 0;
 

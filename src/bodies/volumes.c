@@ -166,6 +166,56 @@ PetscErrorCode ElasticityFollow(Elasticity e, const PetscReal *u, const StressRe
 }
 
 /*@
+  ElasticityYield - makes the energy one whose minimum can be searched along a step, until ElasticityYieldEnd().
+
+  Not collective
+
+  Input Parameters:
++ e    - the elasticity
+. u    - local displacements (length) [n_nodes*dim] at the start of a linear step
+- next - those at its end
+
+  Note:
+  A linear step that keeps the volume changes it by the square of its length, which moduli of the volume make into more
+  energy than the step gains. The energy is that of a soft volume about the pressures of the step's linear problem. It
+  has its minimum where the other has it, once the pressures are right, and falls along the step. Residuals remain.
+@*/
+PetscErrorCode ElasticityYield(Elasticity e, const PetscReal *u, const PetscReal *next)
+{
+  const StressReference gathered = {e->u_0, 1, 0};
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < e->n_groups; k++) {
+    CellGroup *g = &e->groups[k];
+
+    for (PetscInt batch = 0; batch < g->n_batches && g->yielding >= 0; batch++) {
+      const size_t first = (size_t)batch * KERNEL_LANES;
+
+      ElasticityGather(e, g, batch, next, e->u);
+      ElasticityGather(e, g, batch, u, e->u_0);
+      ElementYield(&g->kernel, &g->X[first * (size_t)(g->nodes * e->dim)], e->u, &gathered,
+                   &g->constants[first * g->kernel.n_constants], ElasticityMultipliers(e, g, batch),
+                   ElasticityYieldingOf(e, g, batch));
+    }
+  }
+  e->yields = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElasticityYieldEnd - ends ElasticityYield().
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity
+@*/
+void ElasticityYieldEnd(Elasticity e)
+{
+  e->yields = PETSC_FALSE;
+}
+
+/*@
   ElasticityAccept - makes the present multipliers those of the accepted state.
 
   Not collective

@@ -8,6 +8,9 @@
    change of the multipliers makes it 1e4 times smaller. The condition number of the tangent grows with kappa, and its
    round-off is small with 1e4 still. */
 static const double largest_kappa = 1e4;
+/* The same where energies are compared. A step that is right changes volumes by the square of its length, which full
+   moduli make into more energy than the step gains. This is the modulus up to which solids need no mixed elements. */
+static const double yielding_kappa = 20;
 /* Part of the modulus of the volume that mixed elements with linear pressures evaluate at their points, over the shear
    modulus and over the modulus itself. Laws whose shape part does not depend on the volume resist changes of it inside
    an element that the projection does not see by their shear alone. One shear modulus more keeps Newton's method from
@@ -93,6 +96,11 @@ static BatchFn *const full_batches[ELEMENT_TYPES][2] = {
   [ELEMENT_HEX27] = {BatchHex27, NULL},
 };
 
+static int HasNodalPressure(const KernelCase *kernel)
+{
+  return kernel->formulation == FORMULATION_MIXED && nodal_pressure_batches[kernel->type][0] != NULL;
+}
+
 static BatchFn *GetBatch(const KernelCase *kernel)
 {
   const int         axisymmetric = kernel->geometry == GEOMETRY_AXISYMMETRIC;
@@ -102,7 +110,9 @@ static BatchFn *GetBatch(const KernelCase *kernel)
   switch (kernel->formulation) { /* the modes of enhanced elements are found by an energy, which a routine has not */
   case FORMULATION_ENHANCED: return kernel->law == MATERIAL_UMAT ? NULL : enhanced_batches[kernel->type][axisymmetric];
   case FORMULATION_FBAR: return mean_dilatation_batches[kernel->type][axisymmetric];
-  case FORMULATION_MIXED: return splits ? mixed_batches[kernel->type][axisymmetric] : NULL;
+  case FORMULATION_MIXED:
+    if (!splits) return NULL;
+    return (HasNodalPressure(kernel) ? nodal_pressure_batches : mixed_batches)[kernel->type][axisymmetric];
   default: return full_batches[kernel->type][axisymmetric];
   }
 }
@@ -113,7 +123,7 @@ static BatchFn *GetBatch(const KernelCase *kernel)
   Not collective
 
   Note:
-  Mixed exists for all cells but tri3 and tet4, with separable laws, see material.h. With small strains all laws are.
+  Mixed exists for separable laws, see material.h. With small strains all laws are.
 @*/
 int ElementKernelExists(const KernelCase *kernel)
 {
@@ -160,7 +170,7 @@ int ElementExtrapolates(const KernelCase *kernel)
 {
   const ElasticLaw *law = MaterialGetLaw(kernel->law);
 
-  if (kernel->kinematics == KINEMATICS_SMALL) return 0;
+  if (kernel->kinematics == KINEMATICS_SMALL || HasNodalPressure(kernel)) return 0;
   return law->separable || (law->extrapolate && kernel->formulation != FORMULATION_FBAR);
 }
 
@@ -174,6 +184,7 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
                      .finite      = kernel->kinematics == KINEMATICS_FINITE,
                      .n_constants = kernel->n_constants ? kernel->n_constants : law->constants,
                      .plastic     = kernel->plastic,
+                     .length      = kernel->length,
                      .states      = kernel->plastic ? ElementStates(kernel->plastic) : 0,
                      .constants   = constants};
 }
@@ -186,7 +197,7 @@ static VolumeModuli SplitVolume(const KernelCase *kernel, double modulus, double
   if (ElementPressures(kernel) > 1 && !MaterialGetLaw(kernel->law)->plastic)
     split.local = fmax(0, fmin(largest_local * mu, local_share * modulus));
   split.projected = modulus - split.local;
-  split.kappa     = fmin(split.projected, largest_kappa * mu);
+  split.kappa     = fmin(split.projected, (kernel->yields ? yielding_kappa : largest_kappa) * mu);
   return split;
 }
 
@@ -229,6 +240,7 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
     const VolumeModuli split = SplitVolume(kernel, lanes_constants[0][lane], call->mu[lane]);
 
     call->kappa[lane]        = split.kappa;
+    call->modulus[lane]      = split.projected;
     call->rest[lane]         = 1 - split.kappa / split.projected;
     lanes_constants[0][lane] = split.local;
   }
@@ -255,9 +267,10 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
 
   Note:
   Solids in plane strain have unit thickness. Axisymmetric quantities are over 360 degrees. A state with J <= 0 or NaN
-  is not admissible, but all arrays hold finite numbers if X and u do. Every formulation has an energy; f and K are its
-  derivatives. K is full, and symmetric unless a routine of the user's has an
-  unsymmetric tangent. With a reference K is no derivative, but it differs from it only by the square
+  is not admissible, but all arrays hold finite numbers if X and u do. f and K are derivatives of the energy, but for
+  elements whose nodes have pressures; there W is what is stored where the pressure is in equilibrium. K is full. It is
+  symmetric, unless a routine of the user's has an unsymmetric tangent or nodes have pressures. With a reference K is
+  no derivative, but it differs from it only by the square
   of the way from there (rate 1) or by that way (rate 0). A reference is ignored unless ElementExtrapolates().
 
   Source:
@@ -370,6 +383,23 @@ int ElementPressures(const KernelCase *kernel)
 }
 
 /*@
+  ElementNodes - returns the number of nodes that a kernel has: twice that of the element where nodes have pressures.
+
+  Not collective
+
+  Input Parameter:
+. kernel - element type and formulation
+
+  Note:
+  The nodes of the element come first. Those of the pressures follow in the same order; nodalpressurekernel.c tells what
+  their displacements are.
+@*/
+int ElementNodes(const KernelCase *kernel)
+{
+  return ElementGet(kernel->type)->nodes * (HasNodalPressure(kernel) ? 2 : 1);
+}
+
+/*@
   ElementDilatation - computes the dilatations of a batch of mixed elements, from which the pressures follow.
 
   Not collective
@@ -408,6 +438,29 @@ void ElementDilatation(const KernelCase *kernel, const double *X, const double *
   }
 }
 
+/* Extrapolates the pressures of a batch from an earlier state; multiplier as for ElementKernel(). */
+static void Follow(const KernelCase *kernel, const double *X, const double *u, const StressReference *reference,
+                   const double *constants, const double *multiplier, double *pressure)
+{
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
+  double    J[LANES];
+
+  call.rate = reference->rate;
+  for (int part = 0; part < KERNEL_LANES; part += LANES) {
+    SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
+    call.X          = X + part;
+    call.u          = u + part;
+    call.u_0        = reference->u + part;
+    call.part       = part;
+    call.state      = kernel->plastic ? kernel->plastic->state + part : NULL;
+    call.J          = J;
+    call.multiplier = multiplier ? multiplier + part : NULL;
+    call.follow     = pressure + part;
+    GetBatch(kernel)(&call);
+  }
+}
+
 /*@
   ElementFollow - computes the multipliers with which a batch of mixed elements has the pressures that extrapolate from
   an earlier state.
@@ -431,23 +484,49 @@ void ElementDilatation(const KernelCase *kernel, const double *X, const double *
 void ElementFollow(const KernelCase *kernel, const double *X, const double *u, const StressReference *reference,
                    const double *constants, const double *multiplier, double *next)
 {
-  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
-  BatchCall call = StartCall(kernel, lanes_constants);
-  double    J[LANES];
+  Follow(kernel, X, u, reference, constants, multiplier, next);
+  for (int lane = 0; lane < KERNEL_LANES; lane++) {
+    VolumeModuli moduli;
 
-  call.rate = reference->rate;
-  for (int part = 0; part < KERNEL_LANES; part += LANES) {
-    SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
-    call.X          = X + part;
-    call.u          = u + part;
-    call.u_0        = reference->u + part;
-    call.part       = part;
-    call.state      = kernel->plastic ? kernel->plastic->state + part : NULL;
-    call.J          = J;
-    call.multiplier = multiplier + part;
-    call.follow     = next + part;
-    GetBatch(kernel)(&call);
-    for (int k = 0; k < ElementPressures(kernel); k++) LANE(next + part, k) *= call.rest;
+    ElementVolumeModuli(kernel, constants + lane, KERNEL_LANES, &moduli);
+    for (int k = lane; k < ElementPressures(kernel) * KERNEL_LANES; k += KERNEL_LANES)
+      next[k] *= 1 - moduli.kappa / moduli.projected;
+  }
+}
+
+/*@
+  ElementYield - computes the multipliers with which elements of a soft volume have the pressures that extrapolate from
+  an earlier state.
+
+  Not collective
+
+  Input Parameters:
++ kernel     - as for ElementFollow()
+. X          - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
+. u          - displacements (length) [nodes][dim][lanes]
+. reference  - the earlier state, u as above
+. constants  - of the law [n_constants][lanes]
+- multiplier - present ones (stress times root of volume) [pressures][lanes]; NULL: they are 0
+
+  Output Parameter:
+. next - multipliers [pressures][lanes] for a KernelCase that yields
+
+  Note:
+  The energy of such elements with these multipliers has the same minimum in an equilibrium with these pressures.
+@*/
+void ElementYield(const KernelCase *kernel, const double *X, const double *u, const StressReference *reference,
+                  const double *constants, const double *multiplier, double *next)
+{
+  KernelCase soft = *kernel;
+
+  Follow(kernel, X, u, reference, constants, multiplier, next);
+  soft.yields = 1;
+  for (int lane = 0; lane < KERNEL_LANES; lane++) {
+    VolumeModuli moduli;
+
+    ElementVolumeModuli(&soft, constants + lane, KERNEL_LANES, &moduli);
+    for (int k = lane; k < ElementPressures(kernel) * KERNEL_LANES; k += KERNEL_LANES)
+      next[k] *= 1 - moduli.kappa / moduli.projected;
   }
 }
 
@@ -476,7 +555,7 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
 {
   Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
   BatchCall call = StartCall(kernel, lanes_constants);
-  const int dofs = call.e->nodes * call.e->dim;
+  const int dofs = ElementNodes(kernel) * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
     lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], lanes_state[ELEMENT_MAX_POINTS * MAX_STATE * KERNEL_LANES],
     lanes_pressure[ELEMENT_MAX_POINTS * KERNEL_LANES] = {0}, lanes_multiplier[MIXED_PRESSURES * KERNEL_LANES];

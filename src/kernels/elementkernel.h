@@ -13,8 +13,8 @@
    K may extrapolate the stress of its geometric part from an earlier state (stressreference.h), where
    ElementExtrapolates().
 
-   ElementPressures(), ElementVolumeModuli(), ElementDilatation() and ElementFollow() are for mixed elements, whose
-   multipliers the caller holds.
+   ElementPressures(), ElementVolumeModuli(), ElementDilatation(), ElementFollow() and ElementYield() are for mixed
+   elements, whose multipliers the caller holds. ElementNodes() counts nodes with those of pressures.
 
    Source of the forms: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis". */
 #pragma once
@@ -52,6 +52,8 @@ typedef struct {
   int         n_constants; /* of the law; 0: as many as MaterialGetLaw() says */
   /* of a plastic law, or NULL: its elastic part alone */
   const PlasticBatch *plastic;
+  int    yields; /* of mixed elements: the energy is that of a soft volume about the multipliers, see ElementYield() */
+  double length; /* of mixed elements whose nodes have pressures: that which makes these unknowns lengths */
 } KernelCase;
 
 /* Parts of the modulus of the volume in a mixed element (stress). local acts at the points, projected on the mean that
@@ -77,9 +79,12 @@ void   ElementPointStress(const KernelCase *, const double *X, const double *u, 
 void   ElementStress(const KernelCase *, const double *X, const double *u, const double *constants,
                      const double *multiplier, double stress[6], double *volume);
 int    ElementPressures(const KernelCase *);
+int    ElementNodes(const KernelCase *);
 void   ElementVolumeModuli(const KernelCase *, const double *constants, int stride, VolumeModuli *);
 void   ElementFollow(const KernelCase *, const double *X, const double *u, const StressReference *,
                      const double *constants, const double *multiplier, double *next);
+void   ElementYield(const KernelCase *, const double *X, const double *u, const StressReference *,
+                    const double *constants, const double *multiplier, double *next);
 void   ElementDilatation(const KernelCase *, const double *X, const double *u, const double *constants,
                          const double *multiplier, double *theta);
 double ElementVolumeEnergy(const KernelCase *, const double *X, const double *u, const double *constants,

@@ -77,7 +77,9 @@ PetscErrorCode LinearSolverCreate(KSP ksp, Mesh mesh, Scene scene, PetscBool sym
   (*solver)->ksp       = ksp;
   (*solver)->symmetric = symmetric;
   if (type == SOLVER_AUTO)
-    type = mesh->dim == 3 && mesh->dim * mesh->n_global > LINEAR_DIRECT_DOFS ? SOLVER_ITERATIVE : SOLVER_DIRECT;
+    type = mesh->dim == 3 && !mesh->has_pressures && mesh->dim * mesh->n_global > LINEAR_DIRECT_DOFS
+             ? SOLVER_ITERATIVE
+             : SOLVER_DIRECT;
   if (type == SOLVER_DIRECT) {
     PetscCall(DirectSolverSet(ksp, symmetric));
     if (mesh->dim * mesh->n_global >= LINEAR_KEPT_DOFS) PetscCall(ReusedFactorCreate(ksp, &(*solver)->kept));

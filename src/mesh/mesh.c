@@ -4,6 +4,7 @@
 #include "gmsh.h"
 #include "meshdistribution.h"
 #include "meshtools.h"
+#include "pressurenodesimpl.h"
 #include "base/refusal.h"
 #include "rootgroups.h"
 #include "rootlinks.h"
@@ -148,6 +149,7 @@ static PetscErrorCode MeshBuild(Scene scene, const char *file, RootMesh *root, M
   PetscCall(RootRigidCreate(scene, root, mesh));
   PetscCall(PartitionBodies(scene, root, mesh));
   PetscCall(MeshToolsList(scene, mesh));
+  PetscCall(PressureNodesExist(scene, root, mesh));
   PetscCall(MeshDistribute(root, mesh));
   PetscCall(FreeAllDofs(mesh));
   PetscCall(DMSetOptionsPrefix(mesh->dm, "mesh_"));

@@ -4,7 +4,7 @@
    A node carries degrees of freedom and sits on a point of the Plex: a vertex and, for order 2, also an edge, face or
    cell. Local nodes are numbered 0..n_nodes-1 in the order of these points, so that node n has the local dofs
    n*dim .. n*dim+dim-1. This includes supports: there is a local dof for every component, a global one only for the
-   free ones. The nodes of tools with free motions come last.
+   free ones. Nodes of pressures follow those of cells, and those of tools with free motions come last.
    Cells do not overlap: each belongs to one rank, and local cell c is point c of the Plex. Plex' order of nodes is not
    used anywhere: cells keep gmsh's. */
 #pragma once
@@ -63,7 +63,9 @@ typedef struct {
   PetscInt n_nodes, n_owned, n_global;
   PetscInt n_free; /* free dofs that this rank owns, after MeshSetConstraints() */
   PetscInt n_body_nodes, n_body_owned,
-    n_body_global;            /* nodes of cells, which come first; the others are those of tools */
+    n_body_global;            /* nodes of cells, which come first; the others are those of pressures and tools */
+  PetscBool has_pressures;    /* there are nodes for pressures, see pressurenodes.h; the same on all ranks */
+  PetscInt  n_pressure_nodes; /* as many as of cells, or 0; they follow these */
   PetscInt *node_id;          /* 0..n_global-1 in the order of gmsh's tags, the same on any number of ranks */
   PetscInt *node_tag;         /* gmsh's tag */
   PetscInt *node_owner;       /* rank */

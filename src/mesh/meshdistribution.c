@@ -2,6 +2,7 @@
    their ranks, and each rank unpacks its arrays. */
 #include "meshdistribution.h"
 #include "meshtools.h"
+#include "pressurenodesimpl.h"
 #include "mesh/meshgroup.h"
 
 /* Entries of a cell's record: id, tag, type, body and number of nodes, then the ids of the nodes, then FACE_ENTRIES
@@ -172,8 +173,9 @@ static PetscErrorCode CreateNodes(Mesh mesh, const Cargo *cargo, PetscInt **poin
     PetscCall(SectionRange(cargo->ids, p, &n, &offset));
     (*point_node)[p] = n ? mesh->n_nodes++ : -1;
   }
-  mesh->n_body_nodes = mesh->n_nodes;
-  mesh->n_nodes += TOOL_NODES * mesh->n_tools;
+  mesh->n_body_nodes     = mesh->n_nodes;
+  mesh->n_pressure_nodes = mesh->has_pressures ? mesh->n_body_nodes : 0;
+  mesh->n_nodes += mesh->n_pressure_nodes + TOOL_NODES * mesh->n_tools;
   PetscCall(PetscMalloc5(mesh->n_nodes, &mesh->node_id, mesh->n_nodes, &mesh->node_tag, mesh->n_nodes,
                          &mesh->node_owner, mesh->n_nodes, &mesh->node_owner_local, mesh->n_nodes * mesh->dim,
                          &mesh->coords));
@@ -206,19 +208,33 @@ static PetscErrorCode OwnersNumbers(PetscSF point_sf, PetscInt n_points, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Makes a node the copy of node `number` of another rank: its owner, and its entry in the SF. */
+static void SetGhost(Mesh mesh, PetscInt node, PetscInt owner, PetscInt number, PetscInt *leaf, PetscSFNode *remote,
+                     PetscInt *n_ghosts)
+{
+  mesh->node_owner[node]       = owner;
+  mesh->node_owner_local[node] = number;
+  *leaf                        = node;
+  *remote                      = (PetscSFNode){.rank = owner, .index = number};
+  (*n_ghosts)++;
+}
+
 /* Derives owners of nodes from owners of points, and creates the SF between the copies of a node. */
 static PetscErrorCode CreateOwners(Mesh mesh, const PetscInt point_node[])
 {
   PetscSF            point_sf;
-  const PetscInt     n_tool_nodes = mesh->n_nodes - mesh->n_body_nodes;
-  PetscInt           end, n_leaves, n_ghosts = 0, first = mesh->n_body_nodes, *owner_node, *leaf;
+  const PetscInt     n_tool_nodes = TOOL_NODES * mesh->n_tools, copies = mesh->has_pressures ? 2 : 1;
+  PetscInt           end, n_leaves, n_ghosts = 0, *n_body_nodes, *owner_node, *leaf;
   const PetscInt    *leaves;
   const PetscSFNode *remotes;
   PetscSFNode       *remote;
-  PetscMPIInt        rank;
+  PetscMPIInt        rank, size;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+  PetscCall(PetscMalloc1(size, &n_body_nodes));
+  PetscCallMPI(MPI_Allgather(&mesh->n_body_nodes, 1, MPIU_INT, n_body_nodes, 1, MPIU_INT, mesh->comm));
   PetscCall(DMPlexGetChart(mesh->dm, NULL, &end));
   PetscCall(DMGetPointSF(mesh->dm, &point_sf));
   PetscCall(PetscMalloc1(end, &owner_node));
@@ -229,30 +245,21 @@ static PetscErrorCode CreateOwners(Mesh mesh, const PetscInt point_node[])
   }
   PetscCall(PetscSFGetGraph(point_sf, NULL, &n_leaves, &leaves, &remotes));
   n_leaves = PetscMax(n_leaves, 0);
-  PetscCall(PetscMalloc1(n_leaves + n_tool_nodes, &leaf));
-  PetscCall(PetscMalloc1(n_leaves + n_tool_nodes, &remote));
+  PetscCall(PetscMalloc1(copies * n_leaves + n_tool_nodes, &leaf));
+  PetscCall(PetscMalloc1(copies * n_leaves + n_tool_nodes, &remote));
   for (PetscInt l = 0; l < n_leaves; l++) {
     const PetscInt point = leaves ? leaves[l] : l, node = point_node[point];
 
-    if (node < 0) continue;
-    mesh->node_owner[node]       = remotes[l].rank;
-    mesh->node_owner_local[node] = owner_node[point];
-    leaf[n_ghosts]               = node;
-    remote[n_ghosts].rank        = remotes[l].rank;
-    remote[n_ghosts++].index     = owner_node[point];
+    for (PetscInt k = 0; k < copies && node >= 0; k++)
+      SetGhost(mesh, node + k * mesh->n_body_nodes, remotes[l].rank,
+               owner_node[point] + k * n_body_nodes[remotes[l].rank], &leaf[n_ghosts], &remote[n_ghosts], &n_ghosts);
   }
-  PetscCallMPI(MPI_Bcast(&first, 1, MPIU_INT, 0, mesh->comm));
-  for (PetscInt k = 0; k < n_tool_nodes && rank; k++) {
-    const PetscInt node = mesh->n_body_nodes + k;
-
-    mesh->node_owner[node]       = 0;
-    mesh->node_owner_local[node] = first + k;
-    leaf[n_ghosts]               = node;
-    remote[n_ghosts].rank        = 0;
-    remote[n_ghosts++].index     = first + k;
-  }
-  mesh->n_owned      = mesh->n_nodes - n_ghosts;
-  mesh->n_body_owned = mesh->n_owned - (rank ? 0 : n_tool_nodes);
+  mesh->n_body_owned = mesh->n_body_nodes - n_ghosts / copies;
+  for (PetscInt k = 0; k < n_tool_nodes && rank; k++)
+    SetGhost(mesh, copies * mesh->n_body_nodes + k, 0, copies * n_body_nodes[0] + k, &leaf[n_ghosts],
+             &remote[n_ghosts], &n_ghosts);
+  mesh->n_owned = mesh->n_nodes - n_ghosts;
+  PetscCall(PetscFree(n_body_nodes));
   PetscCall(PetscSFCreate(mesh->comm, &mesh->node_sf));
   PetscCall(
     PetscSFSetGraph(mesh->node_sf, mesh->n_nodes, n_ghosts, leaf, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
@@ -404,6 +411,7 @@ PetscErrorCode MeshDistribute(RootMesh *root, Mesh mesh)
   PetscCall(Distribute(&mesh->dm, &cargo));
   PetscCall(CreateNodes(mesh, &cargo, &point_node));
   PetscCall(MeshToolsPlaceNodes(mesh));
+  PressureNodesPlace(mesh);
   PetscCall(CreateOwners(mesh, point_node));
   PetscCall(CreateCells(mesh, &cargo));
   for (int g = 0; g < mesh->n_groups; g++) PetscCall(CreateGroupNodes(mesh, &mesh->groups[g], point_node));

@@ -1,6 +1,7 @@
 /* Connected pieces of the mesh. Every node begins with its id as a label, and the lowest label spreads over cells and
    ranks until nothing changes. */
 #include "mesh/meshpieces.h"
+#include "mesh/pressurenodes.h"
 
 /* Gives all nodes of a cell the lowest of their labels, and repeats this until nothing changes on this rank. Cells are
    visited forwards and backwards, because labels then spread along rows of cells quickly. Returns whether any label
@@ -79,6 +80,7 @@ PetscErrorCode MeshFindPieces(Mesh mesh, PetscInt *n, PetscInt piece[])
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(mesh->n_nodes, &label));
   PetscCall(PetscArraycpy(label, mesh->node_id, mesh->n_nodes));
+  for (PetscInt i = 0; i < mesh->n_pressure_nodes; i++) label[PressureNodeOf(mesh, i)] = -1;
   for (int k = 0; k < mesh->n_tools; k++) label[mesh->tools[k].node + 1] = label[mesh->tools[k].node];
   while (changed) {
     changed = SpreadInCells(mesh, label);
@@ -94,6 +96,7 @@ PetscErrorCode MeshFindPieces(Mesh mesh, PetscInt *n, PetscInt piece[])
       if (label[i] == next) piece[i] = *n;
     last = next;
   }
+  for (PetscInt i = 0; i < mesh->n_pressure_nodes; i++) piece[PressureNodeOf(mesh, i)] = piece[i];
   PetscCall(PetscFree(label));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

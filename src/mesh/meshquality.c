@@ -3,7 +3,6 @@
 #include "base/complaint.h"
 #include "kernels/elementkernel.h"
 #include "mesh/mesh.h"
-#include <math.h>
 #include <string.h>
 
 /* Quality */
@@ -77,8 +76,7 @@ static PetscBool HasFormulation(Mesh mesh, Scene scene, PetscInt c)
    times the shear modulus. */
 #define LOCKING_NU 0.49
 
-/* Makes a body full for which fbar or mixed was chosen, where no cell has it. An incompressible body stays mixed, to be
-   refused. */
+/* Makes a body full for which fbar was chosen, where no cell has it. */
 static PetscErrorCode DropFormulations(Mesh mesh, Scene scene)
 {
   PetscBool *has;
@@ -89,7 +87,7 @@ static PetscErrorCode DropFormulations(Mesh mesh, Scene scene)
     if (HasFormulation(mesh, scene, c)) has[mesh->cell_body[c]] = PETSC_TRUE;
   for (int b = 0; b < scene->n_bodies; b++) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &has[b], sizeof(PetscBool), MPI_BYTE, MPI_BOR, mesh->comm));
-    if (scene->bodies[b].chosen && !has[b] && !scene->bodies[b].rigid && !isinf(scene->bodies[b].material.constants[0]))
+    if (scene->bodies[b].chosen && !has[b] && !scene->bodies[b].rigid)
       scene->bodies[b].formulation = FORMULATION_FULL;
   }
   PetscCall(PetscFree(has));
@@ -115,13 +113,14 @@ static PetscErrorCode FindLocking(Mesh mesh, Scene scene)
 }
 
 /*@
-  MeshCheckFormulations - refuses cells for which the formulation that the user named for their body has no kernel.
+  MeshCheckFormulations - refuses cells for which the formulation that the user named for their body has no kernel, and
+  a solver that is not for them.
 
   Collective
 
   Input Parameters:
 + mesh  - the mesh
-- scene - its bodies; one for which fbar or mixed was chosen becomes full where no cell has it, and locks is set
+- scene - its bodies; one for which fbar was chosen becomes full where no cell has it, and locks is set
 
   Note:
   The refusal names the cell's tag, its body and its element.
@@ -133,19 +132,19 @@ PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
   PetscFunctionBeginUser;
   PetscCall(DropFormulations(mesh, scene));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const SceneBody *body  = &scene->bodies[mesh->cell_body[c]];
-    const int        mixed = body->formulation == FORMULATION_MIXED;
+    const SceneBody *body = &scene->bodies[mesh->cell_body[c]];
 
-    if (HasFormulation(mesh, scene, c) || (body->chosen && !isinf(body->material.constants[0]))) continue;
-    Complain(&complaint, "%s: %s is %s; cell %" PetscInt_FMT " of body '%s' is %s, which needs %s",
-             SceneWhere(scene, body->path, mixed && body->chosen ? "material.nu" : "formulation"),
-             mixed && body->chosen ? "0.5 needs formulation: mixed, which" : Formulations[body->formulation],
-             mixed ? "not for tri3 and tet4" : "for quad4 and hex8 only", mesh->cell_tag[c], body->name,
-             ElementGet(mesh->cell_type[c])->name,
-             !mixed         ? "formulation: full"
-             : body->chosen ? "mesh.order: 2, or nu below 0.5"
-                            : "mesh.order: 2, or formulation: full");
+    if (HasFormulation(mesh, scene, c) || body->chosen) continue;
+    Complain(&complaint,
+             "%s: %s is for quad4 and hex8 only; cell %" PetscInt_FMT
+             " of body '%s' is %s, which needs formulation: full",
+             SceneWhere(scene, body->path, "formulation"), Formulations[body->formulation], mesh->cell_tag[c],
+             body->name, ElementGet(mesh->cell_type[c])->name);
   }
+  if (mesh->has_pressures && scene->solver.type == SOLVER_ITERATIVE)
+    Complain(&complaint,
+             "%s: iterative is not for mixed tri3 and tet4, whose tangents are of a saddle; allowed: direct",
+             SceneWhere(scene, "solver", "type"));
   PetscCall(ComplaintRefuse(mesh->comm, &complaint));
   PetscCall(FindLocking(mesh, scene));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -51,7 +51,7 @@ PetscErrorCode MeshToolsList(Scene scene, Mesh mesh)
 . mesh - its nodes, with those of the cells filled in
 
   Note:
-  Their ids follow those of the cells' nodes. They have no tag in gmsh's file, and 0 stands for it.
+  Their ids follow those of the nodes of cells and pressures. They have no tag in gmsh's file, and 0 stands for it.
 @*/
 PetscErrorCode MeshToolsPlaceNodes(Mesh mesh)
 {
@@ -65,13 +65,13 @@ PetscErrorCode MeshToolsPlaceNodes(Mesh mesh)
     MeshTool *tool   = &mesh->tools[k];
     PetscReal square = 0;
 
-    tool->node = mesh->n_body_nodes + TOOL_NODES * k;
+    tool->node = mesh->n_body_nodes + mesh->n_pressure_nodes + TOOL_NODES * k;
     for (int d = 0; d < mesh->dim; d++) square += PetscSqr(tool->motion->point[d] - mesh->centre[d]);
     tool->arm = PetscSqrtReal(square) + mesh->size / 2; /* no place on the bodies is farther from the point */
     for (int i = 0; i < TOOL_NODES; i++) {
       const PetscInt node = tool->node + i;
 
-      mesh->node_id[node]  = mesh->n_body_global + TOOL_NODES * k + i;
+      mesh->node_id[node]  = (mesh->has_pressures ? 2 : 1) * mesh->n_body_global + TOOL_NODES * k + i;
       mesh->node_tag[node] = 0;
       for (int d = 0; d < mesh->dim; d++) mesh->coords[node * mesh->dim + d] = tool->motion->point[d] - mesh->centre[d];
     }

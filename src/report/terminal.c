@@ -134,11 +134,10 @@ static void PrintChosen(Terminal terminal)
 
     if (body->rigid || !body->chosen || MaterialGetLaw(body->material.law)->plastic) continue;
     if (body->formulation == FORMULATION_MIXED)
-      printf("chosen   formulation: mixed for body '%s', nu = %g%s\n", body->name, body->material.nu,
-             body->locks ? "; full for its tri3 and tet4, which lock" : "");
+      printf("chosen   formulation: mixed for body '%s', nu = %g\n", body->name, body->material.nu);
     else if (body->locks)
-      printf("chosen   formulation: full for body '%s', nu = %g: there are no mixed tri3 and tet4; they lock\n",
-             body->name, body->material.nu);
+      printf("chosen   formulation: full for body '%s', nu = %g: its law has no mixed elements; it locks\n", body->name,
+             body->material.nu);
   }
 }
 
@@ -187,8 +186,7 @@ static void WarnLocking(Terminal terminal)
         stderr,
         "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); %s\n",
         SceneWhere(terminal->scene, body->path, "material.nu"), body->material.nu,
-        body->chosen || body->formulation == FORMULATION_MIXED ? "mesh.order: 2 does not"
-                                                               : "mesh.order: 2 or formulation: mixed does not");
+        body->chosen ? "mesh.order: 2 does not" : "mesh.order: 2 or formulation: mixed does not");
   }
 }
 

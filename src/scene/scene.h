@@ -27,7 +27,7 @@ typedef struct {
   char       *name;        /* physical group, which is a volume, or a surface for a rigid tool */
   int         rigid;       /* 1 for a meshed rigid tool, which has no material */
   Material    material;    /* of a deformable body */
-  Formulation formulation; /* enhanced and fbar exist for quad4 and hex8 only, mixed not for tri3 and tet4 */
+  Formulation formulation; /* enhanced and fbar exist for quad4 and hex8 only */
   int         chosen;      /* 1 if `auto` chose the formulation: cells that have none of it take full */
   /* 1 if its volume is stiff or plastic flow keeps it, and cells of first order with full integration lock.
      MeshCheckFormulations() sets it. */

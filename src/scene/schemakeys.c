@@ -118,8 +118,7 @@ const SchemaKey SchemaKeys[] = {
   {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar | mixed | auto", .preset = "auto",
    .help = "formulation of the elements; enhanced and fbar are for first-order quadrilaterals and bricks, of which "
            "enhanced bends without locking and fbar keeps its volume without locking. mixed has pressures of its own, "
-           "for materials that keep their volume nearly or exactly: all elements but first-order triangles and "
-           "tetrahedra. auto: mixed where the bulk modulus is above 20 times the shear modulus (nu above 0.475), "
+           "for materials that keep their volume nearly or exactly. auto: mixed where the bulk modulus is above 20 times the shear modulus (nu above 0.475), "
            "otherwise full; von_mises takes fbar at order 1 and mixed at order 2, umat fbar and full"},
   {"bodies.*.surface", TEXT, .help = "physical surface of a rigid tool; needs rigid"},
   {"bodies.*.rigid", MAP, .help = "makes the surface a meshed rigid tool"},
@@ -287,7 +286,8 @@ const SchemaKey SchemaKeys[] = {
   {"stepping.at", REALS, .range = "(0, 1]", .help = "load parameters at which a step must end"},
   {"solver", MAP, .help = "nonlinear and linear solver"},
   {"solver.type", CHOICE, .values = "direct | iterative | auto", .preset = "auto",
-   .help = "linear solver; auto chooses it by the number of unknowns"},
+   .help = "linear solver; auto chooses it by the number of unknowns. Mixed triangles and tetrahedra of first order "
+           "need the direct one"},
   {"solver.tolerance", REAL, .range = "(0, 1)", .preset = "1e-8",
    .help = "residual over the reference force at which a solve has converged"},
   {"solver.max_iterations", INTEGER, .range = "[1, 10000]", .preset = "30",

@@ -1,6 +1,7 @@
 /* Rigid motions of the bodies that only contact holds: velocities, large motions, products, and the work of the loads.
  */
 #include "freebodiesimpl.h"
+#include "mesh/pressurenodes.h"
 
 /* A load drives a motion if its force along it is above this part of the sum of the amounts. */
 #define FREE_BODIES_DRIVEN 1e-6
@@ -52,7 +53,7 @@ void FreeBodiesVelocity(FreeBodies b, const PetscReal *u, const double a[], Pets
     if (b->piece[i] != last) FreeBodiesPieceMotion(b, b->piece[i], a, q);
     last = b->piece[i];
     NodeVelocity(b, i, u, q, v);
-    for (int d = 0; d < dim; d++) du[i * dim + d] = b->pieces[last].size * v[d];
+    for (int d = 0; d < dim; d++) du[i * dim + d] = IsPressureNode(b->mesh, i) ? 0 : b->pieces[last].size * v[d];
   }
 }
 
@@ -76,7 +77,7 @@ void FreeBodiesMove(FreeBodies b, const double a[], PetscReal *u)
       RigidMove(q, x);
       for (int d = 0; d < 3; d++) by[d] += x[d];
     }
-    for (int d = 0; d < dim; d++) u[i * dim + d] += piece->size * by[d];
+    for (int d = 0; d < dim && !IsPressureNode(b->mesh, i); d++) u[i * dim + d] += piece->size * by[d];
   }
 }
 

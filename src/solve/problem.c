@@ -3,6 +3,7 @@
 #include "solve/problem.h"
 #include "base/timing.h"
 #include "matrix/sumoperator.h"
+#include "mesh/pressurenodes.h"
 
 /*@
   ProblemCreate - creates loads, elements and contact of a scene, and the matrix of their tangent.
@@ -385,7 +386,8 @@ PetscErrorCode ProblemMotion(Problem problem, const PetscReal *u_0, PetscReal t_
   for (PetscInt n = 0; n < problem->mesh->n_nodes; n++) {
     PetscReal square = 0;
 
-    for (int d = 0; d < dim; d++) square += PetscSqr(u[n * dim + d] - u_0[n * dim + d]);
+    for (int d = 0; d < dim && !IsPressureNode(problem->mesh, n); d++)
+      square += PetscSqr(u[n * dim + d] - u_0[n * dim + d]);
     *motion = PetscMax(*motion, PetscSqrtReal(square));
   }
   for (int b = 0; b < problem->scene->n_bodies; b++)
@@ -583,8 +585,8 @@ PetscBool ProblemIsPlastic(Problem problem)
 }
 
 /*@
-  ProblemConservative - returns whether all forces have a potential, so that there is an energy to compare and the
-  tangent is symmetric.
+  ProblemConservative - returns whether all forces have a potential with a least value, so that there is an energy to
+  compare and the tangent is symmetric. Where nodes have pressures, equilibrium is a saddle.
 
   Not collective, the same on all ranks
 
@@ -594,7 +596,7 @@ PetscBool ProblemIsPlastic(Problem problem)
 PetscBool ProblemConservative(Problem problem)
 {
   return (PetscBool)(LoadsConservative(problem->loads) && !ContactHasFriction(problem->contact) &&
-                     !SceneHasRoutine(problem->scene));
+                     !SceneHasRoutine(problem->scene) && !problem->mesh->has_pressures);
 }
 
 /*@

@@ -334,6 +334,46 @@ static PetscBool SearchJumps(const Search *s)
   return (PetscBool)(ProblemConservative(s->model->problem) && ProblemIsPlastic(s->model->problem));
 }
 
+/* Lets the energies of this search be those of volumes that yield: the whole step ends at x - y. */
+static PetscErrorCode YieldVolumes(const Search *s)
+{
+  const PetscInt n       = s->model->mesh->n_nodes * s->model->mesh->dim;
+  Problem        problem = s->model->problem;
+  PetscReal     *u;
+
+  PetscFunctionBeginUser;
+  if (!ProblemConservative(problem) || !ProblemHasFormulation(problem, FORMULATION_MIXED))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n, &u));
+  PetscCall(ProblemDisplacements(problem, s->x, s->model->t, u));
+  PetscCall(VecWAXPY(s->w, -1, s->y, s->x));
+  PetscCall(ProblemSetTrial(problem, s->w, s->model->t));
+  PetscCall(ElasticityYield(problem->elasticity, u, problem->trial));
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Chooses how much of the step is taken, by energies. */
+static PetscErrorCode SearchByEnergy(const Search *s, PetscReal slope)
+{
+  PetscReal rise;
+  PetscBool taken;
+
+  PetscFunctionBeginUser;
+  PetscCall(YieldVolumes(s));
+  PetscCall(Rise(s, 1, &rise));
+  if (s->model->work->relaxed.waits)
+    PetscCall(Judge(s, rise));
+  else if (rise <= -SEARCH_FALL * slope)
+    PetscCall(Descend(s, rise));
+  else {
+    PetscCall(Relax(s, rise, slope, &taken));
+    if (!taken) PetscCall(Shorten(s));
+  }
+  ElasticityYieldEnd(s->model->problem->elasticity);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelSearchRelaxed - the line search of Newton's method without friction.
 
@@ -362,7 +402,7 @@ PetscErrorCode ModelSearchRelaxed(SNESLineSearch search, void *context)
 {
   Search     s    = {.model = context, .search = search};
   ModelWork *work = s.model->work;
-  PetscReal  lambda, slope, rise;
+  PetscReal  lambda, slope;
   PetscBool  changed, taken = PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -373,20 +413,11 @@ PetscErrorCode ModelSearchRelaxed(SNESLineSearch search, void *context)
   work->relaxed.linear = PETSC_FALSE;
   if (lambda < 1) work->relaxed.waits = PETSC_FALSE;
   PetscCall(VecDotRealPart(s.F, s.y, &slope));
-  if (!work->relaxed.waits &&
-      (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL || SearchJumps(&s))) {
+  if (!work->relaxed.waits && (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL || SearchJumps(&s))) {
     if (lambda == 1) PetscCall(SearchClosely(&s, slope, &taken));
     if (!taken) PetscCall(Backtrack(&s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(Rise(&s, 1, &rise));
-  if (work->relaxed.waits)
-    PetscCall(Judge(&s, rise));
-  else if (rise <= -SEARCH_FALL * slope)
-    PetscCall(Descend(&s, rise));
-  else {
-    PetscCall(Relax(&s, rise, slope, &taken));
-    if (!taken) PetscCall(Shorten(&s));
-  }
+  PetscCall(SearchByEnergy(&s, slope));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -11,6 +11,7 @@
    folder of the meshes (default: meshes); a second argument is a file for the table. Small strains. */
 #include "bodies/elasticity.h"
 #include "kernels/elementkernel.h"
+#include "mesh/pressurenodes.h"
 #include <petscksp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -41,9 +42,10 @@ typedef struct {
 static const Case cases[] = {
   {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, {8, 16, 32}}, {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, {8, 16, 32}},
   {ELEMENT_QUAD9, GEOMETRY_PLANE_STRAIN, {4, 8, 16}},  {ELEMENT_QUAD9, GEOMETRY_AXISYMMETRIC, {4, 8, 16}},
+  {ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, {8, 16, 32}},  {ELEMENT_TRI3, GEOMETRY_AXISYMMETRIC, {8, 16, 32}},
   {ELEMENT_TRI6, GEOMETRY_PLANE_STRAIN, {4, 8, 16}},   {ELEMENT_TRI6, GEOMETRY_AXISYMMETRIC, {4, 8, 16}},
   {ELEMENT_HEX8, GEOMETRY_SOLID, {4, 8, 12}},          {ELEMENT_HEX27, GEOMETRY_SOLID, {2, 4, 6}},
-  {ELEMENT_TET10, GEOMETRY_SOLID, {6, 8, 10}},
+  {ELEMENT_TET4, GEOMETRY_SOLID, {4, 8, 12}},          {ELEMENT_TET10, GEOMETRY_SOLID, {6, 8, 10}},
 };
 enum { CASES = sizeof(cases) / sizeof(*cases) };
 
@@ -176,6 +178,7 @@ static PetscErrorCode Constrain(Scene scene, Mesh mesh, PetscBool *boundary)
       for (int i = 0; i < mesh->dim && side < 2; i++) constrained[group->nodes[k] * mesh->dim + i] = PETSC_TRUE;
     }
   }
+  PetscCall(PressureNodesConstrain(mesh, scene, constrained));
   PetscCall(MeshSetConstraints(mesh, constrained));
   PetscCall(PetscFree(constrained));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -314,10 +317,29 @@ static PetscErrorCode NodalMean(Elasticity e, Mesh mesh, const PetscReal *u, Pet
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(mesh->n_nodes * 6, &stress, mesh->n_nodes, &weight));
   PetscCall(ElasticityNodalStress(e, u, stress, weight));
-  for (PetscInt k = 0; k < mesh->n_nodes; k++)
+  for (PetscInt k = 0; k < mesh->n_body_nodes; k++)
     mean[k] = (stress[6 * k] + stress[6 * k + 1] + stress[6 * k + 2]) / (3 * weight[k]);
   PetscCall(PetscFree2(stress, weight));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the squares of the error of the pressure of the nodes of a cell, and of the field's pressure. The cells fill a
+   box of volume 1, which is that of the first two coordinates in the plane. */
+static void AddNodalPressureError(const Rule *rule, const Case *test, Mesh mesh, PetscInt c, const PetscReal *u,
+                                  PetscReal sum[2])
+{
+  const PetscReal mu = young / (2 * (1 + poisson)), unit = mu * PetscPowReal(mesh->n_cells_global, 1. / mesh->dim);
+
+  for (int q = 0; q < rule->points; q++) {
+    PetscReal       x[3] = {0}, exact[3], D[9], g[ELEMENT_MAX_NODES][3], p = 0;
+    const PetscReal volume = Place(test, mesh, c, rule->N[q], rule->dN[q], mesh->dim, rule->weight[q], x, g);
+
+    Exact(test->geometry, x, exact, D);
+    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
+      p += rule->N[q][k - mesh->cell_ptr[c]] * unit * u[PressureNodeOf(mesh, mesh->cell_nodes[k]) * mesh->dim];
+    sum[0] += volume * PetscSqr(p - ExactPressure(D));
+    sum[1] += volume * PetscSqr(ExactPressure(D));
+  }
 }
 
 /* Computes the L2 norms of the errors of displacement, of the element's pressure and of the mean stress at the nodes,
@@ -326,7 +348,11 @@ static void Errors(const Rule *rule, const Case *test, Mesh mesh, const PetscRea
                    PetscReal error[QUANTITIES])
 {
   const Element   *e      = ElementGet(test->type);
-  const KernelCase kernel = {test->type, test->geometry, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_MIXED, 0, NULL};
+  const KernelCase kernel = {.type        = test->type,
+                             .geometry    = test->geometry,
+                             .kinematics  = KINEMATICS_SMALL,
+                             .law         = MATERIAL_LINEAR,
+                             .formulation = FORMULATION_MIXED};
   const PetscReal  compression         = young / (3 * (1 - 2 * poisson)); /* bulk modulus */
   const Material   material            = MaterialFromModuli(MATERIAL_LINEAR, young, poisson);
   PetscReal        sum[2 * QUANTITIES] = {0};
@@ -355,6 +381,10 @@ static void Errors(const Rule *rule, const Case *test, Mesh mesh, const PetscRea
       sum[5] += volume * D[0] * D[0];
       for (int a = 0; a < e->nodes; a++) D[0] -= rule->N[q][a] * mean[nodes[a]];
       sum[4] += volume * D[0] * D[0];
+    }
+    if (ElementNodes(&kernel) > e->nodes) {
+      AddNodalPressureError(rule, test, mesh, c, u, &sum[2]);
+      continue;
     }
     ElementPointState(&kernel, X, cell_u, material.constants, NULL, H, pressure);
     for (int q = 0; q < e->points; q++) {
@@ -390,7 +420,7 @@ static PetscErrorCode SolveLinear(Mesh mesh, Elasticity e, PetscReal *f, PetscRe
   PetscCall(KSPCreate(mesh->comm, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCCHOLESKY));
+  PetscCall(PCSetType(pc, mesh->has_pressures ? PCLU : PCCHOLESKY));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   PetscCall(KSPSetOperators(ksp, K, K));
   PetscCall(KSPSolve(ksp, R, dx));
@@ -414,6 +444,7 @@ static PetscErrorCode Solve(const Case *test, int n, PetscReal *h, PetscReal err
   PetscFunctionBeginUser;
   PetscCall(CreateMesh(test, n, &scene, &mesh, &u));
   PetscCall(ElasticityCreate(mesh, scene, &e));
+  PetscCall(ElasticitySetSymmetric(e, (PetscBool)!mesh->has_pressures));
   PetscCall(RuleCreate(test->type, &rule));
   PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &f));
   SubtractForce(&rule, test, mesh, f);

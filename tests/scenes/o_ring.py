@@ -10,6 +10,7 @@ ELEMENTS = {
     "quad4": ("mesh.order=1", "bodies.0.formulation=fbar"),
     "quad9": ("mesh.order=2", "bodies.0.formulation=full"),
     "tri6": ("mesh.order=2", "bodies.0.formulation=full", "mesh.parameters.triangles=1"),
+    "tri3 mixed": ("mesh.order=1", "mesh.parameters.triangles=1"),
     "tri6 mixed": ("mesh.order=2", "mesh.parameters.triangles=1")
 }
 WAYS = {
@@ -25,13 +26,14 @@ WAYS = {
 # to 59 iterations. A search that wants less energy in each iteration takes 11 and 13 steps, 2 and 4 of them failed, and
 # 131 and 229 iterations.
 BOUNDS = {"steps": (8, 38), "deeper": (8, 38), "one": (1, 15), "rolling": (8, 75)}
-CASES = [("quad4", "steps", 0.499), ("quad4", "one", 0.499)]
+CASES = [("quad4", "steps", 0.499), ("quad4", "one", 0.499), ("tri3 mixed", "steps", 0.499)]
 if args.cases == "all":
     CASES += [("quad4", "steps", nu) for nu in (0.45, 0.49, 0.4999, 0.49999)]
     CASES += [("quad9", "steps", nu) for nu in (0.45, 0.49, 0.499, 0.4999)]
     CASES += [(element, "deeper", nu) for element in ("quad4", "quad9") for nu in (0.45, 0.49, 0.499, 0.4999)]
     CASES += [("quad4", "one", nu) for nu in (0.45, 0.49, 0.4999, 0.49999)]
     CASES += [(element, "one", nu) for element in ("quad9", "tri6") for nu in (0.45, 0.49, 0.499, 0.4999)]
+    CASES += [("tri3 mixed", "steps", nu) for nu in (0.49, 0.4999)]
     CASES += [("tri6 mixed", "rolling", nu) for nu in (0.499, 0.4999)]
 forces = {}
 for element, way, nu in CASES:

@@ -159,11 +159,10 @@ static void SetGradient(Batch *b, const double H[9])
   }
 }
 
-/* All elements x geometries x formulations x (small, each finite law) */
-static int NextCase(KernelCase *kernel)
+static int NextOfAll(KernelCase *kernel)
 {
   static const KernelCase first = {
-    ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FULL, 0, NULL};
+    ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FULL, 0, NULL, 0, 0};
 
   if (kernel->type == ELEMENT_TYPES) {
     *kernel = first;
@@ -192,6 +191,16 @@ static int NextCase(KernelCase *kernel)
   if (kernel->type < ELEMENT_TYPES)
     kernel->geometry = ElementGet(kernel->type)->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
   return kernel->type < ELEMENT_TYPES;
+}
+
+/* All elements x geometries x formulations x (small, each finite law), but for those whose nodes have pressures:
+   test_nodalpressure.c */
+static int NextCase(KernelCase *kernel)
+{
+  int more = NextOfAll(kernel);
+
+  while (more && ElementNodes(kernel) > ElementGet(kernel->type)->nodes) more = NextOfAll(kernel);
+  return more;
 }
 
 static const KernelCase before_first = {.type = ELEMENT_TYPES};

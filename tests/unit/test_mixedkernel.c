@@ -1,6 +1,6 @@
 /* Shows what mixed elements do with multipliers: force and tangent are derivatives of the energy of an incompressible
  * element, multipliers that do not change any more leave the pressure of the whole modulus, and those that follow
- * Newton's method start from the same pressure. test_elementkernel.c treats mixed elements without multipliers. */
+ * Newton's method start from the same pressure. Elements that yield have the forces of the others. test_elementkernel.c treats mixed elements without multipliers. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -72,7 +72,7 @@ static int NextCase(KernelCase *kernel)
                            .formulation = FORMULATION_MIXED};
     if (ElementGet(kernel->type)->dim == 3) kernel->geometry = next & 1 ? GEOMETRY_AXISYMMETRIC : GEOMETRY_SOLID;
     next++;
-    if (ElementGet(kernel->type)->dim > 1 && ElementKernelExists(kernel)) return 1;
+    if (ElementGet(kernel->type)->dim > 1 && ElementKernelExists(kernel) && ElementPressures(kernel) > 0) return 1;
   }
   return next = 0;
 }
@@ -176,12 +176,38 @@ static void FollowingStartsFromTheSamePressure(void **state)
   }
 }
 
+/* With the multipliers of a state itself, elements that yield have the forces of that state. */
+static void YieldingElementsHaveTheSameForces(void **state)
+{
+  int tested = 0;
+
+  (void)state;
+  for (KernelCase kernel; NextCase(&kernel);) {
+    double     f[2][MAX_DOFS * KERNEL_LANES], next[MIXED_PRESSURES * KERNEL_LANES], J[KERNEL_LANES], scale = 0;
+    KernelCase soft = kernel;
+    Case       c;
+
+    CaseCreate(&c, kernel, 1e3 * mu);
+    const StressReference reference = {c.u, 1, 0};
+
+    soft.yields = 1;
+    ElementYield(&kernel, c.X, c.u, &reference, c.constants, NULL, next);
+    ElementKernel(&kernel, c.X, c.u, NULL, c.constants, NULL, NULL, f[0], NULL, J);
+    ElementKernel(&soft, c.X, c.u, NULL, c.constants, next, NULL, f[1], NULL, J);
+    for (int k = 0; k < c.dofs * KERNEL_LANES; k++) scale = fmax(scale, fabs(f[0][k]));
+    for (int k = 0; k < c.dofs * KERNEL_LANES; k++) assert_near(f[0][k], f[1][k], 1e-9 * scale);
+    tested++;
+  }
+  assert_int_equal(tested, 18);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(MultipliersHaveAnEnergy),
     cmocka_unit_test(SettledMultipliersGiveTheWholeModulus),
     cmocka_unit_test(FollowingStartsFromTheSamePressure),
+    cmocka_unit_test(YieldingElementsHaveTheSameForces),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

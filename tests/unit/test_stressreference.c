@@ -60,7 +60,8 @@ static int NextCase(KernelCase *kernel)
     if (next >= ELEMENT_TYPES * FORMULATIONS)
       kernel->geometry = ElementGet(kernel->type)->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
     if ((kernel->geometry == GEOMETRY_AXISYMMETRIC && ElementGet(kernel->type)->dim == 3) ||
-        kernel->type >= ELEMENT_TYPES || !ElementKernelExists(kernel))
+        kernel->type >= ELEMENT_TYPES || !ElementKernelExists(kernel) ||
+        ElementNodes(kernel) > ElementGet(kernel->type)->nodes)
       continue;
     next++;
     return 1;

@@ -26,6 +26,7 @@ typedef struct {
   PetscReal   *X; /* [nodes][dim][lanes] */
   PetscReal   *constants;   /* of the law [n_constants][lanes] */
   PetscInt     multipliers; /* where those of the first batch are in VolumeState; -1: the group has none */
+  PetscInt     yielding;    /* the same in Elasticity.yielding */
   PetscReal   *state;       /* of a plastic law, accepted [points][states][lanes]; else NULL */
   PetscReal   *length;      /* of the cells, for routines of users [lanes]; else NULL */
   PlasticBatch plastic;     /* what kernel.plastic points to, for the batch at hand */
@@ -65,12 +66,15 @@ struct _n_Elasticity {
   PetscReal   accepted_t; /* time of the accepted plastic state */
   PetscBool   augments;   /* a body has multipliers, perhaps on other ranks only */
   VolumeState state, accepted;
+  PetscReal  *yielding; /* multipliers of mixed elements while energies are compared, see ElasticityYield() */
+  PetscBool   yields;   /* they are */
   Enclosed    enclosed;
 };
 
 void       ElasticityGather(Elasticity, CellGroup *, PetscInt batch, const PetscReal *u, PetscReal *gathered);
 size_t     ElasticityCellStates(const CellGroup *);
 int        ElasticityBatchCells(const CellGroup *, PetscInt batch);
+PetscReal *ElasticityYieldingOf(Elasticity, const CellGroup *, PetscInt batch);
 PetscReal *ElasticityMultipliers(Elasticity, const CellGroup *, PetscInt batch);
 PetscReal *ElasticityMultipliersOf(const CellGroup *, PetscInt batch, PetscReal *multipliers);
 void       ElasticitySlotCoordinates(Elasticity, const CellGroup *, PetscInt slot, PetscReal *X);

@@ -53,6 +53,8 @@ typedef struct {
      NULL: theta [MIXED_PRESSURES], which mixedkernel.c explains, the pressure at the points of H, and the
      pressures extrapolated from u_0 [MIXED_PRESSURES]. constants[0] is then the local part of VolumeModuli. */
   Lanes         kappa, mu, rest; /* rest: 1 - kappa / projected part */
+  Lanes         modulus;         /* the projected part */
+  double        length;          /* of KernelCase */
   const double *multiplier;
   int           held; /* of StressReference */
   double       *theta, *pressure, *follow;
@@ -309,6 +311,7 @@ typedef void BatchFn(const BatchCall *);
 extern BatchFn *const enhanced_batches[ELEMENT_TYPES][2];
 extern BatchFn *const mean_dilatation_batches[ELEMENT_TYPES][2];
 extern BatchFn *const mixed_batches[ELEMENT_TYPES][2];
+extern BatchFn *const nodal_pressure_batches[ELEMENT_TYPES][2];
 extern const int      mixed_pressures[ELEMENT_TYPES];
 
 int  MixedPoints(const Element *);

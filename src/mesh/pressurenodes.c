@@ -1,0 +1,100 @@
+/* Nodes for the pressures of mixed triangles and tetrahedra of first order, see pressurenodes.h. */
+#include "kernels/elementkernel.h"
+#include "mesh/meshdofs.h"
+#include "pressurenodesimpl.h"
+
+/* Says whether the nodes of the cells of a type in a body have pressures. */
+static PetscBool HasPressures(Scene scene, int body, ElementType type)
+{
+  const KernelCase kernel = {.type = type, .formulation = scene->bodies[body].formulation};
+
+  return (PetscBool)(ElementNodes(&kernel) > ElementGet(type)->nodes);
+}
+
+/*@
+  PressureNodesExist - finds out whether a mesh needs nodes for pressures.
+
+  Collective
+
+  Input Parameters:
++ scene - its bodies
+. root  - on rank 0, NULL on other ranks
+- mesh  - has_pressures is set
+@*/
+PetscErrorCode PressureNodesExist(Scene scene, const RootMesh *root, Mesh mesh)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; root && c < root->n_cells && !mesh->has_pressures; c++)
+    mesh->has_pressures = HasPressures(scene, root->cell_body[c], root->cell_block[c]->element->type);
+  PetscCallMPI(MPI_Bcast(&mesh->has_pressures, 1, MPIU_BOOL, 0, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  PressureNodesPlace - fills the arrays of the pressures' nodes, but for their owners.
+
+  Not collective
+
+  Input Parameter:
+. mesh - its nodes, with those of the cells filled in
+
+  Note:
+  Their ids follow those of the cells' nodes. They have the tags of these.
+@*/
+void PressureNodesPlace(Mesh mesh)
+{
+  for (PetscInt i = 0; i < mesh->n_pressure_nodes; i++) {
+    const PetscInt node = PressureNodeOf(mesh, i);
+
+    mesh->node_id[node]  = mesh->n_body_global + mesh->node_id[i];
+    mesh->node_tag[node] = mesh->node_tag[i];
+    for (int d = 0; d < mesh->dim; d++) mesh->coords[node * mesh->dim + d] = mesh->coords[i * mesh->dim + d];
+  }
+}
+
+/*@
+  CellHasPressureNodes - says whether the nodes of a cell have pressures.
+
+  Not collective
+
+  Input Parameters:
++ mesh  - the mesh
+. scene - its bodies
+- cell  - a local cell
+@*/
+PetscBool CellHasPressureNodes(Mesh mesh, Scene scene, PetscInt cell)
+{
+  return HasPressures(scene, mesh->cell_body[cell], mesh->cell_type[cell]);
+}
+
+/*@
+  PressureNodesConstrain - marks the dofs of the pressures' nodes that are no unknowns.
+
+  Collective
+
+  Input Parameters:
++ mesh  - the mesh
+- scene - its bodies
+
+  Output Parameter:
+. constrained - of each local dof [n_nodes*dim]; those of the pressures' nodes are written
+@*/
+PetscErrorCode PressureNodesConstrain(Mesh mesh, Scene scene, PetscBool *constrained)
+{
+  PetscReal *has;
+
+  PetscFunctionBeginUser;
+  if (!mesh->has_pressures) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(mesh->n_nodes, &has));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
+      if (CellHasPressureNodes(mesh, scene, c)) has[PressureNodeOf(mesh, mesh->cell_nodes[k])] = 1;
+  PetscCall(MeshSumNodes(mesh, 1, has));
+  for (PetscInt i = 0; i < mesh->n_pressure_nodes; i++) {
+    const PetscInt node = PressureNodeOf(mesh, i);
+
+    for (int d = 0; d < mesh->dim; d++) constrained[node * mesh->dim + d] = (PetscBool)(d > 0 || has[node] == 0);
+  }
+  PetscCall(PetscFree(has));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,197 @@
+/* Shows that mixed triangles and tetrahedra of first order, whose nodes have pressures, have the exact tangent of their
+ * force with every law, give the stress of the law in a uniform strain, and resist no pressure that is the same
+ * everywhere: only pressures that differ within an element. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <math.h>
+#include <string.h>
+#include "kernels/elementkernel.h"
+#include "laws.h"
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+enum { MAX_DOFS = 24 };
+static const double    young = 3, length = 0.7, infinite = 0.5;
+static const Hardening hardening = {.yield = 0.05, .linear = 0.3};
+
+typedef struct {
+  KernelCase   kernel;
+  Material     material;
+  PlasticBatch plastic;
+  int          n, dim, dofs; /* n: nodes of the element */
+  double       X[MAX_DOFS * KERNEL_LANES], u[MAX_DOFS * KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES],
+    K[MAX_DOFS * MAX_DOFS * KERNEL_LANES], constants[MATERIAL_MAX_CONSTANTS * KERNEL_LANES],
+    state[PLASTIC_MAX_STATE * KERNEL_LANES], J[KERNEL_LANES];
+} Case;
+
+static double Random(void)
+{
+  static unsigned state = 7;
+
+  state = state * 1664525u + 1013904223u;
+  return (double)(state >> 8) / (1 << 24) - 0.5;
+}
+
+/* An element with corners moved at random, strains of some hundredths, and pressures of some tenths of the modulus */
+static void CaseCreate(Case *c, KernelCase kernel, double nu)
+{
+  const Element *e = ElementGet(kernel.type);
+
+  memset(c, 0, sizeof(*c));
+  c->kernel             = kernel;
+  c->material           = ExampleMaterial(kernel.law, young, nu);
+  c->kernel.length      = length;
+  c->kernel.n_constants = c->material.n_constants;
+  c->plastic            = (PlasticBatch){.hardening = &hardening, .dt = 1, .state = c->state};
+  if (kernel.law == MATERIAL_VON_MISES) c->kernel.plastic = &c->plastic;
+  c->n    = e->nodes;
+  c->dim  = e->dim;
+  c->dofs = ElementNodes(&c->kernel) * e->dim;
+  assert_int_equal(c->dofs, 2 * e->nodes * e->dim);
+  for (int lane = 0; lane < KERNEL_LANES; lane++) {
+    for (int k = 0; k < c->material.n_constants; k++)
+      c->constants[k * KERNEL_LANES + lane] = c->material.constants[k];
+    for (int k = 0; k < c->dofs; k++) {
+      c->X[k * KERNEL_LANES + lane] =
+        e->node[k / e->dim % e->nodes][k % e->dim] + (k % e->dim == 0 ? 3 : 0) + 0.2 * Random();
+      c->u[k * KERNEL_LANES + lane] = k < c->dofs / 2 ? 0.1 * Random() : length * Random();
+    }
+  }
+}
+
+/* tri3 in the plane and axisymmetric, and tet4, with small strains and every law */
+static int NextCase(KernelCase *kernel)
+{
+  static int next = 0;
+
+  for (; next < 3 * (MATERIAL_LAWS + 1); next++) {
+    const int law = next / 3;
+
+    *kernel = (KernelCase){.type        = next % 3 == 2 ? ELEMENT_TET4 : ELEMENT_TRI3,
+                           .geometry    = next % 3 == 2   ? GEOMETRY_SOLID
+                                          : next % 3 == 1 ? GEOMETRY_AXISYMMETRIC
+                                                          : GEOMETRY_PLANE_STRAIN,
+                           .kinematics  = law == MATERIAL_LAWS ? KINEMATICS_SMALL : KINEMATICS_FINITE,
+                           .law         = law == MATERIAL_LAWS ? MATERIAL_LINEAR : (MaterialLaw)law,
+                           .formulation = FORMULATION_MIXED};
+    if (law == MATERIAL_LINEAR || !ElementKernelExists(kernel)) continue;
+    next++;
+    return 1;
+  }
+  return next = 0;
+}
+
+static void Evaluate(Case *c, double *f, double *K)
+{
+  ElementKernel(&c->kernel, c->X, c->u, NULL, c->constants, NULL, NULL, f, K, c->J);
+}
+
+static void TangentIsTheDerivative(void **state)
+{
+  const double h      = 1e-6;
+  int          tested = 0;
+
+  (void)state;
+  for (KernelCase kernel; NextCase(&kernel);) {
+    for (int stiff = 0; stiff < 2; stiff++) {
+      double f[2][MAX_DOFS * KERNEL_LANES], scale = 0;
+      Case   c;
+
+      CaseCreate(&c, kernel, stiff ? infinite : 0.4);
+      Evaluate(&c, c.f, c.K);
+      for (int k = 0; k < c.dofs * c.dofs * KERNEL_LANES; k++) scale = fmax(scale, fabs(c.K[k]));
+      assert_true(isfinite(scale) && scale > 0);
+      for (int j = 0; j < c.dofs; j++) {
+        for (int side = 0; side < 2; side++) {
+          for (int lane = 0; lane < KERNEL_LANES; lane++) c.u[j * KERNEL_LANES + lane] += side ? -2 * h : h;
+          Evaluate(&c, f[side], NULL);
+        }
+        for (int lane = 0; lane < KERNEL_LANES; lane++) c.u[j * KERNEL_LANES + lane] += h;
+        for (int k = 0; k < c.dofs * KERNEL_LANES; k++) {
+          const double difference = (f[0][k] - f[1][k]) / (2 * h);
+
+          assert_near(c.K[(k / KERNEL_LANES * c.dofs + j) * KERNEL_LANES + k % KERNEL_LANES], difference, 1e-7 * scale);
+        }
+      }
+      tested++;
+    }
+  }
+  assert_true(tested >= 2 * 3 * 7);
+}
+
+/* In a uniform strain with the pressure of the law nothing acts on the pressures, and the stress is that of the law. */
+static void UniformStrainHasTheStressOfTheLaw(void **state)
+{
+  const double a = 0.02, b = -0.01;
+
+  (void)state;
+  for (KernelCase kernel; NextCase(&kernel);) {
+    const int finite = kernel.kinematics == KINEMATICS_FINITE, plane = kernel.geometry == GEOMETRY_PLANE_STRAIN;
+    double    H[9]   = {a, 0, 0, 0, b, 0, 0, 0, plane ? 0 : a}, P[9], F[3] = {1, 1, 1}, J = 1, tau;
+    Case      c;
+
+    if (kernel.law == MATERIAL_VON_MISES) continue;
+    CaseCreate(&c, kernel, 0.49);
+    for (int i = 0; i < 3 && finite; i++) F[i] += H[4 * i];
+    J   = F[0] * F[1] * F[2];
+    tau = c.material.constants[0] * (finite ? log(J) : H[0] + H[4] + H[8]);
+    MaterialPoint(&c.material, finite, H, NULL, P, NULL);
+    for (int k = 0; k < c.dofs * KERNEL_LANES; k++) {
+      const int i = k / KERNEL_LANES % c.dim;
+
+      c.u[k] = k < c.dofs * KERNEL_LANES / 2 ? H[4 * i] * c.X[k] : tau * length / MaterialShear(&c.material);
+    }
+    Evaluate(&c, c.f, NULL);
+    for (int k = c.dofs / 2 * KERNEL_LANES; k < c.dofs * KERNEL_LANES; k++) assert_near(c.f[k], 0, 1e-13 * young);
+    for (int lane = 0; lane < KERNEL_LANES; lane++) {
+      double X[MAX_DOFS], u[MAX_DOFS], stress[6], volume;
+
+      for (int k = 0; k < c.dofs; k++) {
+        X[k] = c.X[k * KERNEL_LANES + lane];
+        u[k] = c.u[k * KERNEL_LANES + lane];
+      }
+      ElementStress(&c.kernel, X, u, c.material.constants, NULL, stress, &volume);
+      for (int i = 0; i < 3; i++) assert_near(stress[i], P[4 * i] * F[i] / J, 1e-12 * young);
+    }
+  }
+}
+
+/* Where the volume is kept exactly, the rows and columns of the pressures are opposite but for a block that resists
+   differences of pressures alone. */
+static void OnlyDifferencesOfPressuresAreResisted(void **state)
+{
+  (void)state;
+  for (KernelCase kernel; NextCase(&kernel);) {
+    Case c;
+
+    CaseCreate(&c, kernel, infinite);
+    Evaluate(&c, c.f, c.K);
+    for (int lane = 0; lane < KERNEL_LANES; lane++) {
+      const double *K = &c.K[lane];
+
+      for (int a = 0; a < c.n; a++) {
+        const int p = (c.n + a) * c.dim;
+        double    sum = 0;
+
+        for (int r = 0; r < c.n * c.dim; r++)
+          assert_near(K[(r * c.dofs + p) * KERNEL_LANES], -K[(p * c.dofs + r) * KERNEL_LANES], 0);
+        for (int b = 0; b < c.n; b++) sum += K[(p * c.dofs + (c.n + b) * c.dim) * KERNEL_LANES];
+        assert_near(sum, 0, 1e-14 * young);
+        assert_true(K[(p * c.dofs + p) * KERNEL_LANES] > 0);
+      }
+    }
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(TangentIsTheDerivative),
+    cmocka_unit_test(UniformStrainHasTheStressOfTheLaw),
+    cmocka_unit_test(OnlyDifferencesOfPressuresAreResisted),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
