@@ -94,8 +94,8 @@ static void MakeRule(const Element *e, int finer, FaceRule *rule)
 
   Input Parameters:
 + type  - of the face
-- finer - FACE_RULE_PLAIN; FACE_RULE_FINER: of one order more; FACE_RULE_FINEST: this one on each half of an edge, of one
-          order more still on other first-order faces
+- finer - FACE_RULE_PLAIN; FACE_RULE_FINER: of one order more; FACE_RULE_FINEST: this one on each half of an edge, and
+          of one order more still on other first-order faces
 
   Note:
   Number of points, plain | finer | finest: EDGE2 3 | 4 | 8, EDGE3 4 | 5 | 10, TRI3 3 | 6 | 12, TRI6 6 | 12 | 12,
