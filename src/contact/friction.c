@@ -18,7 +18,8 @@ PetscErrorCode FrictionCreate(ContactPair *pair)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&f));
   pair->friction = f;
-  f->stiffness = pair->scene->stick_penalty > 0 ? pair->scene->stick_penalty : PetscMin(pair->initial, pair->automatic);
+  f->automatic = pair->scene->stick_penalty > 0 ? pair->scene->stick_penalty : PetscMin(pair->initial, pair->automatic);
+  f->stiffness = f->automatic;
   PetscCall(PetscCalloc6(q, &f->face, 2 * q, &f->xi, 3 * q, &f->off, 3 * q, &f->place, q, &f->at, 3 * q, &f->force));
   PetscCall(PetscCalloc4(q, &f->foot, q, &f->facet, q, &f->known, q, &f->first));
   PetscCall(
@@ -422,10 +423,61 @@ static PetscErrorCode BeginTerm(ContactPair *pair, PetscInt c, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Coefficient of friction at a term, and its slope over the pressure. */
+static PetscReal TermCoefficient(const ContactPair *pair, PetscInt c, PetscReal t, PetscReal pressure, PetscReal *slope)
+{
+  const SceneContact *scene = pair->scene;
+  PetscReal           X[3], mu = scene->mu;
+
+  if (scene->mu_expression) {
+    MeshNodePlace(pair->mesh, pair->node[c], X);
+    mu = PetscMax(0, ExpressionValue(scene->mu_expression, X, t));
+  }
+  if (scene->mu_history.n) mu *= HistoryValue(&scene->mu_history, t);
+  *slope = scene->mu_pressure.n ? mu * HistorySlope(&scene->mu_pressure, pressure) : 0;
+  return scene->mu_pressure.n ? mu * HistoryValue(&scene->mu_pressure, pressure) : mu;
+}
+
+/* Fills the law of a term but for its slip, at a pressure. */
+static void TermMaterial(const ContactPair *pair, PetscInt c, PetscReal t, PetscReal pressure, FrictionInput *in)
+{
+  *in = (FrictionInput){.cohesion  = pair->scene->cohesion,
+                        .limit     = pair->scene->tau_max,
+                        .stiffness = pair->friction->stiffness,
+                        .pressure  = pressure};
+
+  in->coefficient = TermCoefficient(pair, c, t, pressure, &in->steepness);
+}
+
+/* Sets the penalty of what sticks for the step, where the scene names the elastic slip at which nodes begin to slip:
+   each of them can bear its bound at the accepted pressures. The tractions alone are state, so that the penalty may
+   change from step to step. */
+static PetscErrorCode SetStiffness(ContactPair *pair, PetscReal t)
+{
+  const PetscReal slip = pair->scene->stick_slip;
+  PetscReal       most = 0;
+
+  PetscFunctionBeginUser;
+  if (slip == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt c = 0; c < pair->n; c++) {
+    FrictionInput in;
+    LawValue      value;
+    PetscReal     area;
+
+    ContactTermLaw(pair, c, t, &value, NULL, &area);
+    if (!(value.pressure > 0)) continue;
+    TermMaterial(pair, c, t, value.pressure, &in);
+    most = PetscMax(most, FrictionBound(&in, value.pressure) / (slip * pair->size[c]));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPIU_MAX, pair->mesh->comm));
+  pair->friction->stiffness = most > 0 ? most : pair->friction->automatic;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FrictionBegin - begins a step: anchors all slave points where they are in the accepted state.
 
-  Not collective
+  Collective
 
   Input Parameters:
 + pair - the pair, projected with its lists at the accepted displacements
@@ -434,6 +486,7 @@ static PetscErrorCode BeginTerm(ContactPair *pair, PetscInt c, PetscReal t)
 PetscErrorCode FrictionBegin(ContactPair *pair, PetscReal t)
 {
   PetscFunctionBeginUser;
+  PetscCall(SetStiffness(pair, t));
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) PetscCall(AnchorPoint(pair, q, t));
   for (PetscInt c = 0; c < pair->n; c++) PetscCall(BeginTerm(pair, c, t));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -493,21 +546,6 @@ PetscErrorCode FrictionAnchorLate(ContactPair *pair, PetscReal t, PetscBool *mad
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Coefficient of friction at a term, and its slope over the pressure. */
-static PetscReal TermCoefficient(const ContactPair *pair, PetscInt c, PetscReal t, PetscReal pressure, PetscReal *slope)
-{
-  const SceneContact *scene = pair->scene;
-  PetscReal           X[3], mu = scene->mu;
-
-  if (scene->mu_expression) {
-    MeshNodePlace(pair->mesh, pair->node[c], X);
-    mu = PetscMax(0, ExpressionValue(scene->mu_expression, X, t));
-  }
-  if (scene->mu_history.n) mu *= HistoryValue(&scene->mu_history, t);
-  *slope = scene->mu_pressure.n ? mu * HistorySlope(&scene->mu_pressure, pressure) : 0;
-  return scene->mu_pressure.n ? mu * HistoryValue(&scene->mu_pressure, pressure) : mu;
-}
-
 /* Evaluates the law of a term. In a linear step what sticks goes on sticking and what slips goes on slipping, as what
    is in contact stays so. A term that only touches sticks, because it may be what holds a body. */
 static void TermEvaluate(const ContactPair *pair, PetscInt c, FrictionInput *in, FrictionTraction *out)
@@ -526,23 +564,17 @@ PetscErrorCode FrictionTermAsk(const ContactPair *pair, PetscInt c, PetscReal t,
   const Friction f     = pair->friction;
   const LawState state = ContactTermState(pair, c, t, pair->most);
   LawValue       value;
-  PetscReal      gap, area, mu, slope;
+  PetscReal      gap, area;
 
   PetscFunctionBeginUser;
   *found = f->anchored[c];
   if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
   ContactTermLaw(pair, c, t, &value, &gap, &area);
-  mu  = TermCoefficient(pair, c, t, value.pressure, &slope);
-  *in = (FrictionInput){.coefficient = mu,
-                        .steepness   = slope,
-                        .cohesion    = pair->scene->cohesion,
-                        .limit       = pair->scene->tau_max,
-                        .stiffness   = f->stiffness,
-                        .kept        = {f->kept[2 * c], f->kept[2 * c + 1]},
-                        .pressure    = value.pressure,
-                        .rate        = value.stiffness,
-                        .opening     = gap - LawOnsetGap(&state),
-                        .began       = f->began[c]};
+  TermMaterial(pair, c, t, value.pressure, in);
+  for (int k = 0; k < 2; k++) in->kept[k] = f->kept[2 * c + k];
+  in->rate    = value.stiffness;
+  in->opening = gap - LawOnsetGap(&state);
+  in->began   = f->began[c];
   PetscCall(TermSlip(pair, c, t, in, found));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

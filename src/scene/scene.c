@@ -322,6 +322,12 @@ static PetscErrorCode SceneReadFriction(Scene scene, SceneContact *contact)
     PetscCall(SceneRefuse(scene, contact->path, "friction.mu", "is below 0; allowed: 0 and above", NULL));
   if (SchemaChoice(document, "%s.friction.stick.penalty", contact->path) != 0)
     contact->stick_penalty = SchemaReal(document, "%s.friction.stick.penalty", contact->path);
+  if (!SceneHas(scene, contact->path, "friction.stick.slip")) PetscFunctionReturn(PETSC_SUCCESS);
+  contact->stick_slip = SchemaReal(document, "%s.friction.stick.slip", contact->path);
+  if (contact->stick_penalty > 0)
+    PetscCall(SceneRefuse(scene, contact->path, "friction.stick.slip",
+                          "stands beside a stick.penalty, which says how surfaces stick as well; allowed: one of them",
+                          NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -70,12 +70,13 @@ static void AddGauss(int dim, int n, int parts, FaceRule *rule)
    because points cost little there and the additional one leaves a third of the noise of curved second-order edges. */
 static void MakeRule(const Element *e, int finer, FaceRule *rule)
 {
-  const int n = e->order + 1 + (finer > FACE_RULE_PLAIN) + (e->dim == 1);
+  const int more = e->dim > 1 && e->order == 1 && finer == FACE_RULE_FINEST;
+  const int n    = e->order + 1 + (finer > FACE_RULE_PLAIN) + more + (e->dim == 1);
 
   if (e->corners == 3)
     AddOrbits(rule, n == 2 ? triangle3 : n == 3 ? triangle6 : triangle12);
   else
-    AddGauss(e->dim, n, e->dim == 1 && finer == FACE_RULE_HALVES ? 2 : 1, rule);
+    AddGauss(e->dim, n, e->dim == 1 && finer == FACE_RULE_FINEST ? 2 : 1, rule);
   for (int q = 0; q < rule->n; q++) {
     double dN[FACE_MAX_NODES * 2];
 
@@ -93,11 +94,12 @@ static void MakeRule(const Element *e, int finer, FaceRule *rule)
 
   Input Parameters:
 + type  - of the face
-- finer - FACE_RULE_PLAIN; FACE_RULE_FINER: of one order more; FACE_RULE_HALVES: the same on each half of an edge
+- finer - FACE_RULE_PLAIN; FACE_RULE_FINER: of one order more; FACE_RULE_FINEST: this one on each half of an edge, and
+          of one order more still on other first-order faces
 
   Note:
-  Number of points, plain | finer | halves: EDGE2 3 | 4 | 8, EDGE3 4 | 5 | 10; plain | finer: TRI3 3 | 6, TRI6 6 | 12,
-  QUAD4 4 | 9, QUAD9 9 | 16. Plain C.
+  Number of points, plain | finer | finest: EDGE2 3 | 4 | 8, EDGE3 4 | 5 | 10, TRI3 3 | 6 | 12, TRI6 6 | 12 | 12,
+  QUAD4 4 | 9 | 16, QUAD9 9 | 16 | 16. Plain C.
 @*/
 const FaceRule *FaceRuleGet(ElementType type, int finer)
 {

@@ -10,8 +10,9 @@
 
 enum { FACE_RULE_POINTS = 16 };
 
-/* How fine a rule is: plain, of one order more, and this one on each half of an edge. */
-enum { FACE_RULE_PLAIN, FACE_RULE_FINER, FACE_RULE_HALVES, FACE_RULES };
+/* How fine a rule is: plain, of one order more, and the finest: this one on each half of an edge, and of one order more
+   still on a first-order face that is no edge. */
+enum { FACE_RULE_PLAIN, FACE_RULE_FINER, FACE_RULE_FINEST, FACE_RULES };
 
 typedef struct {
   int    n;

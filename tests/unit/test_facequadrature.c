@@ -117,7 +117,7 @@ static void test_hats_around(void **state)
 static void test_kink(void **state)
 {
   static const double exact[2] = {0.5, 1}, moment[2] = {1. / 4, 1. / 6}; /* corner, middle */
-  const FaceRule     *rule = FaceRuleGet(ELEMENT_EDGE3, FACE_RULE_HALVES);
+  const FaceRule     *rule = FaceRuleGet(ELEMENT_EDGE3, FACE_RULE_FINEST);
 
   (void)state;
   for (int a = 0; a < 3; a++) {

@@ -15,7 +15,8 @@
 #include "contact/frictionlaw.h"
 
 typedef struct {
-  PetscReal stiffness; /* traction over elastic slip (force per length and area) */
+  PetscReal automatic; /* penalty of what sticks, where the scene names no elastic slip (force per length and area) */
+  PetscReal stiffness; /* traction over elastic slip in this step (force per length and area) */
   /* Of each slave point: its anchor. */
   long      *face;  /* tag; -1: it has none */
   PetscReal *xi;    /* 2: on that face */
