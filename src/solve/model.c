@@ -19,6 +19,8 @@ const char *const SolveResults[] = {
   "a fluid leaks, and the step is too long to say at which pressure",
   "a fluid leaks",
   "a rigid tool turned too far in one step",
+  "the bodies came to no rest in pseudo-time",
+  "the tangent was indefinite on the way, and the first step is too long to say whether the bodies jump",
   "not-a-number in the residual"};
 
 /*@
