@@ -65,6 +65,18 @@ static PetscErrorCode CollectFreeBodies(Model model, RunFigures *figures)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The energy with which that of a viscous restraint is compared. */
+static PetscErrorCode CollectStored(Model model, RunFigures *figures)
+{
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  if (figures->run->way->damped)
+    PetscCall(
+      ProblemEnergy(model->problem, model->u, model->t, ENERGY_ELASTIC | ENERGY_CONTACT, &figures->stored, &ok));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   RunFiguresCollect - collects the figures of a run.
 
@@ -106,6 +118,7 @@ PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run,
   PetscCall(PetscMalloc1(figures->n_fluids, &figures->fluids));
   for (int i = 0; i < figures->n_fluids; i++) FluidGetReport(model->problem->fluids, i, &figures->fluids[i]);
   PetscCall(CollectFreeBodies(model, figures));
+  PetscCall(CollectStored(model, figures));
   PetscCall(PetscCalloc1(figures->n_pairs, &figures->pairs));
   for (int p = 0; p < figures->n_pairs; p++) PetscCall(CollectPair(model, p, &figures->pairs[p]));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -132,6 +132,17 @@ static void AddJumps(cJSON *json, const StepperReport *way)
     cJSON_AddNullToObject(map, "last");
 }
 
+/* Adds what the viscous restraint of steps that failed without it has done. */
+static void AddDamping(cJSON *json, const RunFigures *figures)
+{
+  const StepperReport *way = figures->run->way;
+  cJSON               *map = cJSON_AddObjectToObject(json, "damping");
+
+  cJSON_AddNumberToObject(map, "steps", (double)way->damped);
+  AddReal(map, "energy_taken", way->damping);
+  AddReal(map, "stored_energy", figures->stored);
+}
+
 /* Adds what was done for bodies that only contact holds, if there are any. */
 static void AddSprings(cJSON *json, const RunFigures *figures)
 {
@@ -326,6 +337,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   cJSON_AddNumberToObject(json, "restarts", (double)figures->restarts);
   AddCycles(json, run->way);
   AddJumps(json, run->way);
+  AddDamping(json, figures);
   AddSprings(json, figures);
   AddLinear(json, &figures->linear);
   AddUsage(json, figures);

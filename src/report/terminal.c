@@ -7,6 +7,8 @@
 #include <math.h>
 #include <stdio.h>
 
+/* Damping that took more than this part of the stored energy is warned of. */
+#define TERMINAL_DAMPED 0.01
 /* Ties that hold more than this part of the forces are told with what lowers that. It is a tenth of the error that a
    run without any settings may have. */
 #define TERMINAL_TIED 1e-3
@@ -449,6 +451,23 @@ static void WarnInaccurate(const RunFigures *figures)
           figures->run->message ? "" : "Newton's method converged all the same, but ");
 }
 
+/* Says what a viscous restraint took out of the bodies in steps that failed without it. Warns where that is much. */
+static void PrintDamping(const RunFigures *figures)
+{
+  const StepperReport *report = figures->run->way;
+  const PetscReal      share  = figures->stored > 0 ? report->damping / figures->stored : PETSC_INFINITY;
+
+  if (!report->damped) return;
+  printf("damping of steps that failed without it: %lld steps, took an energy of %.4g, %.2g of what is stored; all "
+         "steps end in static equilibrium\n",
+         (long long)report->damped, (double)report->damping, (double)share);
+  if (share > TERMINAL_DAMPED)
+    fprintf(stderr,
+            "burnish: warning: damping took %.3g of the energy that is stored at the end: the bodies went through "
+            "states that are no static equilibria, and inertia may bring real parts elsewhere\n",
+            (double)share);
+}
+
 /* Says what was done for bodies that only contact holds. */
 static void PrintFreeBodies(const RunFigures *figures)
 {
@@ -510,6 +529,7 @@ PetscErrorCode TerminalEnd(Terminal terminal, const TerminalLast *last)
     PrintWindows(figures);
     EndReportPrint(figures, stdout);
     PrintFreeBodies(figures);
+    PrintDamping(figures);
   }
   if (terminal->rank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WarnUnused());

@@ -287,6 +287,9 @@ const SchemaKey SchemaKeys[] = {
   {"stepping.plastic_strain", REAL, .range = "(0, inf)",
    .help = "largest growth of the equivalent plastic strain of a quadrature point in a step; a step with more is "
            "repeated with a smaller dt, down to dt_min. Without the key there is no bound"},
+  {"stepping.damping", CHOICE, .values = "none | auto", .preset = "none",
+   .help = "auto: where static steps fail, the bodies are followed in pseudo-time, slowed down by a viscous restraint "
+           "that is taken away before the step ends; the last screen says how much energy it took"},
   {"stepping.at", REALS, .range = "(0, 1]", .help = "load parameters at which a step must end"},
   {"solver", MAP, .help = "nonlinear and linear solver"},
   {"solver.type", CHOICE, .values = "direct | iterative | auto", .preset = "auto",

@@ -516,6 +516,101 @@ static PetscErrorCode ModelJudgeTurn(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Begins a load step to model->t by a linear step, with the restraint of the first pseudo-time step. */
+static PetscErrorCode ModelStartSlowly(Model model, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelDepart(model, model->t));
+  PetscCall(VecCopy(model->work->accepted_x, model->x));
+  PetscCall(DampingAnchor(model->problem->damping, model->x));
+  PetscCall(ModelPredict(model, report));
+  PetscCall(ModelPredictFar(model, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves on after a fluid has moved or penalties have changed. A damped solve slows down what follows, too, where a
+   static solve fails. */
+static PetscErrorCode ModelSolveOn(Model model, PetscBool slowly, SolveReport *report)
+{
+  Vec x = NULL;
+
+  PetscFunctionBeginUser;
+  if (slowly) {
+    PetscCall(VecDuplicate(model->x, &x));
+    PetscCall(VecCopy(model->x, x));
+  }
+  PetscCall(ModelSolveHeld(model, report));
+  if (slowly && report->result != SOLVE_CONVERGED) {
+    PetscCall(VecCopy(x, model->x));
+    PetscCall(ModelSolveDamped(model, NULL, ModelSolveHeld, report));
+  }
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the first solution of a load step to t from the accepted state. */
+static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  if (slowly) {
+    model->t = t;
+    PetscCall(ModelSolveDamped(model, ModelStartSlowly, ModelSolveHeld, report));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ModelDepart(model, t));
+  if (model->work->adrift) {
+    report->result = SOLVE_ADRIFT;
+    PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  } else
+    PetscCall(ModelStart(model, report));
+  PetscCall(ModelRampPenalty(model, report));
+  if (report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ends a solve: says why it failed, or takes the solution. */
+static PetscErrorCode ModelEndSolve(Model model, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelJudgeTurn(model, report));
+  report->cycles = model->work->cycles;
+  PetscCall(PetscStrncpy(report->cycle, model->work->cycle, sizeof(report->cycle)));
+  if (report->result != SOLVE_CONVERGED) {
+    PetscCall(ModelExplainFailure(model, report));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscArraycpy(model->u, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(ModelFindJump(model, report));
+  if (report->result != SOLVE_CONVERGED) PetscCall(ModelExplainFailure(model, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds equilibrium at t, at once or slowly. */
+static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, SolveReport *report)
+{
+  ContactWindowState window = WINDOW_MISSED;
+  PetscBool          moved;
+
+  PetscFunctionBeginUser;
+  *report = (SolveReport){.result = SOLVE_CONVERGED};
+  PetscCall(ModelSolveFirst(model, t, slowly, report));
+  while (model->contact && window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
+    PetscCall(ModelMoveFluids(model, report, &moved));
+    if (!moved && report->result == SOLVE_CONVERGED) {
+      PetscCall(ContactAdjustPenalty(model->contact, &window));
+      report->adjusted += window == WINDOW_MISSED;
+      if (window == WINDOW_AT_BOUND) {
+        PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
+        report->result = SOLVE_WINDOW;
+      }
+      if (window == WINDOW_HOLDS && ModelEstimatesAt(model, t)) PetscCall(ModelCheckPenalty(model, report, &window));
+    }
+    if (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) PetscCall(ModelSolveOn(model, slowly, report));
+  }
+  PetscCall(ModelEndSolve(model, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelSolve - finds equilibrium at a load parameter, starting from the accepted state.
 
@@ -540,41 +635,32 @@ static PetscErrorCode ModelJudgeTurn(Model model, SolveReport *report)
 @*/
 PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 {
-  ModelWork         *work   = model->work;
-  ContactWindowState window = WINDOW_MISSED;
-  PetscBool          moved;
-
   PetscFunctionBeginUser;
-  *report = (SolveReport){.result = SOLVE_CONVERGED};
-  PetscCall(ModelDepart(model, t));
-  if (model->work->adrift) {
-    report->result = SOLVE_ADRIFT;
-    PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
-  } else
-    PetscCall(ModelStart(model, report));
-  PetscCall(ModelRampPenalty(model, report));
-  while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
-    PetscCall(ModelSolveHeld(model, report));
-    if (report->result != SOLVE_CONVERGED || !model->contact) break;
-    PetscCall(ModelMoveFluids(model, report, &moved));
-    if (moved || report->result != SOLVE_CONVERGED) continue;
-    PetscCall(ContactAdjustPenalty(model->contact, &window));
-    report->adjusted += window == WINDOW_MISSED;
-    if (window == WINDOW_AT_BOUND) {
-      PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
-      report->result = SOLVE_WINDOW;
-    }
-    if (window == WINDOW_HOLDS && ModelEstimatesAt(model, t)) PetscCall(ModelCheckPenalty(model, report, &window));
-  }
-  PetscCall(ModelJudgeTurn(model, report));
-  report->cycles = work->cycles;
-  PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));
-  if (report->result != SOLVE_CONVERGED) {
-    PetscCall(ModelExplainFailure(model, report));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetscArraycpy(model->u, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
-  PetscCall(ModelFindJump(model, report));
+  PetscCall(ModelSolveWay(model, t, PETSC_FALSE, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelSolveSlowly - finds equilibrium at a load parameter by following the bodies from the accepted state in
+  pseudo-time, slowed down by a viscous restraint.
+
+  Collective
+
+  Input Parameters:
++ model - it has an accepted state
+- t     - load parameter
+
+  Output Parameter:
+. report - as ModelSolve() says; report->damping is the energy that the restraint took
+
+  Note:
+  For load steps at which ModelSolve() fails, as where a body snaps through. The solution is an equilibrium without the
+  restraint, see ModelSolveDamped().
+@*/
+PetscErrorCode ModelSolveSlowly(Model model, PetscReal t, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelSolveWay(model, t, PETSC_TRUE, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

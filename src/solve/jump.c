@@ -17,8 +17,9 @@
 . report - says how often Newton's steps were turned; jump[] names the node that moved most, or stays empty
 
   Note:
-  Two things together tell a jump: the tangent became indefinite on the way, so that steps were turned round, and the
-  bodies moved much faster than in the step before. The first step of a run has none before it.
+  Two things together tell a jump: the tangent became indefinite on the way, so that steps were turned round or the
+  solve needed a viscous restraint, and the bodies moved much faster than in the step before. The first step of a run has none before it. Without contact, whose
+  changes make the tangent of an iterate indefinite, too, it is then to be repeated with a smaller one.
 @*/
 PetscErrorCode ModelFindJump(Model model, SolveReport *report)
 {
@@ -34,7 +35,11 @@ PetscErrorCode ModelFindJump(Model model, SolveReport *report)
   } mine = {0, 0}, most;
 
   PetscFunctionBeginUser;
-  if (!report->turned || !(work->rate > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!report->turned && !report->damped) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!(work->rate > 0)) {
+    if (!model->contact) report->result = SOLVE_JUMP;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
   for (PetscInt n = 0; n < mesh->n_body_nodes; n++) {
     PetscReal square = 0;

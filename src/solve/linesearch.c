@@ -22,7 +22,7 @@
 /* Energies that differ by less than this many machine epsilons of the energy differ by round-off only. */
 #define LINE_RISE 64
 
-/* Potential energy at x with that of the contact springs; MODEL_INVERTED where an element is inverted. */
+/* Potential energy at x with that of contact springs and damping; MODEL_INVERTED where an element is inverted. */
 static PetscErrorCode ObjectiveEnergy(Model model, Vec x, PetscReal *objective)
 {
   PetscBool ok;
@@ -35,6 +35,7 @@ static PetscErrorCode ObjectiveEnergy(Model model, Vec x, PetscReal *objective)
   else
     *objective = MODEL_INVERTED;
   PetscCall(ContactSpringsEnergy(model->problem->springs, x, objective));
+  PetscCall(DampingEnergy(model->problem->damping, x, objective));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,14 +91,29 @@ void ModelChooseObjective(Model model, PetscReal residual, PetscReal slope)
   model->work->objective = small || flat ? OBJECTIVE_RESIDUAL : OBJECTIVE_ENERGY;
 }
 
+/* Turns a step round that leads uphill. Where the tangent is indefinite, Newton's step may lead to a saddle of the
+   energy, and the opposite step leads downhill. With loads that follow the surface the work of the residual stands for
+   the energy. */
+static PetscErrorCode ModelTurnStep(Model model, SNESLineSearch search, Vec y, PetscReal *slope)
+{
+  Vec F;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
+  PetscCall(VecDotRealPart(F, y, slope));
+  if (*slope >= 0 || PetscIsInfOrNanReal(*slope)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecScale(y, -1));
+  model->work->turned++;
+  model->work->uphill = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Changes Newton's step so that its contact is right at its end, and chooses the objective anew from the slope of the
-   energy. Where the tangent is indefinite, Newton's step may lead uphill, to a saddle of the energy. The opposite step
-   leads downhill then. With loads that follow the surface the work of the residual stands for the energy. */
+   energy. A step that leads uphill is turned round. */
 static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x, Vec y)
 {
   const PetscBool conservative = ProblemConservative(model->problem);
   SNES            snes;
-  Vec             F;
   PetscReal       slope, energy;
 
   PetscFunctionBeginUser;
@@ -106,16 +122,10 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
   if (model->work->objective == OBJECTIVE_RESIDUAL || ContactHasFriction(model->contact))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESLineSearchGetSNES(search, &snes));
-  if (conservative && model->work->energy == 0)
+  if (model->contact && conservative && model->work->energy == 0)
     PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated in this load step */
-  PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
-  PetscCall(VecDotRealPart(F, y, &slope));
-  if (slope < 0) {
-    PetscCall(VecScale(y, -1));
-    model->work->turned++;
-    model->work->uphill = PETSC_TRUE;
-  }
-  if (conservative) ModelChooseObjective(model, NAN, slope);
+  PetscCall(ModelTurnStep(model, search, y, &slope));
+  if (model->contact && conservative) ModelChooseObjective(model, NAN, slope);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -125,8 +135,8 @@ static PetscErrorCode ModelPrepareStep(SNESLineSearch search, Vec x, Vec y, Pets
   Model model = context;
 
   PetscFunctionBeginUser;
-  *changed = (PetscBool)(model->contact != NULL);
-  if (model->contact) PetscCall(ModelMeasureStep(model, search, x, y));
+  *changed = PETSC_TRUE;
+  PetscCall(ModelMeasureStep(model, search, x, y));
   PetscCall(VecCopy(y, model->work->step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

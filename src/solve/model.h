@@ -2,7 +2,8 @@
    accepted last, and accepts the new state or takes it back.
 
    ModelCreate(), ModelPlace() and ModelSetUp() are called once, in this order; ModelArchive() with an archive that
-   loads takes the place of ModelSetUp(). ModelSolve() finds equilibrium at t. ModelAccept() makes it the accepted
+   loads takes the place of ModelSetUp(). ModelSolve() finds equilibrium at t, ModelSolveSlowly() by way
+   of a viscous motion where that fails. ModelAccept() makes it the accepted
    state, ModelRestore() returns to the accepted state. The model does not know step sizes; src/step chooses them. */
 #pragma once
 #include "linear/linearcheck.h"
@@ -28,6 +29,8 @@ typedef enum {
   SOLVE_LEAKED,
   SOLVE_TURNED,
   SOLVE_ROUTINE,
+  SOLVE_RESTLESS,
+  SOLVE_JUMP,
   SOLVE_NAN
 } SolveResult;
 extern const char *const SolveResults[]; /* in words, for messages */
@@ -65,6 +68,8 @@ typedef struct {
   PetscReal   tied;             /* largest force in a tie, over F_ref */
   PetscInt    cycles;           /* times that the contact set repeated itself and Newton's steps were shortened */
   char        cycle[256];       /* the last repetition: its period and nodes, in gmsh's tags */
+  PetscInt    damped;           /* pseudo-time steps with a viscous restraint; 0: a static solve */
+  PetscReal   damping;          /* energy that the restraint took */
   char        jump[256];        /* the node that jumped to another equilibrium, and how far; empty: none did */
   char        detail[256];      /* where a failed solve failed, in gmsh's tags */
   Failure     failure;          /* more about a failed solve */
@@ -98,6 +103,7 @@ PetscErrorCode ModelPlace(Model, PetscReal t);
 PetscErrorCode ModelAssemble(Model);
 PetscErrorCode ModelSetUp(Model);
 PetscErrorCode ModelSolve(Model, PetscReal t, SolveReport *);
+PetscErrorCode ModelSolveSlowly(Model, PetscReal t, SolveReport *);
 PetscErrorCode ModelLookAhead(Model, PetscReal t, PetscReal *u, SolveReport *);
 PetscErrorCode ModelGetAccepted(Model, const PetscReal **u, PetscReal *t);
 PetscErrorCode ModelAccept(Model);

@@ -65,6 +65,7 @@ PetscErrorCode ProblemDestroy(Problem *problem)
 
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DampingDestroy(&p->damping));
   PetscCall(ContactSpringsDestroy(&p->springs));
   PetscCall(FreeBodiesDestroy(&p->bodies));
   PetscCall(FluidDestroy(&p->fluids));
@@ -164,13 +165,13 @@ PetscErrorCode ProblemResidual(Problem problem, const PetscReal *u, PetscReal t,
 }
 
 /*@
-  ProblemCollectResidual - sums the local residual over the ranks and adds the forces of the contact springs.
+  ProblemCollectResidual - sums the local residual over the ranks and adds the forces of contact springs and damping.
 
   Collective
 
   Input Parameters:
 + problem - after ProblemResidual()
-- x       - free displacements (length) at which the springs are evaluated
+- x       - free displacements (length) at which springs and damping are evaluated
 
   Output Parameter:
 . F - residual of the free dofs (force)
@@ -180,6 +181,7 @@ PetscErrorCode ProblemCollectResidual(Problem problem, Vec x, Vec F)
   PetscFunctionBeginUser;
   PetscCall(MeshLocalToGlobal(problem->mesh, problem->f, F));
   PetscCall(ContactSpringsResidual(problem->springs, x, F));
+  PetscCall(DampingResidual(problem->damping, x, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -266,7 +268,7 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
 }
 
 /*@
-  ProblemTangent - computes the tangent of elements, loads, contact and contact springs at (u, t) into problem->A and
+  ProblemTangent - computes the tangent of elements, loads, contact, contact springs and damping at (u, t) into problem->A and
   problem->P.
 
   Collective
@@ -299,7 +301,8 @@ PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const StressR
   PetscCall(VecNorm(problem->diagonal, NORM_2, &problem->stiffness));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(ContactSpringsTangent(problem->springs, problem->P));
-  if (problem->tied) change->pattern = PETSC_TRUE; /* no factor of an earlier tangent serves */
+  PetscCall(DampingTangent(problem->damping, problem->P));
+  if (problem->tied || DampingChanged(problem->damping)) change->pattern = PETSC_TRUE; /* no factor of an earlier tangent serves */
   problem->tied = PETSC_FALSE;
   if (!joined) PetscCall(SumOperatorSet(problem->A, change->C));
   PetscFunctionReturn(PETSC_SUCCESS);

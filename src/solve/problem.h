@@ -11,6 +11,7 @@
 #include "bodies/loads.h"
 #include "contact/contact.h"
 #include "contact/contactsprings.h"
+#include "solve/damping.h"
 #include "solve/fluid.h"
 #include "solve/freebodies.h"
 
@@ -51,6 +52,7 @@ typedef struct _n_Problem {
   FreeModes      modes;   /* rigid motions that supports leave to the bodies */
   FreeBodies     bodies;  /* that contact is to hold; NULL: there are none */
   ContactSprings springs; /* of these bodies; NULL: there are none */
+  Damping        damping; /* of solves in pseudo-time; NULL: there was none yet */
   PetscBool      tied;    /* other motions are tied than in the last tangent */
   TangentForm    form;
   Mat            A;            /* K + C */

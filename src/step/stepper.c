@@ -11,6 +11,10 @@
 /* A step stretches to the next landing point if that is at most this many dt away. At sqrt(2) the one longer step
    differs from dt by the same factor as two shorter ones. */
 #define STEPPER_STRETCH 1.4142135623730951
+/* After this many failed static solves of a step, the next solve is slowed down by a viscous restraint. Shorter steps
+   are cheaper where they help, and at a limit point no static step does. In the step after a damped one the first
+   failure is enough. */
+#define STEPPER_STATIC 3
 /* If the landing point is at most this many dt away, the way to it is halved, so that no very short step remains. */
 #define STEPPER_HALVE 2.0
 
@@ -26,6 +30,7 @@ struct _n_LoadStepper {
   PetscReal           *landings; /* load parameters that steps must end on, ascending; the last one is 1 */
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
+  PetscInt             damped; /* 1: the last accepted step was damped */
   PetscBool            view;
 };
 
@@ -318,6 +323,9 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
     PetscCall(PetscSNPrintf(report->jump, sizeof(report->jump), "from t = %.6g to %.6g: %s", (double)report->t,
                             (double)model->t, solve->jump));
   }
+  stepper->damped = solve->damped > 0;
+  report->damped += stepper->damped;
+  report->damping += solve->damping;
   stepper->start = stepper->size;
   report->t      = model->t;
   report->steps++;
@@ -366,6 +374,41 @@ static PetscErrorCode LoadStepperBoundStrain(LoadStepper stepper, PetscReal dt, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether the way that a solve failed may be due to an unstable equilibrium. */
+static PetscBool MayBeUnstable(SolveResult result)
+{
+  switch (result) {
+  case SOLVE_ITERATIONS:
+  case SOLVE_LINE_SEARCH:
+  case SOLVE_DOMAIN:
+  case SOLVE_LINEAR:
+  case SOLVE_LISTS:
+  case SOLVE_CYCLE:
+  case SOLVE_LOST:
+  case SOLVE_NAN: return PETSC_TRUE;
+  default: return PETSC_FALSE;
+  }
+}
+
+/* Solves for a step of dt to `end`. Where static solves have failed often enough, the next one is damped, and the count
+   starts anew. No shorter static step follows a damped one or one of dt_min, either. */
+static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscReal dt, PetscInt *failures,
+                                     SolveReport *solve)
+{
+  const PetscBool last   = (PetscBool)(STEPPER_CUT * dt < stepper->size.dt_min || stepper->damped);
+  const PetscBool slowly = (PetscBool)(*failures >= STEPPER_STATIC);
+
+  PetscFunctionBeginUser;
+  if (slowly) {
+    PetscCall(ModelSolveSlowly(stepper->model, end, solve));
+    *failures = 0;
+  } else {
+    PetscCall(ModelSolve(stepper->model, end, solve));
+    if (stepper->model->scene->stepping.damped && MayBeUnstable(solve->result)) *failures += last ? STEPPER_STATIC : 1;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Tries one step, and repeats it with smaller dt until it converges and the control accepts it, or dt falls below
    dt_min. A step whose first linear solve is singular is not repeated, because the tangent at its start is singular for
    any dt. A fluid that leaks
@@ -377,7 +420,8 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   const PetscReal t = model->t, first = stepper->size.dt;
   SolveReport     solve;
   PetscReal       most;
-  PetscBool       clipped;
+  PetscBool       clipped, singular;
+  PetscInt        failures = 0;
 
   PetscFunctionBeginUser;
   *advanced = PETSC_FALSE;
@@ -386,7 +430,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   while (PETSC_TRUE) {
     const PetscReal end = StepEnd(stepper, t, stepper->size.dt, &clipped), dt = end - t;
 
-    PetscCall(ModelSolve(model, end, &solve));
+    PetscCall(LoadStepperTry(stepper, end, dt, &failures, &solve));
     record->attempts++;
     CountSolve(end, &solve, record, &stepper->report);
     if (solve.result == SOLVE_CONVERGED) {
@@ -411,9 +455,11 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     *(solve.result == SOLVE_LEAK ? &report->steps_repeated : &report->steps_failed) += 1;
+    singular = (PetscBool)((solve.result == SOLVE_LINEAR && solve.newton == 1) ||
+                           (solve.result == SOLVE_ADRIFT && !solve.newton));
+    if (failures >= STEPPER_STATIC && !singular) continue; /* a damped solve of the same dt comes next */
     stepper->size.dt = STEPPER_CUT * dt;
-    if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1) ||
-        (solve.result == SOLVE_ADRIFT && !solve.newton)) {
+    if (stepper->size.dt < stepper->size.dt_min || singular) {
       PetscCall(ReportFailure(report, t, end, first, dt, stepper->size.dt_min, record->attempts, &solve));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
@@ -492,7 +538,8 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   PetscReal      initial = size.initial, dt = size.dt;
   PetscReal     *real[]    = {&initial,        &dt,           &size.beta,     &size.together,
                               &size.shortfall, &size.planned, &report->taken, &report->left,
-                              &report->share,  &report->tied, &size.last_dt,  &size.last_iterations};
+                              &report->share,  &report->tied, &size.last_dt,  &size.last_iterations,
+                              &report->damping};
   PetscInt      *integer[] = {&report->steps,
                               &report->steps_failed,
                               &report->steps_repeated,
@@ -507,6 +554,8 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                               &report->cycles,
                               &report->cycles_cut,
                               &report->jumps,
+                              &report->damped,
+                              &stepper->damped,
                               &size.tied};
 
   PetscFunctionBeginUser;

@@ -38,6 +38,8 @@ typedef struct {
   char      cycle[512];                   /* the last repetition: load parameter, period, nodes */
   PetscInt  jumps;                        /* accepted steps that ended in another equilibrium */
   char      jump[512];                    /* the last of them: load parameters, node, distance */
+  PetscInt  damped;                       /* accepted steps that needed a viscous restraint */
+  PetscReal damping;                      /* energy that it took in them */
   PetscInt  regathered, adjusted, turned; /* of SolveReport, for all solves */
   PetscInt  wetted;                       /* likewise */
   PetscInt  cuts[CUT_CAUSES];             /* likewise */

@@ -36,6 +36,7 @@ typedef struct {
   const char       *options_changed; /* lines, see optionrecord.h */
   PetscBool         direct;          /* the solver factors each tangent, for which it uses the BLAS */
   Blas              blas;            /* of this rank */
+  PetscReal         stored;          /* energy in elements and contact; 0 where no step was damped */
   PetscBool         free_bodies;     /* some bodies are held by contact alone */
   char              moved[512];      /* which of them were moved into contact, and how far */
   char              loose[512];      /* their motions that only springs hold */

@@ -5,6 +5,7 @@
    is right at the end of a linear step. linecuts.c says why a line search shortened its step. relaxedsearch.c
    is the line search, linesearch.c chooses what it compares, and corrects steps for contact. newton.c runs SNES once
    with the present contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties,
+   dampedsolve.c follows the bodies in pseudo-time where Newton's method finds no equilibrium.
    penaltyerror.c estimates what penetration leaves of error and stiffens penalties, jump.c tells an equilibrium that
    was reached by a jump. equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state.
    Each file calls only those named before it. */
@@ -129,6 +130,9 @@ PetscErrorCode ModelExtrapolate(Model, PetscReal t, PetscReal *u, Vec x, PetscBo
 PetscErrorCode ModelPredict(Model, SolveReport *);
 PetscErrorCode ModelPredictFar(Model, SolveReport *);
 PetscErrorCode ModelFollowLists(Model, SolveReport *);
+/* dampedsolve.c */
+typedef PetscErrorCode (*ModelStage)(Model, SolveReport *);
+PetscErrorCode ModelSolveDamped(Model, ModelStage start, ModelStage solve, SolveReport *);
 /* penaltyramp.c */
 PetscErrorCode ModelRampPenalty(Model, SolveReport *);
 /* penaltyerror.c */
