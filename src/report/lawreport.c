@@ -47,8 +47,8 @@ static void ReportBody(Scene scene, const SceneBody *body, FILE *file)
 - file  - of rank 0, which prints
 
   Note:
-  svk and hyperfoam are not checked, and neither are the neo-Hookean laws, which are stable at every stretch. Small strains take
-  Hooke's law.
+  svk and hyperfoam are not checked, and neither are the neo-Hookean laws, which are stable at every stretch. Small
+  strains take Hooke's law.
 @*/
 void LawReport(Scene scene, FILE *file)
 {

@@ -23,7 +23,7 @@ Transfinite Surface{1};
 Recombine Surface{1};
 Physical Surface("bumper") = {1};
 Physical Curve("inner") = {1};
-Physical Curve("outer") = {2};
 Physical Curve("skin") = {1, 2};
+Physical Curve("outer") = {2};
 Physical Curve("bottom") = {3};
 Physical Curve("top") = {4};
