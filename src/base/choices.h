@@ -17,6 +17,7 @@
   LINE(MATERIAL_YEOH, "yeoh", MaterialLaw_Yeoh)                                                  \
   LINE(MATERIAL_OGDEN, "ogden", MaterialLaw_Ogden)                                               \
   LINE(MATERIAL_ARRUDA_BOYCE, "arruda_boyce", MaterialLaw_ArrudaBoyce)                           \
+  LINE(MATERIAL_HYPERFOAM, "hyperfoam", MaterialLaw_Hyperfoam)                                   \
   LINE(MATERIAL_VON_MISES, "von_mises", MaterialLaw_VonMises)                                    \
   LINE(MATERIAL_UMAT, "umat", MaterialLaw_Umat)
 

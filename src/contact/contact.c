@@ -26,61 +26,6 @@ static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The body whose outer faces a listed pair has on a side, or which is its tool; -1: it lists a surface of the mesh. */
-static int BodyOfSide(Scene scene, const SceneContact *contact, const char *side)
-{
-  char name[PETSC_MAX_PATH_LEN];
-
-  for (int b = 0; b < scene->n_bodies && contact->listed; b++) {
-    SceneBodySkin(&scene->bodies[b], name, sizeof(name));
-    if (!strcmp(side, scene->bodies[b].rigid ? scene->bodies[b].name : name)) return b;
-  }
-  return -1;
-}
-
-/* Has a surface a face of a body? The same on all ranks. */
-static PetscErrorCode SurfaceMeetsBody(ContactSurface surface, int body, PetscBool *meets)
-{
-  const Mesh mesh  = surface->mesh;
-  int        found = surface->rigid && surface->body == body;
-
-  PetscFunctionBeginUser;
-  for (PetscInt f = 0; surface->group && f < surface->n_faces; f++)
-    found = found || mesh->cell_body[surface->group->face_cell[f]] == body;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_LOR, mesh->comm));
-  *meets = found ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Refuses a pair by slave and master whose bodies meet in a list of all bodies too, because their forces would add
-   up. */
-static PetscErrorCode RefuseCoveredPairs(Contact contact)
-{
-  const Scene scene = contact->scene;
-
-  PetscFunctionBeginUser;
-  for (int q = 0; q < contact->n_pairs; q++) {
-    const SceneContact *list    = &scene->contacts[q];
-    const int           body[2] = {BodyOfSide(scene, list, list->slave), BodyOfSide(scene, list, list->master)};
-
-    for (int p = 0; p < contact->n_pairs && body[0] >= 0 && body[1] >= 0; p++) {
-      const ContactPair *pair = &contact->pairs[p];
-      PetscBool          meets[4];
-
-      if (pair->scene->listed || !pair->master) continue;
-      for (int k = 0; k < 4; k++)
-        PetscCall(SurfaceMeetsBody(k < 2 ? pair->slave : pair->master, body[k % 2], &meets[k]));
-      if (!(meets[0] && meets[3]) && !(meets[1] && meets[2])) continue;
-      PetscCall(RefuseInput(contact->mesh->comm,
-                            "%s: contact '%s': '%s' and '%s' meet in contact '%s' too, which lists all bodies: their "
-                            "forces would add up; allowed: exclude: [[%s, %s]] there",
-                            SceneWhere(scene, pair->scene->path, "slave"), pair->scene->name, pair->scene->slave,
-                            pair->scene->master, list->name, scene->bodies[body[0]].name, scene->bodies[body[1]].name));
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   ContactCreate - creates all pairs of the scene, without lists.
 
@@ -97,7 +42,7 @@ static PetscErrorCode RefuseCoveredPairs(Contact contact)
 
   Notes:
   Refuses what the mesh shows to be wrong: surfaces that are missing or empty, a rigid slave, two pairs of the same
-  surfaces, planes of symmetry that are none.
+  surfaces, planes of symmetry that are none, faces that two lists have.
 
   ContactGather() makes the first lists.
 @*/
@@ -134,7 +79,7 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
     dense = PetscMax(dense, PetscMax(smoother->dense_capacity, contact->pairs[p].facets->dense_capacity));
     if (smoother->workspace) workspace = PetscMax(workspace, smoother->workspace(mesh->dim));
   }
-  PetscCall(RefuseCoveredPairs(contact));
+  PetscCall(ContactOverride(contact));
   PetscCall(ContactWorkCreate(capacity, dense, workspace, &contact->work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

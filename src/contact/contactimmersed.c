@@ -61,8 +61,9 @@ static PetscErrorCode AskBodies(Mesh mesh, int n_bodies, const int *bodies, doub
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Centres of the cells behind the faces of a surface, but for faces with a node that is marked. */
-static PetscErrorCode CellCentres(Mesh mesh, ContactSurface surface, const PetscReal *mark, PetscInt *n, PetscReal *x)
+/* Centres of the cells behind the faces of a surface, or of the faces, but for faces with a node that is marked. */
+static PetscErrorCode Centres(Mesh mesh, ContactSurface surface, PetscBool faces, const PetscReal *mark, PetscInt *n,
+                              PetscReal *x)
 {
   double X[ELEMENT_MAX_NODES * 3];
 
@@ -70,13 +71,16 @@ static PetscErrorCode CellCentres(Mesh mesh, ContactSurface surface, const Petsc
   *n = 0;
   for (PetscInt f = 0; f < surface->n_faces; f++) {
     const PetscInt c       = surface->group->face_cell[f];
-    const int      corners = ElementGet(mesh->cell_type[c])->corners;
+    const Facet   *face    = &surface->faces[f];
+    const int      corners = ElementGet(faces ? face->type : mesh->cell_type[c])->corners;
     PetscBool      marked  = PETSC_FALSE;
 
-    for (int a = 0; a < ElementGet(surface->faces[f].type)->nodes; a++)
-      marked = (PetscBool)(marked || mark[surface->faces[f].nodes[a]] > 0);
+    for (int a = 0; a < ElementGet(face->type)->nodes; a++)
+      marked = (PetscBool)(marked || mark[face->nodes[a]] > 0);
     if (marked) continue;
     MeshCellCoordinates(mesh, c, X);
+    for (int k = 0; k < corners && faces; k++)
+      for (int d = 0; d < mesh->dim; d++) X[k * mesh->dim + d] = mesh->coords[face->nodes[k] * mesh->dim + d];
     for (int d = 0; d < mesh->dim; d++) {
       x[*n * mesh->dim + d] = 0;
       for (int k = 0; k < corners; k++) x[*n * mesh->dim + d] += X[k * mesh->dim + d] / corners;
@@ -86,9 +90,9 @@ static PetscErrorCode CellCentres(Mesh mesh, ContactSurface surface, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the centre of a cell behind one surface that is in the bodies of the other. */
-static PetscErrorCode FindImmersedCell(Mesh mesh, int n_bodies, const int *bodies, ContactSurface surface,
-                                       const PetscReal *mark, PetscReal X[3], PetscBool *found)
+/* Finds the centre of a cell behind one surface, or of a face of it, that is in the bodies of the other. */
+static PetscErrorCode FindImmersed(Mesh mesh, int n_bodies, const int *bodies, ContactSurface surface, PetscBool faces,
+                                   const PetscReal *mark, PetscReal X[3], PetscBool *found)
 {
   PetscInt       n;
   PetscReal     *x;
@@ -96,7 +100,7 @@ static PetscErrorCode FindImmersedCell(Mesh mesh, int n_bodies, const int *bodie
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(surface->n_faces * mesh->dim, &x));
-  PetscCall(CellCentres(mesh, surface, mark, &n, x));
+  PetscCall(Centres(mesh, surface, faces, mark, &n, x));
   PetscCall(AskBodies(mesh, n_bodies, bodies, IMMERSED_CORE, n, x, &all));
   *found = PETSC_FALSE;
   for (PetscInt i = 0; i < all.n && !*found; i++) {
@@ -143,6 +147,21 @@ static PetscErrorCode OverlapIsDeep(Contact contact, const ContactPair *pair, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds a face of a listed surface that lies in the master's bodies, though none of its nodes has found a master: it is
+   deeper than points are taken to have entered what faces them. room: by local node */
+static PetscErrorCode FindPointless(Contact contact, const ContactPair *pair, const int *bodies, PetscReal *room,
+                                    PetscReal X[3], PetscBool *found)
+{
+  const Mesh mesh = contact->mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(room, mesh->n_nodes));
+  for (PetscInt c = 0; c < pair->n_nodes; c++) room[pair->node[c]] = !PetscIsNanReal(pair->now.gap[c]);
+  PetscCall(MeshSumNodes(mesh, 1, room));
+  PetscCall(FindImmersed(mesh, contact->scene->n_bodies, bodies, pair->slave, PETSC_TRUE, room, X, found));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactRefuseImmersed - refuses a pair whose bodies lie in the same place, or overlap by more than half a wall.
 
@@ -178,9 +197,11 @@ PetscErrorCode ContactRefuseImmersed(Contact contact, int p)
     for (PetscInt c = 0; c < pair->n_nodes; c++) any = any || pair->now.gap[c] < -ContactTouchTolerance(pair, c);
     PetscCall(MeshSumNodes(mesh, 1, overlaps));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, mesh->comm));
-    PetscCall(FindImmersedCell(mesh, scene->n_bodies, master, pair->slave, overlaps, X, &found));
+    PetscCall(FindImmersed(mesh, scene->n_bodies, master, pair->slave, PETSC_FALSE, overlaps, X, &found));
     PetscCall(PetscArrayzero(overlaps, mesh->n_nodes));
-    if (!found && !any) PetscCall(FindImmersedCell(mesh, scene->n_bodies, slave, pair->master, overlaps, X, &found));
+    if (!found && !any)
+      PetscCall(FindImmersed(mesh, scene->n_bodies, slave, pair->master, PETSC_FALSE, overlaps, X, &found));
+    if (!found && pair->scene->listed) PetscCall(FindPointless(contact, pair, master, overlaps, X, &found));
     if (!found && any) PetscCall(OverlapIsDeep(contact, pair, master, &deep));
     PetscCall(PetscFree(overlaps));
   }
@@ -190,9 +211,12 @@ PetscErrorCode ContactRefuseImmersed(Contact contact, int p)
       RefuseInput(mesh->comm,
                   "%s: contact '%s': the bodies of '%s' and '%s' lie in each other before any load, as at (%.6g, "
                   "%.6g, %.6g), so deep that their surfaces do not meet; allowed: bodies that touch, are apart or "
-                  "overlap by less than half a wall (move one of them)",
+                  "overlap by less than half a wall (move one of them)%s",
                   SceneWhere(scene, pair->scene->path, "master"), pair->scene->name, pair->scene->slave,
-                  pair->scene->master, (double)X[0], (double)X[1], (double)X[2]));
+                  pair->scene->master, (double)X[0], (double)X[1], (double)X[2],
+                  pair->scene->listed ? ", with surfaces by less than a quarter of an element's height, or a pair with "
+                                        "slave and master"
+                                      : ""));
   if (deep)
     PetscCall(RefuseInput(mesh->comm,
                           "%s: contact '%s': '%s' overlaps the body of '%s' by more than half of its wall before any "

@@ -365,7 +365,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images,
                          &pair->fit, pair->slaves, pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL,
                          pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL, &pair->search));
-  if (contact->listed) PetscCall(PairIsOneBody(mesh, scene, pair, &pair->one_body));
+  if (contact->listed && pair->master) PetscCall(PairIsOneBody(mesh, scene, pair, &pair->one_body));
   if (contact->listed) SearchAllSides(pair->search, pair->one_body);
   if (contact->share < 1) PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &pair->reaction));
   pair->tool = ToolOfPair(mesh, scene, (int)(contact - scene->contacts));
@@ -415,6 +415,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree2(pair->held, pair->predicted));
   PetscCall(FrictionDestroy(&pair->friction));
   PetscCall(PetscFree(pair->carried));
+  PetscCall(PetscFree(pair->marks));
   PetscCall(PetscFree(pair->reaction));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -47,14 +47,15 @@ static void ReportBody(Scene scene, const SceneBody *body, FILE *file)
 - file  - of rank 0, which prints
 
   Note:
-  svk is not checked, and neither are the neo-Hookean laws, which are stable at every stretch. Small strains take
-  Hooke's law.
+  svk and hyperfoam are not checked, and neither are the neo-Hookean laws, which are stable at every stretch. Small
+  strains take Hooke's law.
 @*/
 void LawReport(Scene scene, FILE *file)
 {
   for (int b = 0; b < scene->n_bodies && scene->kinematics == KINEMATICS_FINITE; b++) {
     const SceneBody *body = &scene->bodies[b];
 
-    if (!body->rigid && !MaterialHasModuli(body->material.law)) ReportBody(scene, body, file);
+    if (!body->rigid && MaterialGetLaw(body->material.law)->separable && !MaterialHasModuli(body->material.law))
+      ReportBody(scene, body, file);
   }
 }

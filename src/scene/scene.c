@@ -341,7 +341,10 @@ static PetscErrorCode SceneReadSides(Scene scene, const SurfacePair *pair, int a
     PetscCall(
       SceneNameSurfacePair(pair, alone, SchemaText(SceneDocument(scene), "%s.name", contact->path), &contact->name));
     PetscCall(PetscStrallocpy(pair->slave.group, &contact->slave));
-    PetscCall(PetscStrallocpy(pair->master.group, &contact->master));
+    if (pair->master.group[0])
+      PetscCall(PetscStrallocpy(pair->master.group, &contact->master));
+    else
+      PetscCall(SceneReadAnalytic(scene, contact));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(SceneReadText(scene, contact->path, "name", &contact->name));

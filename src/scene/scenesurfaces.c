@@ -10,10 +10,7 @@ static const struct {
   const char *key, *what;
 } Unfit[] = {
   {"slave", "has no place beside surfaces; allowed: slave and master, or surfaces"},
-  {"master", "has no place beside surfaces; allowed: slave and master, or surfaces"},
-  {"friction", "is not available with surfaces yet; allowed: with slave and master"},
-  {"initial_overlap",
-   "is not available with surfaces; allowed: with slave and master (listed surfaces touch or are apart at the start)"},
+  {"master", "names a surface beside surfaces; allowed: it among the surfaces, or an analytic master"},
 };
 
 /* Does an entry name these two surfaces as slave and master, in either role? */
@@ -115,8 +112,11 @@ static PetscErrorCode CheckExclude(Scene scene, const char *path, Node exclude, 
 static PetscErrorCode CheckEntry(Scene scene, const char *path, Node surfaces)
 {
   PetscFunctionBeginUser;
-  for (size_t k = 0; surfaces && k < PETSC_STATIC_ARRAY_LENGTH(Unfit); k++)
-    if (SceneHas(scene, path, Unfit[k].key)) PetscCall(SceneRefuse(scene, path, Unfit[k].key, Unfit[k].what, NULL));
+  for (int k = 0; surfaces && k < 2; k++) {
+    const Node node = SceneNode(scene, path, Unfit[k].key);
+
+    if (node && node->kind != NODE_MAP) PetscCall(SceneRefuse(scene, path, Unfit[k].key, Unfit[k].what, NULL));
+  }
   for (int k = 0; !surfaces && k < 2; k++)
     if (!SceneHas(scene, path, Unfit[k].key))
       PetscCall(SceneRefuse(scene, path, Unfit[k].key, "is missing; allowed: slave and master, or surfaces", NULL));
@@ -128,15 +128,32 @@ static PetscErrorCode CheckEntry(Scene scene, const char *path, Node surfaces)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The analytic master of an entry, whose group has no name. Several pairs would each push a tool of their own, so its
+   motion has no free components. */
+static PetscErrorCode AnalyticOfEntry(Scene scene, const char *path, Node master, ListedSurface *tool)
+{
+  char key[KEY_PATH_LENGTH];
+
+  PetscFunctionBeginUser;
+  *tool = (ListedSurface){.label = master->n ? master->key[0] : "", .rigid = 1};
+  snprintf(key, sizeof key, "master.%s.free", tool->label);
+  if (master->n && SceneHas(scene, path, key))
+    PetscCall(SceneRefuse(scene, path, key,
+                          "is not available with surfaces; allowed: motion, a meshed tool, or slave and master", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds the pairs of listed surfaces. */
 static PetscErrorCode AddListed(Scene scene, int entry, const char *path, int n_list, const ListedSurface *list, int *n,
                                 SurfacePair *pairs)
 {
-  const Node exclude    = SceneNode(scene, path, "exclude");
-  const int  before     = *n;
-  int        deformable = 0;
+  const Node    exclude = SceneNode(scene, path, "exclude"), master = SceneNode(scene, path, "master");
+  const int     before     = *n;
+  int           deformable = 0;
+  ListedSurface tool;
 
   PetscFunctionBeginUser;
+  if (master) PetscCall(AnalyticOfEntry(scene, path, master, &tool));
   PetscCall(CheckExclude(scene, path, exclude, n_list, list));
   for (int s = 0; s < n_list; s++) {
     deformable += !list[s].rigid;
@@ -144,6 +161,7 @@ static PetscErrorCode AddListed(Scene scene, int entry, const char *path, int n_
       if (NamesPair(scene, list[s].group, list[m].group) || Excludes(exclude, &list[s], &list[m])) continue;
       pairs[(*n)++] = (SurfacePair){entry, 1, list[s], list[m], list[m].rigid ? 1 : 0.5};
     }
+    if (master && !list[s].rigid) pairs[(*n)++] = (SurfacePair){entry, 1, list[s], tool, 1};
   }
   if (!deformable)
     PetscCall(
@@ -167,7 +185,7 @@ static PetscErrorCode AddEntry(Scene scene, int entry, int *n, SurfacePair **pai
   surfaces = SceneNode(scene, path, "surfaces");
   PetscCall(CheckEntry(scene, path, surfaces));
   if (surfaces) PetscCall(ListSurfaces(scene, surfaces, &n_list, &list));
-  PetscCall(PetscRealloc((*n + n_list * n_list) * sizeof(**pairs), pairs));
+  PetscCall(PetscRealloc((*n + n_list * (n_list + 1)) * sizeof(**pairs), pairs));
   if (!surfaces) {
     (*pairs)[(*n)++] = (SurfacePair){.entry = entry, .share = 1};
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -72,7 +72,8 @@ const SchemaKey SchemaKeys[] = {
   {"bodies.*.material.c01", REAL, .unit = "stress", .help = "constant of mooney_rivlin, needed there"},
   {"bodies.*.material.c20|c30", REAL, .unit = "stress", .preset = "0", .help = "constant of yeoh"},
   {"bodies.*.material.terms", PAIRS, .unit = "mu a stress",
-   .help = "constants [[mu, alpha], ...] of ogden, needed there; the shear modulus is half the sum of mu alpha"},
+   .help = "constants [[mu, alpha], ...] of ogden and hyperfoam, needed there; the shear modulus of ogden is half the sum of "
+           "mu alpha, that of hyperfoam the sum of mu"},
   {"bodies.*.material.lambda_m", REAL, .range = "(1, inf)",
    .help = "stretch of arruda_boyce at which the chains lock, needed there"},
   {"bodies.*.material.yield", REAL, .range = "(0, inf)", .unit = "stress",
@@ -175,7 +176,9 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.exclude", LIST, .help = "pairs of surfaces, or of bodies where surfaces is all, that do not meet"},
   {"contact.*.exclude.*", TEXTS, .help = "two names, or one: it does not meet itself"},
   {"contact.*.slave", TEXT, .help = "physical surface of a deformable body; needed without surfaces"},
-  {"contact.*.master", TEXT | MAP, .help = "a physical surface or an analytic surface; needed without surfaces"},
+  {"contact.*.master", TEXT | MAP,
+   .help = "a physical surface or an analytic surface; needed without surfaces. With surfaces, an analytic surface that "
+           "each of them meets as well"},
   {"contact.*.master.plane|cylinder|sphere", MAP, .help = "an analytic rigid master"},
   {"contact.*.master.plane.point", POINT, REQUIRED, .unit = "length", .help = "a point of the plane"},
   {"contact.*.master.plane.normal", POINT, REQUIRED, .help = "normal that points out of the obstacle, of any length"},

@@ -18,6 +18,7 @@ typedef struct {
   NodeGeometry geometry[FACE_MAX_NODES];     /* where fits need it */
   PetscReal    offset[FACE_RULE_POINTS * 3]; /* of its quadrature points, where they have one (length) */
   PetscInt     home, home_face;              /* the face's rank, and its number there */
+  FaceMarks    marks;
 } FaceRecord;
 
 /* A node of a contact surface, whichever rank owns it. */

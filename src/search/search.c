@@ -2,6 +2,7 @@
 #include "searchimpl.h"
 #include "flank.h"
 #include "ownbody.h"
+#include "search/facemarks.h"
 
 /* Reach of the search beyond the requested motion, in face sizes. The nearest facet of a slave point is listed if it
    is not farther away than this. */
@@ -335,6 +336,8 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   BoxTreeClosest(tree, look->x, &bound, NearestVisit, look);
   lists->averse[q] = (PetscBool)(look->best < 0 && look->averse);
   lists->share[q]  = 0;
+  if (look->best >= 0 && FaceMarksTreated(look->marks, field->records[look->candidates[look->best].record].marks))
+    look->best = -1;
   if (look->best < 0) PetscFunctionReturn(PETSC_SUCCESS);
   count  = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
   facing = FlankSort(look, &count, found);
@@ -373,6 +376,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                     .height     = s->slaves->height[q],
                     .listed     = s->listed,
                     .one_body   = s->one_body,
+                    .marks      = s->marks ? s->marks[q] : 0,
                     .best       = -1,
                     .least      = s->reach + motion,
                     .tie        = FACET_TIE * (s->reach + motion)};
@@ -449,6 +453,21 @@ void SearchAllSides(ContactSearch s, PetscBool one_body)
 void SearchSetTool(ContactSearch s, const MeshTool *tool)
 {
   s->tool = tool;
+}
+
+/*@
+  SearchSetMarks - has slave points that find their nearest facet on a face which another pair treats with them find no
+  partner.
+
+  Not collective
+
+  Input Parameters:
++ s     - the search
+- marks - of each slave point of this rank, see facemarks.h; borrowed, read by each search
+@*/
+void SearchSetMarks(ContactSearch s, const FaceMarks *marks)
+{
+  s->marks = marks;
 }
 
 /*@

@@ -43,6 +43,7 @@ PetscErrorCode SearchDestroy(ContactSearch *);
 void           SearchKeepFaces(ContactSearch);
 void           SearchAllSides(ContactSearch, PetscBool one_body);
 void           SearchSetTool(ContactSearch, const MeshTool *);
+void           SearchSetMarks(ContactSearch, const FaceMarks *);
 void           SearchSetRungs(ContactSearch, const int *first);
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
 PetscErrorCode SearchLeastDistance(ContactSearch, const PetscReal *u, PetscReal t, PetscReal *distance);

@@ -199,6 +199,7 @@ PetscErrorCode SurfaceDestroy(ContactSurface *surface)
   PetscFunctionBeginUser;
   if (!*surface) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree3((*surface)->faces, (*surface)->face_size, (*surface)->face_height));
+  PetscCall(PetscFree((*surface)->face_marks));
   PetscCall(PetscFree(*surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -11,6 +11,10 @@
 #pragma once
 #include "bodies/elasticity.h"
 #include "smooth/facet.h"
+#include <stdint.h>
+
+/* Marks of a face, see facemarks.h */
+typedef uint64_t FaceMarks;
 
 /* The deviation of a plane of symmetry from flatness, and of its normal from an axis, may reach this fraction of the
    model's size. It is the round-off of a CAD kernel. */
@@ -39,6 +43,7 @@ typedef struct {
   PetscReal        max_extent;          /* longest distance between two corners of a face */
   /* Area-weighted mean of E over element height, over all ranks; 0 for a rigid tool. */
   PetscReal stiffness;
+  FaceMarks *face_marks; /* of each face; NULL: there are none */
   PetscInt  turned; /* faces of a rigid tool whose normals were turned */
 } *ContactSurface;
 

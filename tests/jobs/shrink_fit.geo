@@ -3,7 +3,7 @@ DefineConstant[ refine = {1, Name "divides all element sizes"} ];
 bore = 10;          // radius
 fit = 25;           // radius of the interface
 rim = 50;           // radius
-overlap = 0.025;    // on the radius: 0.1 % of it
+DefineConstant[ overlap = {0.025, Name "on the radius: 0.1 % of it"} ];
 h_shaft = 1.9 / refine;      // element sizes
 h_hub = 2.4 / refine;
 

@@ -4,6 +4,9 @@ from harness import Check, arguments, run, SCENES
 
 FRAME, TUBE = SCENES / "c_strip.yaml", SCENES / "mirrored_tube.yaml"
 RINGS, PIPE = SCENES.parent.parent / "runs/ring_in_ring.yaml", SCENES.parent.parent / "runs/pipe_pinch.yaml"
+SHRINK, BUMPER = SCENES.parent / "jobs/shrink_fit.yaml", SCENES / "jounce_bumper.yaml"
+SIDES = 4e-3  # of a force of friction: between a list and one role of slave and master, whose points differ
+BUMPER_SPREAD = 5e-3  # of its force: the two formulations on its coarse mesh
 EXACT = 1e-6  # forces and pressures of the same problem written in another way
 SMOOTHED = 1e-3  # the smooth surface of a bent tip of four faces is not its faces: forces, and the largest pressure
 SMOOTHED_PRESSURE = {"node_to_surface": 0.1, "surface_to_surface": 1e-2}
@@ -96,6 +99,62 @@ def ranks():
         check.holds(f"iterations on {n} ranks", other["newton_iterations"] == one["newton_iterations"])
 
 
+def override():
+    """A pair by slave and master takes its surfaces from a list of all bodies, in both formulations."""
+    for formulation in ("node_to_surface", "surface_to_surface"):
+        fit = f"{{name: fit, slave: outer_contact, master: inner_contact, formulation: {formulation}}}"
+        every = f"{{name: any, surfaces: all, formulation: {formulation}}}"
+        both, named = (run(args, RINGS, out=f"override_{k}", overrides=[
+            f"contact=[{contact}]", "probes=[{name: pressure, pressure_mean: fit}]"]).summary()
+            for k, contact in enumerate((f"{every}, {fit}", fit)))
+        check.near(f"{formulation}: pressure of the pair", both["probes"]["pressure"] / named["probes"]["pressure"], 1,
+                   EXACT)
+        check.holds(f"{formulation}: only the pair is in contact",
+                    [pair["nodes"] > 0 for pair in both["contact"]] == [False] * 4 + [True])
+
+
+def friction():
+    """Tips that slide on each other: a frame that closes on itself, two bodies in a list, and a pair by name."""
+    probes = ["probes=[{name: along, reaction: top, component: x}, {name: across, reaction: top, component: y}]",
+              "stepping={control: fixed, initial: 0.2}"]
+    two = ["bodies.1={volume: lower, material: {law: svk, E: 1000, nu: 0.3}}"]
+    pushed = "{surface: back, ux: 0, uy: 0}, {surface: top, uy: -0.02, ux: 0.05}, {surface: bottom, uy: 0.02, ux: -0.05}"
+    for formulation in ("node_to_surface", "surface_to_surface"):
+        how = f"formulation: {formulation}, friction: {{mu: 0.02}}, penalty: {{initial: 10000, scale: 1}}"
+        own, listed, named = (run(args, FRAME, out=f"friction_{form}_{k}", overrides=[
+            f"mesh.parameters.form={form}", f"contact=[{{name: tips, {sides}, {how}}}]", *probes, *(two if form else []),
+            f"loads=[{pushed}{', {surface: lower_back, ux: 0, uy: 0}' if form else ''}]"]).summary()["probes"]
+            for k, (form, sides) in enumerate(((0, "surfaces: [tips]"), (2, "surfaces: [tip, lower_tip]"),
+                                               (2, "slave: tip, master: lower_tip"))))
+        for probe in ("along", "across"):
+            check.near(f"{formulation}: friction of a list, {probe}", listed[probe] / own[probe], 1, EXACT)
+            check.near(f"{formulation}: friction by slave and master, {probe}", named[probe] / own[probe], 1, SIDES)
+
+
+def overlap():
+    """A shrink fit by a list of all bodies; overlaps that are too deep for it are refused, not missed."""
+    contact = "contact=[{name: fit, surfaces: all, initial_overlap: resolve}]"
+    probes = "probes=[{name: rim, displacement: [50, 0], component: x}]"
+    rim = run(args, SHRINK, out="overlap", overrides=[contact, probes, "mesh.parameters.refine=4"]).summary()["probes"]
+    check.near("shrink fit: rim", rim["rim"] / 0.010934, 1, 1e-3)  # Lame, see the scene
+    text = run(args, SHRINK, "-check", out="deep", must=1, overrides=[contact, probes, "mesh.parameters.refine=4",
+                                                                      "mesh.parameters.overlap=0.2"]).text
+    check.holds("overlap of 0.42 of an element is refused", "a quarter of an element's height" in text)
+
+
+def bumper():
+    """A folding bumper of foam, closed by 42 of 76 mm: in both formulations, on 1 and 2 ranks."""
+    forces = []
+    for name, formulation, ranks in (("node", "node_to_surface", 1), ("surface", "surface_to_surface", 1),
+                                     ("ranks", "node_to_surface", 2)):
+        summary = run(args, BUMPER, out=f"bumper_{name}", ranks=ranks,
+                      overrides=[f"contact.3.formulation={formulation}"]).summary()
+        check.holds(f"bumper, {name}: folds are in contact", summary["contact"][3]["nodes"] > 10)
+        forces.append(summary["probes"]["end"] + summary["probes"]["plate"])
+    check.near("bumper: force of both formulations", forces[1] / forces[0], 1, BUMPER_SPREAD)
+    check.near("bumper: force on 2 ranks", forces[2] / forces[0], 1, 1e-9)
+
+
 def refused(what, text, contact):
     finished = run(args, RINGS, "-check", out="refused", ranks=1, must=1, overrides=[f"contact=[{contact}]", "probes=[]"])
     check.holds(f"refused: {what}", text in finished.text, finished.text.strip().splitlines()[0])
@@ -103,13 +162,15 @@ def refused(what, text, contact):
 
 def refusals():
     both = "{name: b, slave: inner_contact, master: outer_contact}"
-    refused("pair that a list of bodies has too", "allowed: exclude: [[inner, outer]] there", f"{{name: a, surfaces: all}}, {both}")
+    refused("two lists of the same faces", "list faces of the same two surfaces",
+            "{name: a, surfaces: all}, {name: b, surfaces: [inner_contact]}")
     refused("exclusion of what is not listed", "outr is not among the surfaces",
             "{name: a, surfaces: all, exclude: [[inner, outr]]}")
     refused("exclusion of everything", "leaves no pair", "{name: a, surfaces: [inner_contact], exclude: [[inner_contact]]}")
-    refused("friction", "friction: is not available with surfaces yet",
-            "{name: a, surfaces: [inner_contact], friction: {mu: 0.1}}")
-    refused("overlap", "initial_overlap: is not available", "{name: a, surfaces: all, initial_overlap: resolve}")
+    refused("free tool beside surfaces", "free: is not available with surfaces",
+            "{name: a, surfaces: all, master: {plane: {point: [0, 50], normal: [0, -1], free: [uy], force: [0, -1]}}}")
+    refused("master beside surfaces", "names a surface beside surfaces",
+            "{name: a, surfaces: [inner_contact], master: outer_contact}")
     refused("slave beside surfaces", "has no place beside surfaces", "{name: a, surfaces: all, slave: inner_contact}")
     refused("surface that is not there", "contact.0.surfaces: the mesh has no surface 'nowhere'",
             "{name: a, surfaces: [nowhere]}")
@@ -119,7 +180,7 @@ def refusals():
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, mirror, walls, ranks or refusals"))
+args = arguments(("case", "frame, mirror, walls, ranks, refusals, override, friction, overlap or bumper"))
 check = Check()
 if args.case == "frame":
     for smoother in ("facet", "diffuse"):
@@ -129,5 +190,6 @@ elif args.case == "mirror":
     mirror("node_to_surface")
     mirror("surface_to_surface")
 else:
-    {"walls": walls, "ranks": ranks, "refusals": refusals}[args.case]()
+    {"walls": walls, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
+     "overlap": overlap, "bumper": bumper}[args.case]()
 check.finish()

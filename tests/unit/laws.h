@@ -9,9 +9,11 @@ static inline Material ExampleMaterial(MaterialLaw law, double E, double nu)
   const double own[][6] = {[MATERIAL_MOONEY_RIVLIN] = {0.6 * mu, -0.1 * mu},
                            [MATERIAL_YEOH]          = {0.5 * mu, -0.03 * mu, 0.01 * mu},
                            [MATERIAL_OGDEN]         = {1.3 * mu, 1.3, 0.01 * mu, 5, -0.13 * mu, -2},
-                           [MATERIAL_ARRUDA_BOYCE]  = {mu, 2}};
+                           [MATERIAL_ARRUDA_BOYCE]  = {mu, 2},
+                           [MATERIAL_HYPERFOAM]     = {1.2 * mu, 3, -0.2 * mu, -2}};
   const int    n[MATERIAL_LAWS] =
-    {[MATERIAL_MOONEY_RIVLIN] = 2, [MATERIAL_YEOH] = 3, [MATERIAL_OGDEN] = 6, [MATERIAL_ARRUDA_BOYCE] = 2};
+    {[MATERIAL_MOONEY_RIVLIN] = 2, [MATERIAL_YEOH] = 3, [MATERIAL_OGDEN] = 6, [MATERIAL_ARRUDA_BOYCE] = 2,
+     [MATERIAL_HYPERFOAM] = 4};
   Material material;
 
   if (!n[law]) return MaterialFromModuli(law, E, nu);

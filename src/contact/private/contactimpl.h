@@ -68,6 +68,7 @@ typedef struct {
   Offsets             slave_offsets, master_offsets; /* NULL: none */
   PetscBool           one_body; /* of a list of surfaces: slave and master have faces of one body */
   ContactSearch       search;
+  FaceMarks          *marks; /* of each slave point, where other pairs treat some of its partners; else NULL */
 
   PetscInt   n, n_nodes;            /* terms; the first n_nodes are those of nodes, the others those of faces */
   PetscInt  *node, *face;           /* local node of each term, of a face its first one; face of each term of a face */
@@ -152,6 +153,8 @@ typedef struct {
 /* contactpair.c */
 PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneContact *, ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
+/* contactoverride.c */
+PetscErrorCode ContactOverride(Contact);
 /* contactquery.c */
 PetscErrorCode ContactPairPressing(const ContactPair *, ContactPressing *);
 /* contactfaces.c */

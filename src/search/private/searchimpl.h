@@ -30,6 +30,7 @@ struct _n_ContactSearch {
   PetscBool           keeps_faces;   /* lists keep all faces, not only those of each slave point */
   PetscBool           listed;        /* any side of the bodies may meet any other one */
   PetscBool           one_body;      /* slave and master have faces of one body */
+  const FaceMarks    *marks;         /* of each slave point, where other pairs treat some of its partners; else NULL */
   PetscReal           reach, margin; /* lengths, without the motion */
   PetscReal           fit_reach;     /* SearchFitReach() */
 };
@@ -60,6 +61,7 @@ typedef struct {
   PetscBool        listed, one_body;   /* as in the search */
   /* The slave point, and the number of nodes of its own face: a face with one of these nodes is not its master. */
   PetscInt  q, own;
+  FaceMarks marks; /* of the slave point */
   PetscInt  best;
   PetscReal distance; /* of the best */
   /* Distance (length) of the nearest candidate of all, or the largest one that is searched. Distances that differ by
