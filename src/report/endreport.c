@@ -14,6 +14,7 @@ static const char *const purposes[TIMING_KINDS] = {[TIMING_SETUP]            = "
                                                    [TIMING_ASSEMBLY_ELASTIC] = "elastic assembly",
                                                    [TIMING_ASSEMBLY_CONTACT] = "contact assembly",
                                                    [TIMING_SOLVE]            = "solver",
+                                                   [TIMING_CERTIFICATE]      = "certificate",
                                                    [TIMING_OUTPUT]           = "output"};
 
 static void PrintTime(const RunFigures *figures, FILE *stream)

@@ -3,8 +3,10 @@
 
    ModelCreate(), ModelPlace() and ModelSetUp() are called once, in this order; ModelArchive() with an archive that
    loads takes the place of ModelSetUp(). ModelSolve() finds equilibrium at t. ModelAccept() makes it the accepted
-   state, ModelRestore() returns to the accepted state. The model does not know step sizes; src/step chooses them. */
+   state, ModelCertify() judges the
+   step to it before. ModelRestore() returns to the accepted state. The model does not know step sizes; src/step chooses them. */
 #pragma once
+#include "certificate/certificate.h"
 #include "linear/linearcheck.h"
 #include "solve/energybalance.h"
 #include "solve/failure.h"
@@ -20,6 +22,7 @@ typedef enum {
   SOLVE_LISTS,
   SOLVE_CYCLE,
   SOLVE_LOST,
+  SOLVE_UNCERTIFIED,
   SOLVE_ADRIFT,
   SOLVE_WINDOW,
   SOLVE_VOLUME,
@@ -88,6 +91,7 @@ typedef struct _n_Model {
   PetscReal    *u;      /* local displacements u[n_nodes*dim] (length) at load parameter t, prescribed ones included */
   PetscReal     t;
   EnergyBalance balance; /* NULL: no body is plastic */
+  Certificate   certificate; /* NULL: there is no contact, or the scene switches it off */
   struct _n_ModelWork *work;
 } *Model;
 
@@ -99,6 +103,7 @@ PetscErrorCode ModelSetUp(Model);
 PetscErrorCode ModelSolve(Model, PetscReal t, SolveReport *);
 PetscErrorCode ModelLookAhead(Model, PetscReal t, PetscReal *u, SolveReport *);
 PetscErrorCode ModelGetAccepted(Model, const PetscReal **u, PetscReal *t);
+PetscErrorCode ModelCertify(Model, SolveReport *);
 PetscErrorCode ModelAccept(Model);
 PetscErrorCode ModelRestore(Model);
 PetscErrorCode ModelArchive(Model, Archive);

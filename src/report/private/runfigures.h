@@ -41,6 +41,8 @@ typedef struct {
   char              loose[512];      /* their motions that only springs hold */
   int               n_pairs;
   PairFigures      *pairs;
+  CertificateFigures certificate;
+  PetscBool         certified; /* all accepted steps were judged and hold */
   int               n_fluids;
   FluidReport      *fluids;
 } RunFigures;
