@@ -35,11 +35,9 @@ static double GapOf(const AnalyticTool *tool, const Place r, int state)
 }
 
 /* What a point may stand in the tool. */
-static double Allowed(const AnalyticTool *tool, double size, double height)
+static double Allowed(const AnalyticTool *tool, double size, int seen)
 {
-  const double allowed = tool->penetration * size;
-
-  return height > 0 ? fmin(allowed, STAND_WALL * height) : allowed;
+  return (seen ? STAND_SEEN : 1) * tool->penetration * size;
 }
 
 static void Note(FindingKind kind, double depth, double allowed, double over_h, const Point *point, Finding *worst)
@@ -72,7 +70,7 @@ static void Note(FindingKind kind, double depth, double allowed, double over_h, 
 @*/
 void AnalyticPointFinding(const AnalyticTool *tool, const Point *point, Finding *worst)
 {
-  const double own = Allowed(tool, point->size, point->height), allowed = own + tool->overlap;
+  const double own = Allowed(tool, point->size, point->seen), allowed = own + tool->overlap;
   Place        r[2], closest, at;
   double       end, least;
 
@@ -108,7 +106,7 @@ void AnalyticPointFinding(const AnalyticTool *tool, const Point *point, Finding 
 void AnalyticPieceFinding(const AnalyticTool *tool, const Piece *piece, Finding *worst)
 {
   static const Place centre = {0, 0, 0};
-  const double       radius = tool->surface.radius, own = Allowed(tool, piece->size, piece->height);
+  const double       radius = tool->surface.radius, own = Allowed(tool, piece->size, piece->seen);
   Place              x[2][3], foot;
   Point              point = {.tag = piece->tag[0]};
   Crossing           crossing[SWEEP_MAX];

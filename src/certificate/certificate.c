@@ -96,13 +96,15 @@ static PetscErrorCode JudgeSide(Certificate certificate, const CertifiedPair *pa
   const Side own = pair->side[s], other = pair->side[1 - s];
   PetscReal  near[6], box[6], *sweep = near;
   PieceList  list;
-  Look       look;
+  Look       look = {.penetration = certificate->scene->certificate.penetration,
+                     .overlap     = overlap,
+                     .walls       = pair->of.scene->listed};
 
   PetscFunctionBeginUser;
   SideBox(own, near);
   PetscCall(SideShare(other, near, s == 0 ? pair->of.n_images : 1, pair->of.images, &list));
   if (list.n) {
-    PetscCheck(LookCreate(own->dim, &list, certificate->scene->certificate.penetration, overlap, &look),
+    PetscCheck(LookCreate(own->dim, &list, &look),
                PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for %" PetscInt_FMT " faces", list.n);
     for (int k = 0; k < 3; k++) {
       box[k]     = PETSC_MAX_REAL;
@@ -287,7 +289,7 @@ PetscErrorCode CertificateCheck(Certificate certificate, const PetscReal *u_0, P
     figures->over_h = PetscMax(figures->over_h, worst.over_h);
     figures->ratio  = PetscMax(figures->ratio, worst.ratio);
   } else {
-    PetscCall(Describe(certificate, &worst, pair, text, size));
+    PetscCall(Describe(certificate, &worst, pair, text, size)); if(getenv("CDBG")) fprintf(stderr,"CDBG %g %g %s\n",(double)t_0,(double)t,text);
   }
   TimingEnd(TIMING_CERTIFICATE);
   PetscFunctionReturn(PETSC_SUCCESS);

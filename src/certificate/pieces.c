@@ -1,5 +1,6 @@
 /* Pieces of faces and their points at the two ends of a step, see pieces.h. */
 #include "pieces.h"
+#include <math.h>
 #include <string.h>
 
 /* Normals that turn from a piece's by more than this belong to a sharp edge. A ring of eight pieces is round. */
@@ -100,6 +101,7 @@ static PetscErrorCode MeasurePoints(Side side)
   PetscCall(SumPoints(side, 3, sum));
   for (PetscInt i = 0; i < side->n_points; i++) {
     side->points[i].size   = sum[3 * i] / sum[3 * i + 2];
+    side->points[i].weight = sum[3 * i];
     side->points[i].height = sum[3 * i + 1] / sum[3 * i + 2];
   }
   PetscCall(PetscFree(sum));
@@ -203,6 +205,21 @@ static PetscErrorCode PointNormals(Side side)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Marks points and pieces where contact presses or an edge is sharp: there the normals around cancel. */
+static void MarkSeen(Side side)
+{
+  for (PetscInt i = 0; i < side->n_points; i++) {
+    Point        *point = &side->points[i];
+    const double *n     = point->normal[1];
+
+    point->seen = point->closed || sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) < PIECE_COSINE * point->weight;
+  }
+  for (PetscInt k = 0; k < side->n_pieces; k++) {
+    side->pieces[k].seen = 0;
+    for (int a = 0; a < side->dim; a++) side->pieces[k].seen |= side->points[side->corner[3 * k + a]].seen;
+  }
+}
+
 /*@
   SideMove - places pieces and points at the two ends of a step.
 
@@ -239,6 +256,7 @@ PetscErrorCode SideMove(Side side, const PetscReal *const u[2], const PetscReal 
     }
   }
   PetscCall(PointNormals(side));
+  MarkSeen(side);
   for (PetscInt k = 0; k < side->n_pieces; k++) {
     Place normal[3];
 

@@ -45,24 +45,24 @@ static void Between(const double a[3], const double b[3], double s, double c[3])
   Not collective
 
   Input Parameters:
-+ dim         - 2 or 3
-. list        - the pieces, which are borrowed
-. penetration - allowed depth in parts of the smaller face
-- overlap     - depth that the scene leaves (length)
++ dim  - 2 or 3
+- list - the pieces, which are borrowed
 
-  Output Parameter:
-. look - free it with LookDestroy(), whatever is returned
+  Input/Output Parameter:
+. look - with its settings; free it with LookDestroy(), whatever is returned
 
   Note:
   It returns 0 where memory is short.
 @*/
-int LookCreate(int dim, const PieceList *list, double penetration, double overlap, Look *look)
+int LookCreate(int dim, const PieceList *list, Look *look)
 {
   double *lower = malloc(sizeof(double) * (size_t)(dim * list->n + 1)),
          *upper = malloc(sizeof(double) * (size_t)(dim * list->n + 1));
   int made      = lower && upper;
 
-  *look       = (Look){.dim = dim, .list = list, .penetration = penetration, .overlap = overlap};
+  look->dim   = dim;
+  look->list  = list;
+  look->tree  = NULL;
   look->found = malloc(sizeof(int) * (size_t)(list->n + 1));
   for (int k = 0; made && k < list->n; k++) {
     double box[6];
@@ -181,10 +181,12 @@ static Stand PointStand(const Look *look, const Point *point, int state)
 }
 
 /* Depth to which a point may stand in a piece, without what geometry and the scene explain. */
-static double AllowedDepth(const Look *look, double size, double height, const Piece *piece)
+static double AllowedDepth(const Look *look, double size, double height, int seen, const Piece *piece)
 {
   double allowed = look->penetration * fmin(size, piece->size);
 
+  if (seen || piece->seen) allowed *= STAND_SEEN;
+  if (!look->walls) return allowed;
   if (height > 0) allowed = fmin(allowed, STAND_WALL * height);
   if (piece->height > 0) allowed = fmin(allowed, STAND_WALL * piece->height);
   return allowed;
@@ -220,18 +222,19 @@ static void Keep(const Finding *finding, Finding *worst)
 /* Judges the depth of a point, or of a place on an edge, in a piece at the end of the step. */
 static void JudgeDepth(const Look *look, const Point *point, const Stand *stand, const long tag[2], Finding *worst)
 {
-  const double own       = AllowedDepth(look, point->size, point->height, stand->piece);
-  const double explained = stand->piece->sagitta + look->overlap;
-  Finding      finding;
+  double  own, explained;
+  Finding finding;
 
   if (!stand->inside || stand->depth <= STAND_ROUND_OFF * stand->piece->size) return;
-  finding = (Finding){.ratio   = stand->depth / (own + explained),
-                      .depth   = stand->depth,
-                      .allowed = own + explained,
-                      .over_h  = fmax(0, stand->depth - explained) / fmin(point->size, stand->piece->size),
-                      .tag     = {tag[0], tag[1]},
-                      .face    = stand->piece->face,
-                      .X       = {point->X[0], point->X[1], point->X[2]}};
+  own       = AllowedDepth(look, point->size, point->height, point->seen, stand->piece);
+  explained = stand->piece->sagitta + look->overlap;
+  finding   = (Finding){.ratio   = stand->depth / (own + explained),
+                        .depth   = stand->depth,
+                        .allowed = own + explained,
+                        .over_h  = fmax(0, stand->depth - explained) / fmin(point->size, stand->piece->size),
+                        .tag     = {tag[0], tag[1]},
+                        .face    = stand->piece->face,
+                        .X       = {point->X[0], point->X[1], point->X[2]}};
   if (finding.ratio > 1) finding.kind = FINDING_DEPTH;
   Keep(&finding, worst);
 }
@@ -281,20 +284,20 @@ static double Cosine(int dim, const Piece *a, const Piece *b)
   return Dot(m, n);
 }
 
-/* Judges a point that was behind one piece and has come out of, or stands in, another one. */
+/* Judges a point that was behind one piece and has come out of another one, or stands in it. Where the two are no
+   opposite sides of a wall, it is back on the side from which it came: straight motions cut corners. Where contact
+   presses, it may pass the tip of a wedge as deep as it may stand in it. */
 static void JudgePassage(const Look *look, const Point *point, const Event *in, const Event *out, Finding *worst)
 {
-  const double cosine = Cosine(look->dim, in->piece, out->piece);
-  const double depth  = fmin(BehindAt(look->dim, in->piece, point, out->at.s),
-                             BehindAt(look->dim, out->piece, point, in->at.s));
+  const double depth   = fmin(BehindAt(look->dim, in->piece, point, out->at.s),
+                              BehindAt(look->dim, out->piece, point, in->at.s));
   const int    carried = point->closed || in->piece->closed || out->piece->closed;
-  const double size    = fmin(point->size, fmin(in->piece->size, out->piece->size));
-  double       allowed = fmin(AllowedDepth(look, point->size, point->height, in->piece),
-                              AllowedDepth(look, point->size, point->height, out->piece));
+  double       allowed = STAND_ROUND_OFF * fmin(point->size, fmin(in->piece->size, out->piece->size));
   Finding      finding;
 
-  if (carried && cosine > STAND_OPPOSED) return;
-  if (!carried && cosine <= STAND_OPPOSED) allowed = STAND_ROUND_OFF * size;
+  if (Cosine(look->dim, in->piece, out->piece) > STAND_OPPOSED) return;
+  if (carried) allowed = look->penetration * fmin(point->size, fmin(in->piece->size, out->piece->size));
+  allowed += look->overlap;
   if (!(depth > allowed)) return;
   finding = (Finding){.kind    = FINDING_PASSED,
                       .ratio   = depth / allowed,
@@ -311,7 +314,7 @@ static void JudgeGone(const Look *look, const Point *point, const Event *in, con
 {
   const double depth = BehindAt(look->dim, in->piece, point, 1);
   const double allowed =
-    AllowedDepth(look, point->size, point->height, in->piece) + in->piece->sagitta + look->overlap;
+    AllowedDepth(look, point->size, point->height, point->seen, in->piece) + in->piece->sagitta + look->overlap;
   double  foot[3];
   Finding finding;
 
@@ -342,7 +345,7 @@ static void JudgeGone(const Look *look, const Point *point, const Event *in, con
 
   Notes:
   A point has come in where it crosses a piece to its back, or where it stood behind one at the start. It has come out
-  where it crosses a piece to its front, or where it stands behind another one at the end. In between it was as deep as
+  where it crosses a piece to its front, or where it stands behind one on the other side of a wall at the end. In between it was as deep as
   it was behind the first piece when it came out, or behind the last one when it came in.
 @*/
 void PointFinding(Look *look, const Point *point, Finding *worst)
@@ -373,7 +376,7 @@ void PointFinding(Look *look, const Point *point, Finding *worst)
       crossed  = 0;
     }
   }
-  if (in.piece && end.inside && end.piece != in.piece)
+  if (in.piece && end.inside && Cosine(look->dim, in.piece, end.piece) <= STAND_OPPOSED)
     JudgePassage(look, point, &in, &(Event){end.piece, {1, 0}}, worst);
   if (in.piece && crossed && !end.inside) JudgeGone(look, point, &in, &end, worst);
 }
@@ -385,7 +388,8 @@ static Point EdgePoint(const Piece *piece, const Point *const end[2], double s)
                  .size   = piece->size,
                  .height = piece->height,
                  .body   = piece->body,
-                 .closed = piece->closed};
+                 .closed = piece->closed,
+                 .seen   = piece->seen};
 
   Between(end[0]->X, end[1]->X, s, point.X);
   for (int state = 0; state < 2; state++) {
@@ -445,7 +449,8 @@ static int EdgesNear(const Point *const a[2], const Place b0[2], const Place b1[
 static void JudgeEdgeCrossings(const Look *look, const Piece *piece, const Point *const end[2], const Piece *other,
                                Finding *worst)
 {
-  const double own = AllowedDepth(look, piece->size, piece->height, other), explained = other->sagitta + look->overlap;
+  const double own       = AllowedDepth(look, piece->size, piece->height, piece->seen, other);
+  const double explained = other->sagitta + look->overlap;
   Place        a[2][2];
 
   for (int state = 0; state < 2; state++)

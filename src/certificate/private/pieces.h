@@ -16,6 +16,7 @@ typedef struct {
   double size, height, sagitta; /* of its face, of the element below it (0: none), PieceHeight() at the end (length) */
   int    body;                  /* in the scene; bodies of tools have no cells */
   int    closed;                /* contact pressed at one of its vertices */
+  int    seen;                  /* besides, an edge there is sharp, which a smooth surface rounds */
 } Piece;
 
 /* A vertex of pieces */
@@ -23,7 +24,10 @@ typedef struct {
   Place  X, x[2], normal[2]; /* reference, the two states, and directions of the surface there, of any length */
   long   tag;
   double size, height; /* means of the faces around (length) */
-  int    body, closed; /* contact pressed there at one of the states */
+  int    body;
+  int    closed;  /* contact pressed there at one of the states */
+  int    seen;    /* besides, an edge there is sharp, which a smooth surface rounds */
+  double weight;  /* sizes of the pieces around together (length) */
 } Point;
 
 typedef struct {

@@ -16,8 +16,14 @@
 #define STAND_END 0.999
 /* A body's own wall that is nearer than this part of its reference distance has been entered (ownbody.h). */
 #define STAND_OWN_WALL 0.25
-/* Part of a wall's thickness up to which faces may cross. */
+/* Part of the height of an element up to which faces may cross where any side of a body may meet any other one: deeper,
+   the other side of a wall would be nearer (ownbody.h). */
 #define STAND_WALL 0.25
+/* Where contact presses at the point or on the face, or an edge is sharp there, faces may cross deeper by this factor: to
+   half a face with the default. Contact holds slave points on a smooth surface, which rounds the edges of the faces
+   that are shown, and it holds no point of the master. Sharp edges so dig in by up to half a face, and this is seen:
+   slave points around the edge press. */
+#define STAND_SEEN 5
 /* Normals whose cosine is below this belong to the two sides of a wall, not of a corner. */
 #define STAND_OPPOSED (-0.5)
 /* Depths below this part of a face are round-off. */
@@ -45,9 +51,10 @@ typedef struct {
   int             *found, n_found; /* pieces at hand */
   double           penetration;    /* allowed depth in parts of the smaller face */
   double           overlap;        /* depth that the scene leaves (length) */
+  int              walls;          /* any side of a body may meet any other one */
 } Look;
 
-int  LookCreate(int dim, const PieceList *, double penetration, double overlap, Look *);
+int  LookCreate(int dim, const PieceList *, Look *);
 void LookDestroy(Look *);
 void PointFinding(Look *, const Point *, Finding *worst);
 void PieceFindings(Look *, const Piece *, const Point *const corner[3], Finding *worst);
