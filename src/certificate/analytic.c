@@ -132,5 +132,5 @@ void AnalyticPieceFinding(const AnalyticTool *tool, const Piece *piece, Finding 
   if (tool->surface.shape == ANALYTIC_CYLINDER && tool->dim == 3) return; /* its points pass the tool then */
   n = SweepPoint(tool->dim, (const Place *)x[0], (const Place *)x[1], centre, centre, crossing);
   for (int k = 0; k < n; k++)
-    if (crossing[k].inward) Note(FINDING_PASSED, 2 * radius, own, 0, &point, worst);
+    if (crossing[k].inward) Note(FINDING_PASSED, 2 * radius, STAND_ROUND_OFF * piece->size, 0, &point, worst);
 }
