@@ -289,7 +289,7 @@ PetscErrorCode CertificateCheck(Certificate certificate, const PetscReal *u_0, P
     figures->over_h = PetscMax(figures->over_h, worst.over_h);
     figures->ratio  = PetscMax(figures->ratio, worst.ratio);
   } else {
-    PetscCall(Describe(certificate, &worst, pair, text, size)); if(getenv("CDBG")) fprintf(stderr,"CDBG %g %g %s\n",(double)t_0,(double)t,text);
+    PetscCall(Describe(certificate, &worst, pair, text, size));
   }
   TimingEnd(TIMING_CERTIFICATE);
   PetscFunctionReturn(PETSC_SUCCESS);

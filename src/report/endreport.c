@@ -114,6 +114,21 @@ static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
   fprintf(stream, "\n");
 }
 
+/* Prints what is certified. */
+static void PrintCertificate(const RunFigures *figures, FILE *stream)
+{
+  const CertificateFigures *found = &figures->certificate;
+
+  if (!figures->certified || !figures->last) return;
+  fprintf(stream,
+          "certified: nothing passed through anything unseen in %lld steps; faces cross by up to %.2g of a face, %.2g of "
+          "what is allowed; residual %.1e of the forces",
+          (long long)(found->steps - found->refused), (double)found->over_h, (double)found->ratio,
+          (double)figures->last->residual);
+  if (found->refused) fprintf(stream, "; %lld steps did not hold and were cut", (long long)found->refused);
+  fprintf(stream, "\n");
+}
+
 /* Prints where a fluid is, and when it leaked. */
 static void PrintFluid(const FluidReport *fluid, FILE *stream)
 {
@@ -261,6 +276,7 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
   }
   for (int i = 0; i < figures->n_fluids && figures->last; i++) PrintFluid(&figures->fluids[i], stream);
   if (SceneIsPlastic(figures->scene) && figures->last) PrintEnergy(&figures->last->energy, stream);
+  PrintCertificate(figures, stream);
   PrintGuards(figures, stream);
   if (way->failed.attempts) PrintFailure(figures, stream);
   AdviceGive(figures, PrintAdvice, stream);

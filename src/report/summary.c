@@ -285,6 +285,9 @@ static void AddCertificate(cJSON *json, const RunFigures *figures)
   cJSON_AddNumberToObject(map, "refused", (double)figures->certificate.refused);
   AddReal(map, "largest_over_h", figures->certificate.over_h);
   AddReal(map, "largest_over_allowed", figures->certificate.ratio);
+  AddReal(map, "residual", figures->last ? figures->last->residual : NAN);
+  AddReal(map, "dissipated_by_friction", figures->last ? figures->last->contact.dissipated : NAN);
+  AddReal(map, "dissipated_by_flow", figures->last && SceneIsPlastic(figures->scene) ? figures->last->energy.plastic : NAN);
 }
 
 /* Adds the fluids that enter between surfaces, if there are any. */
