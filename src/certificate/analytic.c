@@ -76,8 +76,7 @@ void AnalyticPointFinding(const AnalyticTool *tool, const Point *point, Finding 
 
   for (int state = 0; state < 2; state++) FromTool(tool, point->x[state], state, r[state]);
   end = GapOf(tool, r[1], 1);
-  if (end < 0)
-    Note(FINDING_DEPTH, -end, allowed, fmax(0, -end - tool->overlap) / point->size, point, worst);
+  if (end < 0) Note(FINDING_DEPTH, -end, allowed, fmax(0, -end - tool->overlap) / point->size, point, worst);
   if (tool->surface.shape == ANALYTIC_PLANE || tool->surface.inside || -end > allowed) return;
   (void)PieceClosest(2, (const Place *)r, (const Place){0, 0, 0}, closest);
   memcpy(at, closest, sizeof(at));

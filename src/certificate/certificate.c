@@ -104,8 +104,8 @@ static PetscErrorCode JudgeSide(Certificate certificate, const CertifiedPair *pa
   SideBox(own, near);
   PetscCall(SideShare(other, near, s == 0 ? pair->of.n_images : 1, pair->of.images, &list));
   if (list.n) {
-    PetscCheck(LookCreate(own->dim, &list, &look),
-               PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for %" PetscInt_FMT " faces", list.n);
+    PetscCheck(LookCreate(own->dim, &list, &look), PETSC_COMM_SELF, PETSC_ERR_MEM,
+               "No memory for %" PetscInt_FMT " faces", list.n);
     for (int k = 0; k < 3; k++) {
       box[k]     = PETSC_MAX_REAL;
       box[3 + k] = PETSC_MIN_REAL;
@@ -219,10 +219,10 @@ static PetscErrorCode Describe(Certificate certificate, const Finding *finding, 
   static const char *const what[FINDING_KINDS] = {[FINDING_DEPTH]  = "stands",
                                                   [FINDING_PASSED] = "has passed through without contact,",
                                                   [FINDING_EDGES]  = "has crossed an edge and is"};
-  const PetscReal *centre = certificate->mesh->centre;
-  const PetscBool  tool   = (PetscBool)(finding->tag[0] < 0);
-  const long long  first = tool ? -1 - finding->tag[0] : finding->tag[0],
-                  second = tool ? -1 - finding->tag[1] : finding->tag[1];
+  const PetscReal         *centre              = certificate->mesh->centre;
+  const PetscBool          tool                = (PetscBool)(finding->tag[0] < 0);
+  const long long          first               = tool ? -1 - finding->tag[0] : finding->tag[0],
+                  second                       = tool ? -1 - finding->tag[1] : finding->tag[1];
   char who[96], face[64] = "the tool";
 
   PetscFunctionBeginUser;
@@ -233,8 +233,8 @@ static PetscErrorCode Describe(Certificate certificate, const Finding *finding, 
   if (finding->face) PetscCall(PetscSNPrintf(face, sizeof(face), "face %ld", finding->face));
   PetscCall(PetscSNPrintf(text, size, "contact '%s': %s (%.5g, %.5g, %.5g) %s %.3g deep, at %s; allowed are %.3g",
                           ContactPairName(certificate->contact, pair), who, (double)(finding->X[0] + centre[0]),
-                          (double)(finding->X[1] + centre[1]), (double)(finding->X[2] + centre[2]),
-                          what[finding->kind], finding->depth, face, finding->allowed));
+                          (double)(finding->X[1] + centre[1]), (double)(finding->X[2] + centre[2]), what[finding->kind],
+                          finding->depth, face, finding->allowed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

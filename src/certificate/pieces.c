@@ -260,7 +260,8 @@ PetscErrorCode SideMove(Side side, const PetscReal *const u[2], const PetscReal 
   for (PetscInt k = 0; k < side->n_pieces; k++) {
     Place normal[3];
 
-    for (int a = 0; a < side->dim; a++) memcpy(normal[a], side->points[side->corner[3 * k + a]].normal[1], sizeof(Place));
+    for (int a = 0; a < side->dim; a++)
+      memcpy(normal[a], side->points[side->corner[3 * k + a]].normal[1], sizeof(Place));
     side->pieces[k].sagitta =
       PieceHeight(side->dim, (const Place *)side->pieces[k].x[1], (const Place *)normal, PIECE_COSINE);
   }

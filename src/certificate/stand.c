@@ -257,8 +257,8 @@ static int PointEvents(const Look *look, const Point *point, Event events[STAND_
     int          times;
 
     if (HasTag(piece, look->dim, point->tag)) continue;
-    times = SweepPoint(look->dim, (const Place *)piece->x[0], (const Place *)piece->x[1], point->x[0], point->x[1],
-                       crossing);
+    times =
+      SweepPoint(look->dim, (const Place *)piece->x[0], (const Place *)piece->x[1], point->x[0], point->x[1], crossing);
     for (int k = 0; k < times && n < STAND_EVENTS; k++) events[n++] = (Event){piece, crossing[k]};
   }
   qsort(events, (size_t)n, sizeof(*events), EarlierEvent);
@@ -289,11 +289,11 @@ static double Cosine(int dim, const Piece *a, const Piece *b)
    presses, it may pass the tip of a wedge as deep as it may stand in it. */
 static void JudgePassage(const Look *look, const Point *point, const Event *in, const Event *out, Finding *worst)
 {
-  const double depth   = fmin(BehindAt(look->dim, in->piece, point, out->at.s),
-                              BehindAt(look->dim, out->piece, point, in->at.s));
-  const int    carried = point->closed || in->piece->closed || out->piece->closed;
-  double       allowed = STAND_ROUND_OFF * fmin(point->size, fmin(in->piece->size, out->piece->size));
-  Finding      finding;
+  const double depth =
+    fmin(BehindAt(look->dim, in->piece, point, out->at.s), BehindAt(look->dim, out->piece, point, in->at.s));
+  const int carried = point->closed || in->piece->closed || out->piece->closed;
+  double    allowed = STAND_ROUND_OFF * fmin(point->size, fmin(in->piece->size, out->piece->size));
+  Finding   finding;
 
   if (Cosine(look->dim, in->piece, out->piece) > STAND_OPPOSED) return;
   if (carried) allowed = look->penetration * fmin(point->size, fmin(in->piece->size, out->piece->size));
@@ -345,8 +345,8 @@ static void JudgeGone(const Look *look, const Point *point, const Event *in, con
 
   Notes:
   A point has come in where it crosses a piece to its back, or where it stood behind one at the start. It has come out
-  where it crosses a piece to its front, or where it stands behind one on the other side of a wall at the end. In between it was as deep as
-  it was behind the first piece when it came out, or behind the last one when it came in.
+  where it crosses a piece to its front, or where it stands behind one on the other side of a wall at the end. In
+between it was as deep as it was behind the first piece when it came out, or behind the last one when it came in.
 @*/
 void PointFinding(Look *look, const Point *point, Finding *worst)
 {
@@ -481,8 +481,8 @@ static void JudgeEdgeCrossings(const Look *look, const Piece *piece, const Point
 }
 
 /*@
-  PieceFindings - judges the edges of a piece: their depth at the end of the step, and in space whether they have crossed
-  edges.
+  PieceFindings - judges the edges of a piece: their depth at the end of the step, and in space whether they have
+crossed edges.
 
   Not collective
 

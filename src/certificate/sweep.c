@@ -44,8 +44,8 @@ static void Between(const double a[3], const double b[3], double s, double c[3])
 @*/
 int PieceDivide(ElementType type, int node[PIECE_MAX][3])
 {
-  static const int pieces[ELEMENT_TYPES] = {[ELEMENT_EDGE2] = 1, [ELEMENT_EDGE3] = 2, [ELEMENT_TRI3] = 1,
-                                            [ELEMENT_TRI6] = 4,  [ELEMENT_QUAD4] = 2, [ELEMENT_QUAD9] = 8};
+  static const int pieces[ELEMENT_TYPES]              = {[ELEMENT_EDGE2] = 1, [ELEMENT_EDGE3] = 2, [ELEMENT_TRI3] = 1,
+                                                         [ELEMENT_TRI6] = 4,  [ELEMENT_QUAD4] = 2, [ELEMENT_QUAD9] = 8};
   static const int nodes[ELEMENT_TYPES][PIECE_MAX][3] = {
     [ELEMENT_EDGE2] = {{0, 1}},
     [ELEMENT_EDGE3] = {{0, 2}, {2, 1}},
@@ -296,8 +296,8 @@ static int Roots(const double c[4], Crossing roots[SWEEP_MAX])
 
   turn[n + 1] = 1;
   for (int k = 0; k <= n; k++) {
-    double       low = turn[k], high = turn[k + 1];
-    const int    before = Value(3, c, low) >= 0;
+    double    low = turn[k], high = turn[k + 1];
+    const int before = Value(3, c, low) >= 0;
 
     if (before == (Value(3, c, high) >= 0)) continue;
     for (int i = 0; i < SWEEP_HALVINGS && low < high; i++) {

@@ -1,7 +1,7 @@
 /* Points, edges and faces that move along straight lines from one state to the next: where they cross. Plain C.
 
-   Faces are divided into pieces as the results show them: segments in two dimensions, triangles in three. A piece has as
-   many vertices as there are dimensions. Faces of second order are divided at their middle nodes. The front of a
+   Faces are divided into pieces as the results show them: segments in two dimensions, triangles in three. A piece has
+   as many vertices as there are dimensions. Faces of second order are divided at their middle nodes. The front of a
    piece is where its normal points (element.h). Positions have three components, in two dimensions the third is 0.
 
    SweepPoint() finds when a moving point crosses a moving piece, SweepEdges() when a moving edge crosses a moving edge,

@@ -381,7 +381,7 @@ static const PairFigures *FailedPair(const RunFigures *figures)
 {
   const SolveReport *solve = &figures->run->way->failed.solve;
   const int          pair  = solve->failure.n ? solve->failure.node[0].pair : -1;
-  const int named = solve->result == SOLVE_LOST || solve->result == SOLVE_UNCERTIFIED ||
+  const int          named = solve->result == SOLVE_LOST || solve->result == SOLVE_UNCERTIFIED ||
                     solve->result == SOLVE_WINDOW || solve->result == SOLVE_CYCLE;
 
   for (int p = 0; p < figures->n_pairs && named; p++) {

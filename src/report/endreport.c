@@ -120,11 +120,12 @@ static void PrintCertificate(const RunFigures *figures, FILE *stream)
   const CertificateFigures *found = &figures->certificate;
 
   if (!figures->certified || !figures->last) return;
-  fprintf(stream,
-          "certified: nothing passed through anything unseen in %lld steps; faces cross by up to %.2g of a face, %.2g of "
-          "what is allowed; residual %.1e of the forces",
-          (long long)(found->steps - found->refused), (double)found->over_h, (double)found->ratio,
-          (double)figures->last->residual);
+  fprintf(
+    stream,
+    "certified: nothing passed through anything unseen in %lld steps; faces cross by up to %.2g of a face, %.2g of "
+    "what is allowed; residual %.1e of the forces",
+    (long long)(found->steps - found->refused), (double)found->over_h, (double)found->ratio,
+    (double)figures->last->residual);
   if (found->refused) fprintf(stream, "; %lld steps did not hold and were cut", (long long)found->refused);
   fprintf(stream, "\n");
 }

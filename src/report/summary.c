@@ -287,7 +287,8 @@ static void AddCertificate(cJSON *json, const RunFigures *figures)
   AddReal(map, "largest_over_allowed", figures->certificate.ratio);
   AddReal(map, "residual", figures->last ? figures->last->residual : NAN);
   AddReal(map, "dissipated_by_friction", figures->last ? figures->last->contact.dissipated : NAN);
-  AddReal(map, "dissipated_by_flow", figures->last && SceneIsPlastic(figures->scene) ? figures->last->energy.plastic : NAN);
+  AddReal(map, "dissipated_by_flow",
+          figures->last && SceneIsPlastic(figures->scene) ? figures->last->energy.plastic : NAN);
 }
 
 /* Adds the fluids that enter between surfaces, if there are any. */

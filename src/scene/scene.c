@@ -873,9 +873,9 @@ static PetscErrorCode SceneReadOutput(Scene scene)
   Node              fields  = NodeFind(SceneDocument(scene)->root, "output.fields");
 
   PetscFunctionBeginUser;
-  scene->output.every      = SchemaInteger(SceneDocument(scene), "output.every");
-  scene->output.checkpoint = SchemaInteger(SceneDocument(scene), "output.checkpoint");
-  scene->output.certificate = SchemaBoolean(SceneDocument(scene), "output.certificate");
+  scene->output.every            = SchemaInteger(SceneDocument(scene), "output.every");
+  scene->output.checkpoint       = SchemaInteger(SceneDocument(scene), "output.checkpoint");
+  scene->output.certificate      = SchemaBoolean(SceneDocument(scene), "output.certificate");
   scene->certificate.penetration = SchemaReal(SceneDocument(scene), "certificate.penetration");
   for (int k = 0; k < 3; k++) {
     *flags[k] = !fields;

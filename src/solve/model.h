@@ -4,7 +4,8 @@
    ModelCreate(), ModelPlace() and ModelSetUp() are called once, in this order; ModelArchive() with an archive that
    loads takes the place of ModelSetUp(). ModelSolve() finds equilibrium at t. ModelAccept() makes it the accepted
    state, ModelCertify() judges the
-   step to it before. ModelRestore() returns to the accepted state. The model does not know step sizes; src/step chooses them. */
+   step to it before. ModelRestore() returns to the accepted state. The model does not know step sizes; src/step chooses
+   them. */
 #pragma once
 #include "certificate/certificate.h"
 #include "linear/linearcheck.h"
@@ -90,7 +91,7 @@ typedef struct _n_Model {
   Vec           x;      /* free displacements (length) */
   PetscReal    *u;      /* local displacements u[n_nodes*dim] (length) at load parameter t, prescribed ones included */
   PetscReal     t;
-  EnergyBalance balance; /* NULL: no body is plastic */
+  EnergyBalance balance;     /* NULL: no body is plastic */
   Certificate   certificate; /* NULL: there is no contact, or the scene switches it off */
   struct _n_ModelWork *work;
 } *Model;

@@ -187,7 +187,8 @@ static void FacesDivideWithTheirNormals(void **context)
 static void ChordsHaveTheirHeight(void **context)
 {
   const double h = 0.1, R = 2, angle = asin(h / 2 / R);
-  const Place  x[2] = {{h / 2, 0, 0}, {-h / 2, 0, 0}}, n[2] = {{sin(angle), cos(angle), 0}, {-sin(angle), cos(angle), 0}};
+  const Place  x[2] = {{h / 2, 0, 0}, {-h / 2, 0, 0}},
+              n[2]  = {{sin(angle), cos(angle), 0}, {-sin(angle), cos(angle), 0}};
 
   (void)context;
   assert_true(fabs(PieceHeight(2, x, n, 0.9) / (h * h / 8 / R) - 1) < 1e-3);
@@ -333,10 +334,14 @@ static void PlantedToolsAreFound(void **context)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(CrossingsHaveClosedForms),    cmocka_unit_test(TurningTriangleIsCrossed),
-    cmocka_unit_test(EdgesCross),                  cmocka_unit_test(FacesDivideWithTheirNormals),
-    cmocka_unit_test(ChordsHaveTheirHeight),       cmocka_unit_test(HonestStatesHold),
-    cmocka_unit_test(PlantedPointsAreFound),       cmocka_unit_test(PlantedFacesAreFound),
+    cmocka_unit_test(CrossingsHaveClosedForms),
+    cmocka_unit_test(TurningTriangleIsCrossed),
+    cmocka_unit_test(EdgesCross),
+    cmocka_unit_test(FacesDivideWithTheirNormals),
+    cmocka_unit_test(ChordsHaveTheirHeight),
+    cmocka_unit_test(HonestStatesHold),
+    cmocka_unit_test(PlantedPointsAreFound),
+    cmocka_unit_test(PlantedFacesAreFound),
     cmocka_unit_test(PlantedToolsAreFound),
   };
 

@@ -2,7 +2,8 @@
 #pragma once
 #include "stand.h"
 
-/* An analytic tool at the two states: the point of its motion, relative to the mesh's centre, and its axis or normal. */
+/* An analytic tool at the two states: the point of its motion, relative to the mesh's centre, and its axis or normal.
+ */
 typedef struct {
   int             dim;
   AnalyticSurface surface;

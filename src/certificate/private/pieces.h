@@ -1,8 +1,8 @@
-/* The two sides of a contact pair for the certificate: the pieces of their faces and the points of these at the two ends
-   of a step, and the way of pieces to the ranks that they come near.
+/* The two sides of a contact pair for the certificate: the pieces of their faces and the points of these at the two
+   ends of a step, and the way of pieces to the ranks that they come near.
 
-   SideCreate() finds pieces and points once, SideMove() places them at the two states. SideShare() sends pieces to every
-   rank whose points they may meet. */
+   SideCreate() finds pieces and points once, SideMove() places them at the two states. SideShare() sends pieces to
+   every rank whose points they may meet. */
 #pragma once
 #include "bodies/loads.h"
 #include "bodies/tools.h"
@@ -25,9 +25,9 @@ typedef struct {
   long   tag;
   double size, height; /* means of the faces around (length) */
   int    body;
-  int    closed;  /* contact pressed there at one of the states */
-  int    seen;    /* besides, an edge there is sharp, which a smooth surface rounds */
-  double weight;  /* sizes of the pieces around together (length) */
+  int    closed; /* contact pressed there at one of the states */
+  int    seen;   /* besides, an edge there is sharp, which a smooth surface rounds */
+  double weight; /* sizes of the pieces around together (length) */
 } Point;
 
 typedef struct {

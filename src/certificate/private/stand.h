@@ -19,8 +19,8 @@
 /* Part of the height of an element up to which faces may cross where any side of a body may meet any other one: deeper,
    the other side of a wall would be nearer (ownbody.h). */
 #define STAND_WALL 0.25
-/* Where contact presses at the point or on the face, or an edge is sharp there, faces may cross deeper by this factor: to
-   half a face with the default. Contact holds slave points on a smooth surface, which rounds the edges of the faces
+/* Where contact presses at the point or on the face, or an edge is sharp there, faces may cross deeper by this factor:
+   to half a face with the default. Contact holds slave points on a smooth surface, which rounds the edges of the faces
    that are shown, and it holds no point of the master. Sharp edges so dig in by up to half a face, and this is seen:
    slave points around the edge press. */
 #define STAND_SEEN 5
@@ -33,14 +33,14 @@ typedef enum { FINDING_NONE, FINDING_DEPTH, FINDING_PASSED, FINDING_EDGES, FINDI
 
 /* The worst that was found. */
 typedef struct {
-  FindingKind kind;     /* FINDING_NONE: within what is allowed */
-  double      ratio;    /* depth over what is allowed; of a passage at least 1 */
-  double      depth;    /* length */
-  double      allowed;  /* length */
-  double      over_h;   /* depth without what geometry explains, over the size of the smaller face */
-  long        tag[2];   /* gmsh's tags of the point or of an edge; of a tool -1 - tag. The second is 0 for a point */
-  long        face;     /* gmsh's tag of the face that was passed or is stood in */
-  Place       X;        /* reference place (length) */
+  FindingKind kind;    /* FINDING_NONE: within what is allowed */
+  double      ratio;   /* depth over what is allowed; of a passage at least 1 */
+  double      depth;   /* length */
+  double      allowed; /* length */
+  double      over_h;  /* depth without what geometry explains, over the size of the smaller face */
+  long        tag[2];  /* gmsh's tags of the point or of an edge; of a tool -1 - tag. The second is 0 for a point */
+  long        face;    /* gmsh's tag of the face that was passed or is stood in */
+  Place       X;       /* reference place (length) */
 } Finding;
 
 /* The pieces of the other side */
