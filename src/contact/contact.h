@@ -119,6 +119,14 @@ typedef struct {
   PetscReal turned;                      /* part of it at nodes whose slip turned much within a step */
 } ContactFriction;
 
+/* The surfaces of a pair. */
+typedef struct {
+  const SceneContact *scene;
+  ContactSurface      slave, master; /* master NULL: analytic, in scene */
+  int                 n_images;      /* mirror images of the master that it may meet besides, the identity included */
+  const SurfaceImage *images;
+} ContactSides;
+
 typedef struct _n_Contact *Contact;
 
 /* Life and state */
@@ -188,6 +196,10 @@ PetscErrorCode      ContactPairTermStiffness(Contact, int pair, PetscReal *stiff
 PetscErrorCode      ContactPairClosed(Contact, int pair, const PetscInt *label, PetscInt n, PetscInt *closed);
 PetscBool           ContactHasFriction(Contact);
 MPI_Comm            ContactComm(Contact);
+/* What an accepted step is checked for */
+void           ContactPairSides(Contact, int pair, ContactSides *);
+PetscErrorCode ContactPairPressed(Contact, int pair, PetscReal *pressed);
+PetscErrorCode ContactPairOverlap(Contact, int pair, PetscReal t, PetscReal *overlap);
 /* Probes and reports */
 PetscErrorCode ContactSummarise(Contact, ContactSummary *);
 PetscErrorCode ContactGetNodes(Contact, int pair, const PetscReal *u, ContactNodes *);

@@ -333,6 +333,7 @@ static const ChangeKind tries[][ADVICE_CHANGES] = {
   [SOLVE_CYCLE]       = {CHANGE_SHORTER_MIN, CHANGE_SYMMETRY, CHANGE_LINE_SEARCH},
   [SOLVE_LOST]        = {CHANGE_FREE_PENALTY, CHANGE_STIFFER, CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_FINER_MASTER,
                          CHANGE_CHECK},
+  [SOLVE_UNCERTIFIED] = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_FINER_MASTER, CHANGE_CHECK},
   [SOLVE_ADRIFT]      = {CHANGE_DISPLACEMENT, CHANGE_SUPPORT, CHANGE_CHECK},
   [SOLVE_WINDOW]      = {CHANGE_RANGE, CHANGE_WIDER_WINDOW, CHANGE_WHEN_STEP, CHANGE_CHECK},
   [SOLVE_VOLUME]      = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK},
@@ -381,7 +382,8 @@ static const PairFigures *FailedPair(const RunFigures *figures)
 {
   const SolveReport *solve = &figures->run->way->failed.solve;
   const int          pair  = solve->failure.n ? solve->failure.node[0].pair : -1;
-  const int named = solve->result == SOLVE_LOST || solve->result == SOLVE_WINDOW || solve->result == SOLVE_CYCLE;
+  const int          named = solve->result == SOLVE_LOST || solve->result == SOLVE_UNCERTIFIED ||
+                    solve->result == SOLVE_WINDOW || solve->result == SOLVE_CYCLE;
 
   for (int p = 0; p < figures->n_pairs && named; p++) {
     char quoted[ADVICE_TEXT];

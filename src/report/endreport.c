@@ -14,6 +14,7 @@ static const char *const purposes[TIMING_KINDS] = {[TIMING_SETUP]            = "
                                                    [TIMING_ASSEMBLY_ELASTIC] = "elastic assembly",
                                                    [TIMING_ASSEMBLY_CONTACT] = "contact assembly",
                                                    [TIMING_SOLVE]            = "solver",
+                                                   [TIMING_CERTIFICATE]      = "certificate",
                                                    [TIMING_OUTPUT]           = "output"};
 
 static void PrintTime(const RunFigures *figures, FILE *stream)
@@ -110,6 +111,22 @@ static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
   if (pair->scene->penalty_may_stiffen && pair->stiffened > 1)
     fprintf(stream, "; penalty raised %.3g times for it%s", (double)pair->stiffened,
             pair->penalty_stays ? ", which lowered it by less than forecast: it was raised no more" : "");
+  fprintf(stream, "\n");
+}
+
+/* Prints what is certified. */
+static void PrintCertificate(const RunFigures *figures, FILE *stream)
+{
+  const CertificateFigures *found = &figures->certificate;
+
+  if (!figures->certified || !figures->last) return;
+  fprintf(
+    stream,
+    "certified: nothing passed through anything unseen in %lld steps; faces cross by up to %.2g of a face, %.2g of "
+    "what is allowed; residual %.1e of the forces",
+    (long long)(found->steps - found->refused), (double)found->over_h, (double)found->ratio,
+    (double)figures->last->residual);
+  if (found->refused) fprintf(stream, "; %lld steps did not hold and were cut", (long long)found->refused);
   fprintf(stream, "\n");
 }
 
@@ -264,6 +281,7 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
   }
   for (int i = 0; i < figures->n_fluids && figures->last; i++) PrintFluid(&figures->fluids[i], stream);
   if (SceneIsPlastic(figures->scene) && figures->last) PrintEnergy(&figures->last->energy, stream);
+  PrintCertificate(figures, stream);
   PrintGuards(figures, stream);
   if (way->failed.attempts) PrintFailure(figures, stream);
   AdviceGive(figures, PrintAdvice, stream);

@@ -284,6 +284,24 @@ static void AddContact(cJSON *json, const RunFigures *figures)
   }
 }
 
+/* Adds what is certified; nothing where the scene switches it off or has no contact. */
+static void AddCertificate(cJSON *json, const RunFigures *figures)
+{
+  cJSON *map;
+
+  if (!figures->certified) return;
+  cJSON_AddBoolToObject(json, "certified", !strcmp(figures->run->status, "done"));
+  map = cJSON_AddObjectToObject(json, "certificate");
+  cJSON_AddNumberToObject(map, "steps", (double)figures->certificate.steps);
+  cJSON_AddNumberToObject(map, "refused", (double)figures->certificate.refused);
+  AddReal(map, "largest_over_h", figures->certificate.over_h);
+  AddReal(map, "largest_over_allowed", figures->certificate.ratio);
+  AddReal(map, "residual", figures->last ? figures->last->residual : NAN);
+  AddReal(map, "dissipated_by_friction", figures->last ? figures->last->contact.dissipated : NAN);
+  AddReal(map, "dissipated_by_flow",
+          figures->last && SceneIsPlastic(figures->scene) ? figures->last->energy.plastic : NAN);
+}
+
 /* Adds the fluids that enter between surfaces, if there are any. */
 static void AddFluids(cJSON *json, const RunFigures *figures)
 {
@@ -347,6 +365,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddPartition(json, mesh);
   AddContact(json, figures);
   AddFluids(json, figures);
+  AddCertificate(json, figures);
   text = cJSON_Print(json);
   PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for summary.json");
   PetscCall(TextFileReplace(directory, "summary.json", text));

@@ -479,8 +479,10 @@ static PetscErrorCode SceneReadOutput(Scene scene)
   Node              fields  = NodeFind(SceneDocument(scene)->root, "output.fields");
 
   PetscFunctionBeginUser;
-  scene->output.every      = SchemaInteger(SceneDocument(scene), "output.every");
-  scene->output.checkpoint = SchemaInteger(SceneDocument(scene), "output.checkpoint");
+  scene->output.every            = SchemaInteger(SceneDocument(scene), "output.every");
+  scene->output.checkpoint       = SchemaInteger(SceneDocument(scene), "output.checkpoint");
+  scene->output.certificate      = SchemaBoolean(SceneDocument(scene), "output.certificate");
+  scene->certificate.penetration = SchemaReal(SceneDocument(scene), "certificate.penetration");
   for (int k = 0; k < 3; k++) {
     *flags[k] = !fields;
     for (int i = 0; fields && i < fields->n; i++) *flags[k] |= !strcmp(fields->child[i]->text, names[k]);
@@ -574,7 +576,7 @@ PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const
 }
 
 /* The parts of a scene that a restart may change, because the state of the run does not depend on them. */
-static const char *const changeable[] = {"output", "solver", "stepping"};
+static const char *const changeable[] = {"certificate", "output", "solver", "stepping"};
 
 /* Tells whether the first component of a path is one of these parts. One of the characters of `end` follows it. */
 static PetscBool IsChangeable(const char *path, const char *end)

@@ -206,7 +206,11 @@ typedef struct {
     int every;                         /* steps between two outputs, or 0 for the last state only */
     int checkpoint;                    /* steps between two checkpoints, or 0 for one only when the run ends early */
     int displacement, stress, contact; /* which fields are written */
+    int certificate;                   /* 1 if each accepted step is judged */
   } output;
+  struct {
+    double penetration; /* largest depth to which faces may cross, in sizes of the smaller face */
+  } certificate;
   int        n_petsc;
   ScenePair *petsc;    /* PETSc options of the scene */
   void      *document; /* private to this folder: the tree of the document (document.h), for SceneWhere() */

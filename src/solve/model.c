@@ -12,6 +12,7 @@ const char *const SolveResults[] = {
   "the contact lists did not settle",
   "the contact set repeats itself",
   "contact was lost behind a master",
+  "the step cannot be certified",
   "nothing holds a body against its load",
   "the penetrations did not come into the window of the adjusted penalty",
   "the volumes of incompressible bodies did not settle (do the displacements of a whole surface change one?)",
@@ -62,6 +63,8 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(ModelCreateSNES(model));
   PetscCall(ModelCreatePenaltyError(model));
   if (model->contact) PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
+  if (model->contact && scene->output.certificate)
+    PetscCall(CertificateCreate(mesh, scene, model->problem->loads, model->contact, &model->certificate));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -79,6 +82,7 @@ PetscErrorCode ModelDestroy(Model *model)
 
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CertificateDestroy(&m->certificate));
   PetscCall(SNESDestroy(&m->snes));
   PetscCall(LinearSolverDestroy(&m->work->solver));
   PetscCall(LinearCheckDestroy(&m->linear));
@@ -181,6 +185,28 @@ PetscErrorCode ModelGetAccepted(Model model, const PetscReal **u, PetscReal *t)
   PetscFunctionBeginUser;
   *u = model->work->accepted_u;
   *t = model->work->accepted_t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelCertify - judges the step from the accepted state to the present solution.
+
+  Collective
+
+  Input Parameter:
+. model - after a ModelSolve() that converged, before ModelAccept()
+
+  Input/Output Parameter:
+. report - of that solve: SOLVE_UNCERTIFIED with its detail where something passed through anything unseen
+@*/
+PetscErrorCode ModelCertify(Model model, SolveReport *report)
+{
+  PetscBool holds;
+
+  PetscFunctionBeginUser;
+  PetscCall(CertificateCheck(model->certificate, model->work->accepted_u, model->work->accepted_t, model->u, model->t,
+                             &holds, report->detail, sizeof(report->detail)));
+  if (!holds) report->result = SOLVE_UNCERTIFIED;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -308,6 +334,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscCall(ElasticityArchivePlastic(model->problem->elasticity, archive));
   if (model->balance) PetscCall(EnergyBalanceArchive(model->balance, archive, work->accepted_u));
   PetscCall(FluidArchive(model->problem->fluids, archive));
+  PetscCall(CertificateArchive(model->certificate, archive));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FluidRestore(model->problem->fluids, model->u, model->t));
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));

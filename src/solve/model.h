@@ -2,10 +2,11 @@
    accepted last, and accepts the new state or takes it back.
 
    ModelCreate(), ModelPlace() and ModelSetUp() are called once, in this order; ModelArchive() with an archive that
-   loads takes the place of ModelSetUp(). ModelSolve() finds equilibrium at t, ModelSolveSlowly() by way
-   of a viscous motion where that fails. ModelAccept() makes it the accepted
-   state, ModelRestore() returns to the accepted state. The model does not know step sizes; src/step chooses them. */
+   loads takes the place of ModelSetUp(). ModelSolve() finds equilibrium at t, ModelSolveSlowly() by way of a viscous
+   motion where that fails. ModelAccept() makes it the accepted state, ModelCertify() judges the step to it before.
+   ModelRestore() returns to the accepted state. The model does not know step sizes; src/step chooses them. */
 #pragma once
+#include "certificate/certificate.h"
 #include "linear/linearcheck.h"
 #include "solve/energybalance.h"
 #include "solve/failure.h"
@@ -21,6 +22,7 @@ typedef enum {
   SOLVE_LISTS,
   SOLVE_CYCLE,
   SOLVE_LOST,
+  SOLVE_UNCERTIFIED,
   SOLVE_ADRIFT,
   SOLVE_WINDOW,
   SOLVE_VOLUME,
@@ -93,7 +95,8 @@ typedef struct _n_Model {
   Vec           x;      /* free displacements (length) */
   PetscReal    *u;      /* local displacements u[n_nodes*dim] (length) at load parameter t, prescribed ones included */
   PetscReal     t;
-  EnergyBalance balance; /* NULL: no body is plastic */
+  EnergyBalance balance;     /* NULL: no body is plastic */
+  Certificate   certificate; /* NULL: there is no contact, or the scene switches it off */
   struct _n_ModelWork *work;
 } *Model;
 
@@ -106,6 +109,7 @@ PetscErrorCode ModelSolve(Model, PetscReal t, SolveReport *);
 PetscErrorCode ModelSolveSlowly(Model, PetscReal t, SolveReport *);
 PetscErrorCode ModelLookAhead(Model, PetscReal t, PetscReal *u, SolveReport *);
 PetscErrorCode ModelGetAccepted(Model, const PetscReal **u, PetscReal *t);
+PetscErrorCode ModelCertify(Model, SolveReport *);
 PetscErrorCode ModelAccept(Model);
 PetscErrorCode ModelRestore(Model);
 PetscErrorCode ModelArchive(Model, Archive);

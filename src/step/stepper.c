@@ -433,6 +433,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     PetscCall(LoadStepperTry(stepper, end, dt, &failures, &solve));
     record->attempts++;
     CountSolve(end, &solve, record, &stepper->report);
+    if (solve.result == SOLVE_CONVERGED) PetscCall(ModelCertify(model, &solve));
     if (solve.result == SOLVE_CONVERGED) {
       *advanced = PETSC_TRUE;
       if (stepper->control->judge) PetscCall(stepper->control->judge(model, dt, &stepper->size, advanced));

@@ -5,11 +5,11 @@ import pathlib
 from dataclasses import dataclass, field
 from math import inf, radians
 
-from expect import All, Balance, Done, Most, Near, Refused, Same, Stops, Told, Turned, Uniform
+from expect import All, Balance, Certified, Done, Most, Near, Refused, Same, Stops, Told, Turned, Uniform
 
 HERE = pathlib.Path(__file__).resolve().parent
 RUNS, SCENES = HERE.parent.parent / "runs", HERE.parent / "scenes"
-GROUPS = ("geometry", "contact", "guards", "steps", "numbers")
+GROUPS = ("geometry", "contact", "guards", "steps", "certificate", "numbers")
 
 
 @dataclass
@@ -87,6 +87,9 @@ PLAIN = ["mesh.order=1", "contact.0.symmetry=[]", "petsc={snes_linesearch_type: 
          "probes=[{name: plate_force, reaction: plate_top, component: y, absolute: true}]"]
 PINCHED = mesh(n_arc=6, n_len=2)
 STROKE = ("plate_force",)
+# A sheet that its ends hold.
+JUDGED = "output.certificate=true"
+HELD_SHEET = ["supports=[{surface: lower_x_low, ux: 0, uy: 0}, {surface: lower_x_high, ux: 0, uy: 0}]", "loads.0.ux=0"]
 PSI = 0.45359237 * 9.80665 / 0.0254**2 / 1e6  # MPa
 INCH = 25.4  # mm
 TURNED = complex(0.01, -0.05) * cmath.exp(1j * radians(30))
@@ -261,6 +264,23 @@ CASES = [
     Case("steps", "no way on at the floor", "two iterations are too few and dt must not be smaller", PUNCH,
          ["stepping={control: fixed, initial: 0.5, dt_min: 0.5}", "solver.max_iterations=2"],
          Stops("no equilibrium from t = 0 to 0.5", "max_iterations", "dt_min 0.5")),
+    Case("certificate", "fast thin wall", "a block crosses in one step ten times the thickness of a sheet", PUNCH,
+         mesh(**{"from": 0.3, "to": 0.7}, wall=0.02, n_height=1, gap=0.2, n_upper=8) +
+         [*HELD_SHEET, "loads.0.uy=-0.3", "stepping.initial=1", JUDGED], Certified()),
+    Case("certificate", "needle", "a tool a sixth as wide as a face, in one step", PUNCH,
+         mesh(**{"from": 0.6, "to": 0.64}, n_lower=4, n_upper=2, bulge=0, gap=0.02) +
+         ["loads.0.ux=0", "loads.0.uy=-0.2", "stepping.initial=1", JUDGED], Certified()),
+    Case("certificate", "spike", "a wedge between the nodes of coarse faces", PUNCH,
+         mesh(**{"from": 0.44, "to": 0.56}, n_lower=3, n_upper=8, bulge=0, wedge=1) +
+         ["loads.0.ux=0", "loads.0.uy=-0.1", "stepping.initial=0.5", JUDGED], Certified()),
+    Case("certificate", "two sheets", "a tenth of their thickness apart, pushed by three times that in one step", PUNCH,
+         mesh(**{"from": 0.2, "to": 0.8}, wall=0.05, n_height=1, height=0.055, gap=0.005, bulge=0) +
+         [*HELD_SHEET, "loads.0.uy=-0.15", "stepping.initial=1", JUDGED], Certified()),
+    Case("certificate", "steps ten times too large", "closes a gap of seven faces and slides by seven in one step", PUNCH,
+         mesh(gap=0.3) + ["loads.0.uy=-0.35", "loads.0.ux=0.3", "stepping.initial=1", JUDGED], Certified()),
+    Case("certificate", "penalty too soft", "the blocks go into each other by five faces", PUNCH,
+         mesh(bulge=0) + ["contact.0.penalty.scale=1e-3", "loads.0.uy=-0.2", "stepping.initial=1", JUDGED],
+         Stops("cannot be certified", "contact 'joint': node [0-9]+ .* stands .* deep")),
     Case("numbers", "m-N", "lengths and stresses 1e-3 and 1e6 times as large", PUNCH, units(1e3, 1e-6),
          Turned(*units(1, 1), probes=VECTOR, scale=1e3, bound=1e-8)),
     Case("numbers", "inch-lbf", "units that are no powers of ten", PUNCH, units(INCH, PSI),

@@ -121,6 +121,14 @@ class Told(Done):
         return says and self.least <= value <= self.most, f"{' '.join(self.path).replace('_', ' ')} {value:.2g}"
 
 
+class Certified(Done):
+    """The run reaches its end, and its certificate says that nothing passed through anything unseen."""
+
+    def judge(self, finished, variant, again):
+        summary = finished.summary()
+        return summary["certified"] is True, f"crossing {summary['certificate']['largest_over_h']:.2g} of a face"
+
+
 class Refused:
     """Wrong input: exit status 1 and a message with these words."""
 

@@ -15,7 +15,8 @@ SOLID = ("geometry=solid", "loads.0.uz=0")
 
 
 def ridge(name, *overrides, ranks=1):
-    return run(args, SCENES / "ridge.yaml", out=f"{name}-np{ranks}", overrides=overrides, ranks=ranks)
+    return run(args, SCENES / "ridge.yaml", out=f"{name}-np{ranks}", ranks=ranks,
+               overrides=overrides)
 
 
 def depths(done):
@@ -51,6 +52,13 @@ for name, overrides in (("plane, rigid", RIGID), ("plane", ()), ("solid, rigid",
                      re.MULTILINE)
     check.holds(f"{name}: the last screen names the larger", line and line[2] == f"{pair['master_depth']:.3g}"
                 and int(line[1]) == pair["master_depth_node"])
+
+# No slave point sees the ridge. The certificate does, and names it.
+for ranks in (1, 3):
+    refused = run(args, SCENES / "ridge.yaml", out=f"refused-np{ranks}", ranks=ranks, must=2,
+                  overrides=("output.certificate=true",))
+    check.holds(f"the certificate refuses the ridge, {ranks} ranks",
+                re.search(r"cannot be certified; contact 'edge': node \d+ \(0, 0, 0\) stands ", refused.text))
 
 # A master wider than the slave: seven nodes on it, five of them under the slave.
 wide = run(args, SCENES / "stack.yaml", out="wide",

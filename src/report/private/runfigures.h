@@ -23,27 +23,29 @@ typedef struct {
 } PairFigures;
 
 typedef struct {
-  Scene             scene;
-  const RunRecord  *run;
-  const StepRecord *last; /* NULL: no step was accepted */
-  int               ranks;
-  PetscInt          dofs;
-  char              effects[1024];
-  RunUsage          usage;         /* of all parts of the run */
-  PetscReal         results_bytes; /* size of results.h5 */
-  PetscInt          restarts;      /* their number less one */
-  LinearCounts      linear;
-  const char       *options_changed; /* lines, see optionrecord.h */
-  PetscBool         direct;          /* the solver factors each tangent, for which it uses the BLAS */
-  Blas              blas;            /* of this rank */
-  PetscReal         stored;          /* energy in elements and contact; 0 where no step was damped */
-  PetscBool         free_bodies;     /* some bodies are held by contact alone */
-  char              moved[512];      /* which of them were moved into contact, and how far */
-  char              loose[512];      /* their motions that only springs hold */
-  int               n_pairs;
-  PairFigures      *pairs;
-  int               n_fluids;
-  FluidReport      *fluids;
+  Scene              scene;
+  const RunRecord   *run;
+  const StepRecord  *last; /* NULL: no step was accepted */
+  int                ranks;
+  PetscInt           dofs;
+  char               effects[1024];
+  RunUsage           usage;         /* of all parts of the run */
+  PetscReal          results_bytes; /* size of results.h5 */
+  PetscInt           restarts;      /* their number less one */
+  LinearCounts       linear;
+  const char        *options_changed; /* lines, see optionrecord.h */
+  PetscBool          direct;          /* the solver factors each tangent, for which it uses the BLAS */
+  Blas               blas;            /* of this rank */
+  PetscReal          stored;          /* energy in elements and contact; 0 where no step was damped */
+  PetscBool          free_bodies;     /* some bodies are held by contact alone */
+  char               moved[512];      /* which of them were moved into contact, and how far */
+  char               loose[512];      /* their motions that only springs hold */
+  int                n_pairs;
+  PairFigures       *pairs;
+  CertificateFigures certificate;
+  PetscBool          certified; /* all accepted steps were judged and hold */
+  int                n_fluids;
+  FluidReport       *fluids;
 } RunFigures;
 
 PetscErrorCode RunUsageCollect(MPI_Comm, RunUsage *);

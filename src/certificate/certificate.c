@@ -1,0 +1,333 @@
+/* The certificate of a run, see certificate.h. */
+#include "certificate/certificate.h"
+#include "analytic.h"
+#include "base/timing.h"
+#include <string.h>
+
+/* The two sides of one contact pair */
+typedef struct {
+  int          pair;
+  ContactSides of;
+  Side         side[2]; /* the second is NULL where the master is analytic */
+} CertifiedPair;
+
+struct _n_Certificate {
+  Mesh               mesh;
+  Scene              scene;
+  Loads              loads;
+  Contact            contact;
+  int                n;
+  CertifiedPair     *pairs;
+  PetscReal         *pressed; /* of each node of the mesh, of one pair */
+  CertificateFigures figures;
+};
+
+/*@
+  CertificateCreate - prepares the certificate of all pairs.
+
+  Collective
+
+  Input Parameters:
++ mesh    - the mesh
+. scene   - gives the allowed penetration
+. loads   - give the places of tools
+- contact - the contact
+
+  Output Parameter:
+. out - free it with CertificateDestroy()
+
+  Note:
+  All arguments are borrowed. Two pairs that treat the same surfaces from both sides are judged once.
+@*/
+PetscErrorCode CertificateCreate(Mesh mesh, Scene scene, Loads loads, Contact contact, Certificate *out)
+{
+  Certificate certificate;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&certificate));
+  certificate->mesh    = mesh;
+  certificate->scene   = scene;
+  certificate->loads   = loads;
+  certificate->contact = contact;
+  PetscCall(PetscCalloc2(ContactPairs(contact), &certificate->pairs, mesh->n_nodes, &certificate->pressed));
+  for (int p = 0; p < ContactPairs(contact); p++) {
+    CertifiedPair *pair    = &certificate->pairs[certificate->n];
+    const int      partner = ContactPairPartner(contact, p);
+
+    if (partner >= 0 && partner < p) continue;
+    pair->pair = p;
+    ContactPairSides(contact, p, &pair->of);
+    PetscCall(SideCreate(pair->of.slave, loads, &pair->side[0]));
+    if (pair->of.master && partner != p) PetscCall(SideCreate(pair->of.master, loads, &pair->side[1]));
+    if (partner == p) pair->side[1] = pair->side[0];
+    certificate->n++;
+  }
+  *out = certificate;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  CertificateDestroy - frees the certificate.
+
+  Collective
+
+  Input/Output Parameter:
+. certificate - NULL on return; may be NULL before
+@*/
+PetscErrorCode CertificateDestroy(Certificate *certificate)
+{
+  PetscFunctionBeginUser;
+  if (!*certificate) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < (*certificate)->n; k++) {
+    CertifiedPair *pair = &(*certificate)->pairs[k];
+
+    if (pair->side[1] != pair->side[0]) PetscCall(SideDestroy(&pair->side[1]));
+    PetscCall(SideDestroy(&pair->side[0]));
+  }
+  PetscCall(PetscFree2((*certificate)->pairs, (*certificate)->pressed));
+  PetscCall(PetscFree(*certificate));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Judges points and edges of one side against the pieces of the other one. */
+static PetscErrorCode JudgeSide(Certificate certificate, const CertifiedPair *pair, int s, PetscReal overlap,
+                                Finding *worst)
+{
+  const Side own = pair->side[s], other = pair->side[1 - s];
+  PetscReal  near[6], box[6], *sweep = near;
+  PieceList  list;
+  Look       look = {.penetration = certificate->scene->certificate.penetration,
+                     .overlap     = overlap,
+                     .walls       = pair->of.scene->listed};
+
+  PetscFunctionBeginUser;
+  SideBox(own, near);
+  PetscCall(SideShare(other, near, s == 0 ? pair->of.n_images : 1, pair->of.images, &list));
+  if (list.n) {
+    PetscCheck(LookCreate(own->dim, &list, &look), PETSC_COMM_SELF, PETSC_ERR_MEM,
+               "No memory for %" PetscInt_FMT " faces", list.n);
+    for (int k = 0; k < 3; k++) {
+      box[k]     = PETSC_MAX_REAL;
+      box[3 + k] = PETSC_MIN_REAL;
+    }
+    for (PetscInt i = 0; i < list.n; i++) {
+      PetscReal of[6];
+
+      PieceBox(&list.pieces[i], own->dim, of);
+      for (int k = 0; k < 3; k++) {
+        box[k]     = PetscMin(box[k], of[k]);
+        box[3 + k] = PetscMax(box[3 + k], of[3 + k]);
+      }
+    }
+    for (PetscInt i = 0; i < own->n_points; i++) PointFinding(&look, &own->points[i], worst);
+    for (PetscInt k = 0; k < own->n_pieces; k++) {
+      const Point *corner[3] = {NULL, NULL, NULL};
+
+      PieceBox(&own->pieces[k], own->dim, sweep);
+      if (!BoxesMeet(sweep, box, 0)) continue;
+      for (int a = 0; a < own->dim; a++) corner[a] = &own->points[own->corner[3 * k + a]];
+      PieceFindings(&look, &own->pieces[k], corner, worst);
+    }
+    LookDestroy(&look);
+  }
+  PetscCall(PetscFree(list.pieces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Judges the slave against an analytic tool. Its free components are those of the second state at last. */
+static void JudgeAnalytic(Certificate certificate, const CertifiedPair *pair, const PetscReal *const u[2],
+                          const PetscReal t[2], PetscReal overlap, Finding *worst)
+{
+  const SceneContact *scene = pair->of.scene;
+  const Side          slave = pair->side[0];
+  AnalyticTool        tool  = {.dim         = slave->dim,
+                               .surface     = scene->analytic,
+                               .penetration = certificate->scene->certificate.penetration,
+                               .overlap     = overlap};
+
+  for (int state = 0; state < 2; state++) {
+    ToolsPlace(certificate->mesh, u[state], t[state]);
+    MotionPlace(&scene->motion, t[state], scene->motion.point, tool.point[state]);
+    for (int d = 0; d < 3; d++)
+      tool.point[state][d] = d < slave->dim ? tool.point[state][d] - certificate->mesh->centre[d] : 0;
+    MotionTurn(&scene->motion, t[state], scene->analytic.axis, tool.axis[state]);
+  }
+  for (PetscInt i = 0; i < slave->n_points; i++) AnalyticPointFinding(&tool, &slave->points[i], worst);
+  for (PetscInt k = 0; k < slave->n_pieces; k++) AnalyticPieceFinding(&tool, &slave->pieces[k], worst);
+}
+
+/* Judges one pair on this rank. */
+static PetscErrorCode JudgePair(Certificate certificate, const CertifiedPair *pair, const PetscReal *const u[2],
+                                const PetscReal t[2], Finding *worst)
+{
+  const int       partner = ContactPairPartner(certificate->contact, pair->pair);
+  const PetscBool own     = (PetscBool)(pair->side[1] == pair->side[0]);
+  PetscReal       overlap, other = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(certificate->pressed, certificate->mesh->n_nodes));
+  PetscCall(ContactPairPressed(certificate->contact, pair->pair, certificate->pressed));
+  PetscCall(ContactPairOverlap(certificate->contact, pair->pair, t[1], &overlap));
+  if (partner >= 0 && !own) {
+    PetscCall(ContactPairPressed(certificate->contact, partner, certificate->pressed));
+    PetscCall(ContactPairOverlap(certificate->contact, partner, t[1], &other));
+  }
+  overlap = PetscMax(overlap, other);
+  PetscCall(SideMove(pair->side[0], u, t, certificate->pressed));
+  if (!pair->side[1]) {
+    JudgeAnalytic(certificate, pair, u, t, overlap, worst);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (!own) PetscCall(SideMove(pair->side[1], u, t, certificate->pressed));
+  for (int s = 0; s < (own ? 1 : 2); s++) PetscCall(JudgeSide(certificate, pair, s, overlap, worst));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The worst finding of all ranks, and the number of its pair. */
+static PetscErrorCode WorstOfAll(MPI_Comm comm, Finding *worst, int *pair)
+{
+  typedef struct {
+    Finding finding;
+    int     pair;
+  } Sent;
+  const Sent  mine = {*worst, *pair};
+  Sent       *all;
+  PetscReal   over_h = worst->over_h;
+  PetscMPIInt ranks;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  if (ranks == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(ranks, &all));
+  PetscCallMPI(MPI_Allgather(&mine, sizeof(mine), MPI_BYTE, all, sizeof(mine), MPI_BYTE, comm));
+  *worst = all[0].finding;
+  *pair  = all[0].pair;
+  for (int r = 0; r < ranks; r++) {
+    over_h = PetscMax(over_h, all[r].finding.over_h);
+    if (!FindingWorse(&all[r].finding, worst)) continue;
+    *worst = all[r].finding;
+    *pair  = all[r].pair;
+  }
+  worst->over_h = over_h;
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Writes who did what: nodes, face, place. */
+static PetscErrorCode Describe(Certificate certificate, const Finding *finding, int pair, char *text, size_t size)
+{
+  static const char *const what[FINDING_KINDS] = {[FINDING_DEPTH]  = "stands",
+                                                  [FINDING_PASSED] = "has passed through without contact,",
+                                                  [FINDING_EDGES]  = "has crossed an edge and is"};
+  const PetscReal         *centre              = certificate->mesh->centre;
+  const PetscBool          tool                = (PetscBool)(finding->tag[0] < 0);
+  const long long          first               = tool ? -1 - finding->tag[0] : finding->tag[0],
+                  second                       = tool ? -1 - finding->tag[1] : finding->tag[1];
+  char who[96], face[64] = "the tool";
+
+  PetscFunctionBeginUser;
+  if (finding->tag[1])
+    PetscCall(PetscSNPrintf(who, sizeof(who), "the edge of the nodes %lld and %lld", first, second));
+  else
+    PetscCall(PetscSNPrintf(who, sizeof(who), "node %lld", first));
+  if (finding->face) PetscCall(PetscSNPrintf(face, sizeof(face), "face %ld", finding->face));
+  PetscCall(PetscSNPrintf(text, size, "contact '%s': %s (%.5g, %.5g, %.5g) %s %.3g deep, at %s; allowed are %.3g",
+                          ContactPairName(certificate->contact, pair), who, (double)(finding->X[0] + centre[0]),
+                          (double)(finding->X[1] + centre[1]), (double)(finding->X[2] + centre[2]), what[finding->kind],
+                          finding->depth, face, finding->allowed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  CertificateCheck - judges the step from the accepted state to a converged solution.
+
+  Collective
+
+  Input Parameters:
++ certificate - may be NULL: then every step holds
+. u_0         - local displacements of the accepted state, u_0[n_nodes*dim], ghosts included (length)
+. t_0         - its load parameter
+. u           - of the solution, which contact was evaluated at last
+. t           - its load parameter
+- size        - of the text
+
+  Output Parameters:
++ holds - the same on all ranks, and on any number of them
+- text  - what was found and where, if the step does not hold
+@*/
+PetscErrorCode CertificateCheck(Certificate certificate, const PetscReal *u_0, PetscReal t_0, const PetscReal *u,
+                                PetscReal t, PetscBool *holds, char *text, size_t size)
+{
+  const PetscReal *const states[2] = {u_0, u};
+  const PetscReal        ts[2]     = {t_0, t};
+  Finding                worst     = {.kind = FINDING_NONE};
+  CertificateFigures    *figures;
+  int                    pair = -1;
+
+  PetscFunctionBeginUser;
+  *holds = PETSC_TRUE;
+  if (!certificate) PetscFunctionReturn(PETSC_SUCCESS);
+  TimingBegin(TIMING_CERTIFICATE);
+  for (int k = 0; k < certificate->n; k++) {
+    Finding here = {.kind = FINDING_NONE};
+
+    PetscCall(JudgePair(certificate, &certificate->pairs[k], states, ts, &here));
+    here.over_h = PetscMax(here.over_h, worst.over_h);
+    if (pair < 0 || FindingWorse(&here, &worst)) {
+      worst = here;
+      pair  = certificate->pairs[k].pair;
+    }
+    worst.over_h = here.over_h;
+  }
+  ToolsPlace(certificate->mesh, u, t);
+  PetscCall(WorstOfAll(certificate->mesh->comm, &worst, &pair));
+  *holds  = (PetscBool)(worst.kind == FINDING_NONE);
+  figures = &certificate->figures;
+  figures->steps++;
+  figures->refused += !*holds;
+  if (*holds) {
+    figures->over_h = PetscMax(figures->over_h, worst.over_h);
+    figures->ratio  = PetscMax(figures->ratio, worst.ratio);
+  } else {
+    PetscCall(Describe(certificate, &worst, pair, text, size));
+  }
+  TimingEnd(TIMING_CERTIFICATE);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  CertificateGetFigures - returns what was found so far.
+
+  Not collective
+
+  Input Parameter:
+. certificate - may be NULL: then nothing was judged
+
+  Output Parameter:
+. figures - the same on all ranks
+@*/
+void CertificateGetFigures(Certificate certificate, CertificateFigures *figures)
+{
+  *figures = certificate ? certificate->figures : (CertificateFigures){.over_h = NAN, .ratio = NAN};
+}
+
+/*@
+  CertificateArchive - saves or loads the figures of the run so far.
+
+  Collective
+
+  Input Parameters:
++ certificate - may be NULL: then nothing is done
+- archive     - decides whether they are saved or loaded
+@*/
+PetscErrorCode CertificateArchive(Certificate certificate, Archive archive)
+{
+  CertificateFigures none = {0}, *figures = certificate ? &certificate->figures : &none;
+  PetscReal         *real[]    = {&figures->over_h, &figures->ratio};
+  PetscInt          *integer[] = {&figures->steps, &figures->refused};
+
+  PetscFunctionBeginUser;
+  PetscCall(ArchiveRealsAt(archive, "certificate/depths", PETSC_STATIC_ARRAY_LENGTH(real), real));
+  PetscCall(ArchiveIntegersAt(archive, "certificate/counts", PETSC_STATIC_ARRAY_LENGTH(integer), integer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,61 @@
+/* Where a point stands to the pieces of the other side, and what has happened to it in a step. Plain C on pieces.
+
+   LookAt() gathers the pieces that a point may meet, PointStand() finds the closest one at one of the two states,
+   PointFinding() follows the point along the step, PieceFindings() the edges of a piece. Each returns the worst of what
+   was found. */
+#pragma once
+#include "base/boxtree.h"
+#include "pieces.h"
+
+/* Two pieces share a closest point where their distances differ by less than this, in parts of the size. */
+#define STAND_TIE 1e-9
+/* Cosine between a point's direction from its closest point and the normals there, from which the point is over a
+   corner and not beside it: behind a concave corner of three square faces it is 0.577. */
+#define STAND_CORNER 0.5
+/* The same where a single piece ends: the point is beside the surface otherwise. */
+#define STAND_END 0.999
+/* A body's own wall that is nearer than this part of its reference distance has been entered (ownbody.h). */
+#define STAND_OWN_WALL 0.25
+/* Part of the height of an element up to which faces may cross where any side of a body may meet any other one: deeper,
+   the other side of a wall would be nearer (ownbody.h). */
+#define STAND_WALL 0.25
+/* Where contact presses at the point or on the face, or an edge is sharp there, faces may cross deeper by this factor:
+   to half a face with the default. Contact holds slave points on a smooth surface, which rounds the edges of the faces
+   that are shown, and it holds no point of the master. Sharp edges so dig in by up to half a face, and this is seen:
+   slave points around the edge press. */
+#define STAND_SEEN 5
+/* Normals whose cosine is below this belong to the two sides of a wall, not of a corner. */
+#define STAND_OPPOSED (-0.5)
+/* Depths below this part of a face are round-off. */
+#define STAND_ROUND_OFF 1e-6
+
+typedef enum { FINDING_NONE, FINDING_DEPTH, FINDING_PASSED, FINDING_EDGES, FINDING_KINDS } FindingKind;
+
+/* The worst that was found. */
+typedef struct {
+  FindingKind kind;    /* FINDING_NONE: within what is allowed */
+  double      ratio;   /* depth over what is allowed; of a passage at least 1 */
+  double      depth;   /* length */
+  double      allowed; /* length */
+  double      over_h;  /* depth without what geometry explains, over the size of the smaller face */
+  long        tag[2];  /* gmsh's tags of the point or of an edge; of a tool -1 - tag. The second is 0 for a point */
+  long        face;    /* gmsh's tag of the face that was passed or is stood in */
+  Place       X;       /* reference place (length) */
+} Finding;
+
+/* The pieces of the other side */
+typedef struct {
+  int              dim;
+  const PieceList *list;
+  BoxTree          tree;
+  int             *found, n_found; /* pieces at hand */
+  double           penetration;    /* allowed depth in parts of the smaller face */
+  double           overlap;        /* depth that the scene leaves (length) */
+  int              walls;          /* any side of a body may meet any other one */
+} Look;
+
+int  LookCreate(int dim, const PieceList *, Look *);
+void LookDestroy(Look *);
+void PointFinding(Look *, const Point *, Finding *worst);
+void PieceFindings(Look *, const Piece *, const Point *const corner[3], Finding *worst);
+int  FindingWorse(const Finding *, const Finding *than);

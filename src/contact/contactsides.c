@@ -1,0 +1,79 @@
+/* What the certificate asks of a pair: its surfaces, where its terms press, overlaps that the scene leaves. */
+#include "contactimpl.h"
+
+/*@
+  ContactPairSides - returns the surfaces of a pair.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Output Parameter:
+. sides - they belong to the contact
+@*/
+void ContactPairSides(Contact contact, int p, ContactSides *sides)
+{
+  const ContactPair *pair = &contact->pairs[p];
+
+  *sides = (ContactSides){.scene    = pair->scene,
+                          .slave    = pair->slave,
+                          .master   = pair->master,
+                          .n_images = pair->scene->listed ? pair->n_images : 1,
+                          .images   = pair->images};
+}
+
+/*@
+  ContactPairPressed - marks the slave nodes of a pair that are closed, now or in the accepted state.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Input/Output Parameter:
+. pressed - pressed[nodes of the mesh]: where it is so, a number above 0 is added on all ranks
+@*/
+PetscErrorCode ContactPairPressed(Contact contact, int p, PetscReal *pressed)
+{
+  const ContactPair *pair = &contact->pairs[p];
+  const Mesh         mesh = contact->mesh;
+  PetscReal         *mine;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes, &mine));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    if (pair->now.status[c] != CONTACT_CLOSED && pair->accepted.status[c] != CONTACT_CLOSED) continue;
+    mine[pair->node[c]] = 1;
+  }
+  PetscCall(MeshSumNodes(mesh, 1, mine));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) pressed[n] += mine[n];
+  PetscCall(PetscFree(mine));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairOverlap - returns the largest overlap that initial_overlap leaves in a pair (length).
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. p       - number of the pair
+- t       - load parameter
+
+  Output Parameter:
+. overlap - not negative, the same on all ranks
+@*/
+PetscErrorCode ContactPairOverlap(Contact contact, int p, PetscReal t, PetscReal *overlap)
+{
+  const ContactPair *pair = &contact->pairs[p];
+
+  PetscFunctionBeginUser;
+  *overlap = 0;
+  for (PetscInt c = 0; c < pair->n_nodes; c++) *overlap = PetscMax(*overlap, -ContactTermOffset(pair, c, t));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, overlap, 1, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,349 @@
+/* Crossings along straight motions, and planted violations: each state is moved by hand, and each is found. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+#include "analytic.h"
+
+enum { MOST = 64 };
+
+/* One side of a planted state: faces of a plate. */
+typedef struct {
+  int   dim;
+  Piece pieces[MOST];
+  int   n;
+} Plate;
+
+/* Adds a piece that is moved from its reference place to two states. */
+static void AddPiece(Plate *plate, const double X[3][3], const double start[3], const double end[3], long tag)
+{
+  Piece *piece = &plate->pieces[plate->n++];
+
+  *piece = (Piece){.face = 100 + plate->n, .size = 1, .height = 1, .body = 1};
+  for (int a = 0; a < plate->dim; a++) {
+    piece->tag[a] = tag + a;
+    for (int d = 0; d < 3; d++) {
+      piece->X[a][d]    = X[a][d];
+      piece->x[0][a][d] = X[a][d] + start[d];
+      piece->x[1][a][d] = X[a][d] + end[d];
+    }
+  }
+}
+
+/* A plate in the plane whose top is y = 0 and whose bottom is y = -thickness; four faces of length 1 on each side. */
+static void PlaneWall(Plate *plate, double thickness, const double start[3], const double end[3])
+{
+  *plate = (Plate){.dim = 2};
+  for (int k = 0; k < 4; k++) {
+    const double top[3][3]    = {{k - 1, 0, 0}, {k - 2, 0, 0}, {0}},
+                 bottom[3][3] = {{k - 2, -thickness, 0}, {k - 1, -thickness, 0}, {0}};
+
+    AddPiece(plate, top, start, end, 1000 + 10 * k);
+    if (thickness > 0) AddPiece(plate, bottom, start, end, 2000 + 10 * k);
+  }
+}
+
+/* The same in space: squares of two triangles each, top z = 0. */
+static void SolidWall(Plate *plate, double thickness, const double start[3], const double end[3])
+{
+  *plate = (Plate){.dim = 3};
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      const double x = i - 1.5, y = j - 1.5, z = -thickness;
+      const double top[2][3][3]    = {{{x, y, 0}, {x + 1, y, 0}, {x + 1, y + 1, 0}},
+                                      {{x, y, 0}, {x + 1, y + 1, 0}, {x, y + 1, 0}}};
+      const double bottom[2][3][3] = {{{x, y, z}, {x + 1, y + 1, z}, {x + 1, y, z}},
+                                      {{x, y, z}, {x, y + 1, z}, {x + 1, y + 1, z}}};
+
+      for (int k = 0; k < 2; k++) {
+        AddPiece(plate, top[k], start, end, 10000 + 100 * (3 * i + j) + 10 * k);
+        if (thickness > 0) AddPiece(plate, bottom[k], start, end, 20000 + 100 * (3 * i + j) + 10 * k);
+      }
+    }
+  }
+}
+
+static const double still[3] = {0, 0, 0};
+
+/* A point of another body that looks along `normal`. */
+static Point MakePoint(const double from[3], const double to[3], const double normal[3])
+{
+  Point point = {.tag = 7, .size = 1, .height = 1, .body = 2, .weight = 1};
+
+  memcpy(point.X, from, sizeof(Place));
+  memcpy(point.x[0], from, sizeof(Place));
+  memcpy(point.x[1], to, sizeof(Place));
+  for (int state = 0; state < 2; state++) memcpy(point.normal[state], normal, sizeof(Place));
+  return point;
+}
+
+static Finding JudgePoint(Plate *plate, const Point *point, int walls)
+{
+  const PieceList list  = {plate->n, plate->pieces};
+  Look            look  = {.penetration = 0.1, .walls = walls};
+  Finding         worst = {.kind = FINDING_NONE};
+
+  assert_true(LookCreate(plate->dim, &list, &look));
+  PointFinding(&look, point, &worst);
+  LookDestroy(&look);
+  return worst;
+}
+
+static Finding MovePoint(Plate *plate, const double from[3], const double to[3])
+{
+  const double down[3] = {0, plate->dim == 2 ? -1 : 0, plate->dim == 3 ? -1 : 0};
+  const Point  point   = MakePoint(from, to, down);
+
+  return JudgePoint(plate, &point, 0);
+}
+
+#define AT(...) ((const double[3]){__VA_ARGS__})
+
+static void CrossingsHaveClosedForms(void **context)
+{
+  const Place segment[2] = {{1, 0, 0}, {-1, 0, 0}}, lifted[2] = {{1, 1, 0}, {-1, 1, 0}};
+  const Place triangle[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  Crossing    crossing[SWEEP_MAX];
+
+  (void)context;
+  assert_int_equal(SweepPoint(2, segment, segment, AT(0, 1, 0), AT(0, -3, 0), crossing), 1);
+  assert_true(fabs(crossing[0].s - 0.25) < 1e-14 && crossing[0].inward);
+  assert_int_equal(SweepPoint(2, segment, lifted, AT(0, 0.5, 0), AT(0, 0.5, 0), crossing), 1);
+  assert_true(fabs(crossing[0].s - 0.5) < 1e-14);
+  assert_int_equal(SweepPoint(2, segment, segment, AT(1.5, 1, 0), AT(1.5, -1, 0), crossing), 0);
+  assert_int_equal(SweepPoint(3, triangle, triangle, AT(0.2, 0.2, -1), AT(0.2, 0.2, 3), crossing), 1);
+  assert_true(fabs(crossing[0].s - 0.25) < 1e-14 && !crossing[0].inward);
+  assert_int_equal(SweepPoint(3, triangle, triangle, AT(0.9, 0.9, 1), AT(0.9, 0.9, -1), crossing), 0);
+}
+
+/* A triangle that turns: the time of crossing is that of a fine sampling. */
+static void TurningTriangleIsCrossed(void **context)
+{
+  const Place start[3] = {{-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}}, end[3] = {{-1, -1, 0.3}, {2, 0, 1}, {-1, 1, -0.5}};
+  const Place from = {0.1, 0.2, 0.8}, to = {-0.2, 0.1, -0.7};
+  Crossing    crossing[SWEEP_MAX];
+  double      before = 1, when = -1;
+
+  (void)context;
+  assert_int_equal(SweepPoint(3, start, end, from, to, crossing), 1);
+  for (int k = 0; k <= 100000 && when < 0; k++) {
+    const double s = k / 100000.0;
+    double       x[3][3], p[3], front;
+
+    for (int d = 0; d < 3; d++) {
+      for (int a = 0; a < 3; a++) x[a][d] = (1 - s) * start[a][d] + s * end[a][d];
+      p[d] = (1 - s) * from[d] + s * to[d];
+    }
+    front = PieceFront(3, (const Place *)x, p);
+    if (before > 0 && front <= 0) when = s;
+    before = front;
+  }
+  assert_true(fabs(crossing[0].s - when) < 2e-5);
+}
+
+static void EdgesCross(void **context)
+{
+  const Place a[2] = {{-1, 0, 1}, {1, 0, 1}}, below[2] = {{-1, 0, -0.5}, {1, 0, -0.5}}, b[2] = {{0, -1, 0}, {0, 1, 0}};
+  const Place aside[2] = {{1, 0, -0.5}, {3, 0, -0.5}};
+  EdgeEnd     end;
+
+  (void)context;
+  assert_int_equal(SweepEdges(a, below, b, b, &end), 1);
+  assert_true(end.over && fabs(end.distance + 0.5) < 1e-14);
+  assert_int_equal(SweepEdges(a, a, b, b, &end), 0);
+  assert_int_equal(SweepEdges(a, aside, b, b, &end), 0); /* it left sideways before it came down */
+}
+
+static void FacesDivideWithTheirNormals(void **context)
+{
+  static const ElementType types[] = {ELEMENT_EDGE2, ELEMENT_EDGE3, ELEMENT_TRI3,
+                                      ELEMENT_TRI6,  ELEMENT_QUAD4, ELEMENT_QUAD9};
+
+  (void)context;
+  for (size_t k = 0; k < sizeof(types) / sizeof(*types); k++) {
+    const Element *element = ElementGet(types[k]);
+    const int      dim     = element->dim + 1;
+    int            node[PIECE_MAX][3], n = PieceDivide(types[k], node);
+    double         area = 0;
+
+    for (int i = 0; i < n; i++) {
+      double x[3][3] = {{0}}, normal[3];
+
+      for (int a = 0; a < dim; a++)
+        for (int d = 0; d < element->dim; d++) x[a][d] = element->node[node[i][a]][d];
+      PieceNormal(dim, (const Place *)x, normal);
+      assert_true(fabs(normal[dim - 1] - (dim == 2 ? -1 : 1)) < 1e-14);
+      area += dim == 2 ? x[1][0] - x[0][0]
+                       : 0.5 * ((x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) - (x[2][0] - x[0][0]) * (x[1][1] - x[0][1]));
+    }
+    assert_true(fabs(area - (dim == 2 ? 2 : element->corners == 3 ? 0.5 : 4)) < 1e-14);
+  }
+}
+
+/* The sagitta of chords of a circle is h^2/8R to the second order. */
+static void ChordsHaveTheirHeight(void **context)
+{
+  const double h = 0.1, R = 2, angle = asin(h / 2 / R);
+  const Place  x[2] = {{h / 2, 0, 0}, {-h / 2, 0, 0}},
+              n[2]  = {{sin(angle), cos(angle), 0}, {-sin(angle), cos(angle), 0}};
+
+  (void)context;
+  assert_true(fabs(PieceHeight(2, x, n, 0.9) / (h * h / 8 / R) - 1) < 1e-3);
+}
+
+static void HonestStatesHold(void **context)
+{
+  Plate plate;
+  Point point;
+
+  (void)context;
+  PlaneWall(&plate, 0.2, still, still);
+  assert_int_equal(MovePoint(&plate, AT(0.3, 1, 0), AT(0.3, 0.1, 0)).kind, FINDING_NONE);
+  assert_int_equal(MovePoint(&plate, AT(0.3, 0.1, 0), AT(0.6, -0.05, 0)).kind, FINDING_NONE); /* shallow */
+  assert_int_equal(MovePoint(&plate, AT(0.3, -0.05, 0), AT(0.6, 0.1, 0)).kind, FINDING_NONE);
+  assert_int_equal(MovePoint(&plate, AT(3, 1, 0), AT(3, -1, 0)).kind, FINDING_NONE); /* beside the wall */
+  point        = MakePoint(AT(0.3, 0.1, 0), AT(0.3, -0.3, 0), AT(0, -1, 0));
+  point.closed = point.seen = 1; /* contact presses and holds the point by a soft penalty */
+  PlaneWall(&plate, 0, still, still);
+  assert_int_equal(JudgePoint(&plate, &point, 0).kind, FINDING_NONE);
+  SolidWall(&plate, 0.2, still, still);
+  assert_int_equal(MovePoint(&plate, AT(0.3, 0.1, 1), AT(0.3, 0.2, -0.05)).kind, FINDING_NONE);
+  PlaneWall(&plate, 1, still, still); /* the wall's own top is no partner of a point of its bottom */
+  point      = MakePoint(AT(0.25, -1, 0), AT(0.25, -1, 0), AT(0, -1, 0));
+  point.body = 1;
+  assert_int_equal(JudgePoint(&plate, &point, 1).kind, FINDING_NONE);
+}
+
+/* Points: 1 to 8 of the planted violations. */
+static void PlantedPointsAreFound(void **context)
+{
+  Plate   plate;
+  Finding finding;
+  Point   point;
+
+  (void)context;
+  PlaneWall(&plate, 0.05, still, still); /* 1: a thin wall is passed in one step */
+  finding = MovePoint(&plate, AT(0.3, 1, 0), AT(0.3, -1, 0));
+  assert_int_equal(finding.kind, FINDING_PASSED);
+  assert_int_equal(finding.tag[0], 7);
+  /* 2: a point that stood a little behind the top comes out at the bottom */
+  assert_int_equal(MovePoint(&plate, AT(0.3, -0.01, 0), AT(0.3, -0.2, 0)).kind, FINDING_PASSED);
+  /* 3: it goes so far that the bottom is nearer */
+  PlaneWall(&plate, 0.3, still, still);
+  point              = MakePoint(AT(0.3, 0.2, 0), AT(0.3, -0.25, 0), AT(0, -1, 0));
+  point.normal[1][1] = 1;
+  assert_int_equal(JudgePoint(&plate, &point, 0).kind, FINDING_PASSED);
+  /* 4: too deep */
+  assert_int_equal(MovePoint(&plate, AT(0.3, 0.1, 0), AT(0.3, -0.14, 0)).kind, FINDING_DEPTH);
+  PlaneWall(&plate, 0.05, still, AT(0, 3, 0)); /* 5: the wall moves, the point does not */
+  assert_int_equal(MovePoint(&plate, AT(0.3, 1, 0), AT(0.3, 1, 0)).kind, FINDING_PASSED);
+  PlaneWall(&plate, 0, still, still); /* 6: a single sheet is passed, and nothing is behind it */
+  assert_int_not_equal(MovePoint(&plate, AT(0.3, 1, 0), AT(0.3, -5, 0)).kind, FINDING_NONE);
+  SolidWall(&plate, 0.05, still, still); /* 7: a wall in space */
+  assert_int_equal(MovePoint(&plate, AT(0.3, 0.1, 1), AT(0.4, 0.2, -1)).kind, FINDING_PASSED);
+  PlaneWall(&plate, 1, still, AT(0, -0.9, 0)); /* 8: a body's own other side, crushed to a tenth */
+  for (int k = 0; k < plate.n; k++)
+    if (plate.pieces[k].x[0][0][1] < -0.5) memcpy(plate.pieces[k].x[1], plate.pieces[k].x[0], sizeof(Place[3]));
+  point      = MakePoint(AT(0.25, 0.5, 0), AT(0.25, -1.2, 0), AT(0, -1, 0));
+  point.body = 1;
+  assert_int_equal(JudgePoint(&plate, &point, 1).kind, FINDING_PASSED);
+}
+
+/* Judges the edges of a piece of another body. */
+static Finding JudgePiece(Plate *plate, const double from[3][3], const double to[3][3], int closed)
+{
+  const PieceList list      = {plate->n, plate->pieces};
+  Look            look      = {.penetration = 0.1};
+  Finding         worst     = {.kind = FINDING_NONE};
+  Piece           piece     = {.size = 1, .height = 1, .body = 2, .closed = closed, .seen = closed};
+  Point           points[3] = {{.tag = 0}};
+  const Point    *corner[3] = {&points[0], &points[1], &points[2]};
+  double          normal[3];
+
+  PieceNormal(plate->dim, to, normal);
+  for (int a = 0; a < plate->dim; a++) {
+    points[a]     = MakePoint(from[a], to[a], normal);
+    points[a].tag = piece.tag[a] = 50 + a;
+    memcpy(piece.X[a], from[a], sizeof(Place));
+    memcpy(piece.x[0][a], from[a], sizeof(Place));
+    memcpy(piece.x[1][a], to[a], sizeof(Place));
+  }
+  assert_true(LookCreate(plate->dim, &list, &look));
+  PieceFindings(&look, &piece, corner, &worst);
+  LookDestroy(&look);
+  return worst;
+}
+
+/* Faces and edges: 9 to 11. */
+static void PlantedFacesAreFound(void **context)
+{
+  const double up[3][3]     = {{-2, 0.1, 0.5}, {0.2, 2, 0.5}, {2, 0.1, 0.5}},
+               down[3][3]   = {{-2, 0.1, -0.3}, {0.2, 2, -0.3}, {2, 0.1, -0.3}};
+  const double above[3][3]  = {{-2, 0.5, 0}, {2, 0.5, 0}, {0}};
+  const double across[3][3] = {{-2, -0.3, 0}, {2, -0.3, 0}, {0}};
+  Plate        plate        = {.dim = 2};
+
+  (void)context;
+  AddPiece(&plate, (const double[3][3]){{0, 0, 0}, {-0.5, -1, 0}, {0}}, still, still, 1000); /* 9: a tip in a face */
+  AddPiece(&plate, (const double[3][3]){{0.5, -1, 0}, {0, 0, 0}, {0}}, still, still, 1002);
+  assert_int_equal(JudgePiece(&plate, above, above, 0).kind, FINDING_NONE);
+  assert_int_equal(JudgePiece(&plate, above, across, 0).kind, FINDING_DEPTH);
+  plate = (Plate){.dim = 3}; /* 10: two edges cross, and no corner is near */
+  AddPiece(&plate, (const double[3][3]){{0, -2, 0}, {2, 0, 0}, {0, 2, 0}}, still, still, 1000);
+  assert_int_equal(JudgePiece(&plate, up, up, 0).kind, FINDING_NONE);
+  assert_int_equal(JudgePiece(&plate, up, down, 0).kind, FINDING_EDGES);
+  /* 11: the same where the other one moves */
+  plate = (Plate){.dim = 3};
+  AddPiece(&plate, (const double[3][3]){{0, -2, 0}, {2, 0, 0}, {0, 2, 0}}, still, AT(0, 0, 0.8), 1000);
+  assert_int_equal(JudgePiece(&plate, up, up, 0).kind, FINDING_EDGES);
+}
+
+/* Analytic tools: 12 to 14. */
+static void PlantedToolsAreFound(void **context)
+{
+  AnalyticTool tool = {.dim = 2, .surface = {.shape = ANALYTIC_SPHERE, .radius = 0.1}, .penetration = 0.1};
+  Point        point;
+  Piece        piece = {.size = 1, .height = 1, .tag = {1, 2}};
+  Finding      worst = {.kind = FINDING_NONE};
+
+  (void)context;
+  for (int state = 0; state < 2; state++) tool.axis[state][2] = 1;
+  tool.surface = (AnalyticSurface){.shape = ANALYTIC_CYLINDER, .axis = {0, 0, 1}, .radius = 0.4};
+  point        = MakePoint(AT(0, 1, 0), AT(0, -1, 0), AT(0, -1, 0));
+  AnalyticPointFinding(&tool, &point, &worst); /* 12: a point passes a needle */
+  assert_int_equal(worst.kind, FINDING_PASSED);
+  worst = (Finding){.kind = FINDING_NONE};
+  point = MakePoint(AT(0, 1, 0), AT(0, 0.2, 0), AT(0, -1, 0));
+  AnalyticPointFinding(&tool, &point, &worst); /* 13: it stands in it */
+  assert_int_equal(worst.kind, FINDING_DEPTH);
+  worst               = (Finding){.kind = FINDING_NONE};
+  tool.surface.radius = 0.05; /* 14: the needle passes between two points */
+  for (int state = 0; state < 2; state++) {
+    const double y = state ? -1 : 1;
+
+    memcpy(piece.x[state][0], AT(-0.5, y, 0), sizeof(Place));
+    memcpy(piece.x[state][1], AT(0.5, y, 0), sizeof(Place));
+  }
+  AnalyticPieceFinding(&tool, &piece, &worst);
+  assert_int_equal(worst.kind, FINDING_PASSED);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(CrossingsHaveClosedForms),
+    cmocka_unit_test(TurningTriangleIsCrossed),
+    cmocka_unit_test(EdgesCross),
+    cmocka_unit_test(FacesDivideWithTheirNormals),
+    cmocka_unit_test(ChordsHaveTheirHeight),
+    cmocka_unit_test(HonestStatesHold),
+    cmocka_unit_test(PlantedPointsAreFound),
+    cmocka_unit_test(PlantedFacesAreFound),
+    cmocka_unit_test(PlantedToolsAreFound),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
