@@ -1,5 +1,5 @@
-/* The foot of a slave point on a face of the master, the nodal forces of its friction there, and the lever that balances
-   their moments. */
+/* The foot of a slave point on a face of the master, the nodal forces of its friction there, and the lever that
+   balances their moments. */
 #include "frictionfoot.h"
 #include <math.h>
 #include <string.h>
