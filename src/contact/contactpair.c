@@ -45,6 +45,12 @@ static PetscErrorCode NodeHeights(Mesh mesh, ContactSurface slave, PetscReal *he
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Friction against a master with faces needs levers. */
+static PetscBool HasLevers(const ContactPair *pair)
+{
+  return (PetscBool)(pair->scene->friction && pair->master);
+}
+
 /* Makes slave points that are the nodes of the terms. */
 static PetscErrorCode PairCreateNodePoints(Mesh mesh, ContactPair *pair)
 {
@@ -54,7 +60,8 @@ static PetscErrorCode PairCreateNodePoints(Mesh mesh, ContactPair *pair)
   PetscCall(PetscMalloc2(mesh->n_nodes, &of_nodes, pair->n, &height));
   PetscCall(NodeHeights(mesh, pair->slave, of_nodes));
   for (PetscInt c = 0; c < pair->n; c++) height[c] = of_nodes[pair->node[c]];
-  PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, pair->size, height, &pair->slaves));
+  PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, pair->size, height, HasLevers(pair),
+                                   &pair->slaves));
   PetscCall(PetscFree2(of_nodes, height));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -202,7 +209,7 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
 
   PetscFunctionBeginUser;
   if (pair->formulation.surface) {
-    PetscCall(SlavePointsCreateQuadrature(pair->slave, scene->geometry, finer, &pair->slaves));
+    PetscCall(SlavePointsCreateQuadrature(pair->slave, scene->geometry, finer, HasLevers(pair), &pair->slaves));
     PetscCall(PairChooseNodes(mesh, scene, pair));
     PetscCall(OffsetsCreate(mesh, scene, loads, pair->slave, pair->n_images, pair->images, pair->fit.feature_angle,
                             finer, pair->formulation.offsets, &pair->slave_offsets));

@@ -86,7 +86,7 @@ PetscErrorCode ContactPairProject(Contact contact, ContactPair *pair, const Pets
   if (pair->projected && !moved) PetscFunctionReturn(PETSC_SUCCESS);
   pair->projected = PETSC_TRUE;
   ContactVariationsReset(pair->variations);
-  if (pair->friction) FrictionForget(pair);
+  if (pair->friction) PetscCall(FrictionForget(pair));
   PetscCall(PetscLogEventBegin(contact->event_project, 0, 0, 0, 0));
   if (pair->fit.fitted) TimingBegin(TIMING_FIT);
   if (pair->fit.fitted) PetscCall(PetscLogEventBegin(contact->event_fit, 0, 0, 0, 0));

@@ -21,7 +21,8 @@ PetscErrorCode FrictionCreate(ContactPair *pair)
   f->automatic = pair->scene->stick_penalty > 0 ? pair->scene->stick_penalty : PetscMin(pair->initial, pair->automatic);
   f->stiffness = f->automatic;
   PetscCall(PetscCalloc6(q, &f->face, 2 * q, &f->xi, 3 * q, &f->off, 3 * q, &f->place, q, &f->at, 3 * q, &f->force));
-  PetscCall(PetscCalloc4(q, &f->foot, q, &f->facet, q, &f->known, q, &f->first));
+  PetscCall(PetscCalloc5(q, &f->foot, q, &f->facet, q, &f->known, q, &f->first, q, &f->lever));
+  PetscCall(PetscCalloc1(pair->slaves->lever_ptr ? pair->slaves->lever_ptr[q] : 0, &f->lever_node));
   PetscCall(
     PetscCalloc6(n, &f->anchored, 2 * n, &f->kept, 2 * n, &f->heading, n, &f->began, n, &f->axis, n, &f->guide));
   PetscCall(PetscCalloc4(3 * n, &f->nodal, n, &f->elastic, 3 * n, &f->traction, n, &f->status));
@@ -38,7 +39,8 @@ PetscErrorCode FrictionDestroy(Friction *friction)
   PetscFunctionBeginUser;
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree6(f->face, f->xi, f->off, f->place, f->at, f->force));
-  PetscCall(PetscFree4(f->foot, f->facet, f->known, f->first));
+  PetscCall(PetscFree5(f->foot, f->facet, f->known, f->first, f->lever));
+  PetscCall(PetscFree(f->lever_node));
   PetscCall(PetscFree6(f->anchored, f->kept, f->heading, f->began, f->axis, f->guide));
   PetscCall(PetscFree4(f->nodal, f->elastic, f->traction, f->status));
   PetscCall(PetscFree(f->turns));
@@ -47,17 +49,23 @@ PetscErrorCode FrictionDestroy(Friction *friction)
 }
 
 /* Forgets what belongs to the last projection, because points have moved or lists are new, and finds the anchors' faces
-   in the lists in force. */
-void FrictionForget(const ContactPair *pair)
+   and the levers' nodes in the lists in force. */
+PetscErrorCode FrictionForget(const ContactPair *pair)
 {
-  Friction f = pair->friction;
+  const SlavePoints slaves = pair->slaves;
+  Friction          f      = pair->friction;
 
+  PetscFunctionBeginUser;
   f->turns_used = 0;
+  for (PetscInt k = 0; slaves->lever_ptr && k < slaves->lever_ptr[slaves->n]; k++)
+    PetscCall(PetscFindInt(slaves->nodes[slaves->lever_node[k]].id, pair->lists->n_deformable, pair->lists->node_id,
+                           &f->lever_node[k]));
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
     f->known[q] = PETSC_FALSE;
     f->first[q] = -1;
     f->at[q]    = pair->master && f->face[q] >= 0 ? NeighbourListsFindFace(pair->lists, f->face[q]) : -1;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Nodes of the face of slave point q with their shares, without offsets and live maps. Returns their number. */
@@ -154,7 +162,40 @@ static PetscBool FindFoot(const ContactPair *pair, PetscInt q, const PetscReal n
   return f->facet[q] >= 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Gets the foot of slave point q at the last projection, along its own part of the first variation. */
+/* The nodes of the lever of slave point q, with two slopes for each. Returns their number. */
+PetscInt FrictionLeverNodes(const ContactPair *pair, PetscInt q, const PetscInt **node, const PetscReal **slope)
+{
+  const SlavePoints slaves = pair->slaves;
+  const PetscInt    first  = slaves->lever_ptr[q];
+
+  *node  = &pair->friction->lever_node[first];
+  *slope = &slaves->lever_slope[2 * first];
+  return slaves->lever_ptr[q + 1] - first;
+}
+
+/* Makes the lever of slave point q. Where its tangents span nothing, because a face has collapsed, it has no forces. */
+static void MakeLever(const ContactPair *pair, PetscInt q, const PetscReal normal[3])
+{
+  const NeighbourLists lists         = pair->lists;
+  const int            dim           = lists->dim;
+  PetscReal            tangent[2][3] = {{0, 0, 0}, {0, 0, 0}};
+  const PetscInt      *node;
+  const PetscReal     *slope;
+  const PetscInt       n = FrictionLeverNodes(pair, q, &node, &slope);
+
+  for (PetscInt k = 1; k < n; k++) { /* the sum of the slopes is 0, so that the first node may be the origin */
+    for (int d = 0; d < dim; d++) {
+      const PetscReal x = (lists->X[node[k] * dim + d] - lists->X[node[0] * dim + d]) +
+                          (lists->u[node[k] * dim + d] - lists->u[node[0] * dim + d]);
+
+      for (int a = 0; a < dim - 1; a++) tangent[a][d] += slope[2 * k + a] * x;
+    }
+  }
+  if (!FrictionLeverMake(dim, normal, tangent, &pair->friction->lever[q])) pair->friction->lever[q].tangents = 0;
+}
+
+/* Gets the foot of slave point q at the last projection, along its own part of the first variation, and makes its
+   lever. */
 PetscErrorCode FrictionPointFoot(const ContactPair *pair, PetscInt q, const FrictionFoot **foot, PetscBool *found)
 {
   const int dim       = pair->mesh->dim;
@@ -168,6 +209,7 @@ PetscErrorCode FrictionPointFoot(const ContactPair *pair, PetscInt q, const Fric
   if (*found && !f->known[q]) {
     for (int d = 0; d < dim; d++) normal[d] = pair->variations->own[q * dim + d];
     *found = FindFoot(pair, q, normal);
+    if (*found) MakeLever(pair, q, normal);
   } else if (*found)
     *found = (PetscBool)(f->facet[q] >= 0);
   f->known[q] = PETSC_TRUE;
@@ -608,13 +650,14 @@ PetscErrorCode FrictionTerm(const ContactPair *pair, PetscInt c, PetscReal t, Fr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a force F on slave point q, and its reaction on the master, to the values of the contact nodes. */
+/* Adds a force F on slave point q, its reaction on the master and its lever's to the values of the contact nodes. */
 PetscErrorCode FrictionPointForces(const ContactPair *pair, PetscInt q, const PetscReal F[3], PetscReal *values)
 {
   const int           dim = pair->mesh->dim;
-  const PetscReal    *S;
+  const PetscReal    *S, *slope;
   const PetscInt     *node;
   const PetscInt      n = FrictionOwnNodes(pair, q, &node, &S);
+  PetscInt            n_lever;
   const FrictionFoot *foot;
   PetscBool           found;
 
@@ -624,14 +667,21 @@ PetscErrorCode FrictionPointForces(const ContactPair *pair, PetscInt q, const Pe
   if (pair->master && !found) PetscFunctionReturn(PETSC_SUCCESS); /* what has no reaction is no force */
   for (PetscInt a = 0; a < n; a++)
     for (int d = 0; d < dim; d++) values[node[a] * dim + d] += S[a] * F[d];
-  for (int k = 0; found && k < foot->nodes; k++) {
-    PetscReal force[3][3], sign[3];
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < foot->nodes; k++) {
+    PetscReal sign[3];
     PetscInt  at;
 
-    FrictionFootForces(foot, k, force);
     FrictionNodeSign(pair, FrictionFootPoint(pair, q, k), &at, sign);
+    for (int d = 0; d < dim; d++) values[at * dim + d] -= sign[d] * foot->N[k] * F[d];
+  }
+  n_lever = FrictionLeverNodes(pair, q, &node, &slope);
+  for (PetscInt k = 0; k < n_lever; k++) {
+    PetscReal force[3][3];
+
+    FrictionLeverForces(&pair->friction->lever[q], foot, &slope[2 * k], force);
     for (int d = 0; d < dim; d++)
-      values[at * dim + d] += sign[d] * (force[d][0] * F[0] + force[d][1] * F[1] + force[d][2] * F[2]);
+      values[node[k] * dim + d] += force[d][0] * F[0] + force[d][1] * F[1] + force[d][2] * F[2];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

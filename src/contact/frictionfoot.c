@@ -1,4 +1,5 @@
-/* The foot of a slave point on a face of the master, and the nodal forces of its friction there. */
+/* The foot of a slave point on a face of the master, the nodal forces of its friction there, and the lever that
+   balances their moments. */
 #include "frictionfoot.h"
 #include <math.h>
 #include <string.h>
@@ -51,11 +52,10 @@ static double Outside(const Element *e, const double xi[2])
    axis. */
 static void Shapes(int dim, const Element *e, const double *x, FrictionFoot *f, double y[3], double tangent[2][3])
 {
-  double dN[FACE_MAX_NODES * 2], d2N[FACE_MAX_NODES * 4];
+  double dN[FACE_MAX_NODES * 2];
 
-  ElementShape(e->type, f->xi, f->N, dN, d2N);
+  ElementShape(e->type, f->xi, f->N, dN, NULL);
   memset(tangent, 0, 2 * sizeof(*tangent));
-  memset(f->bend, 0, sizeof(f->bend));
   for (int d = 0; d < 3; d++) y[d] = 0;
   if (dim == 2) tangent[1][2] = 1;
   for (int k = 0; k < e->nodes; k++) {
@@ -63,10 +63,6 @@ static void Shapes(int dim, const Element *e, const double *x, FrictionFoot *f, 
     for (int a = 0; a < e->dim; a++) {
       f->dN[k][a] = dN[k * e->dim + a];
       for (int d = 0; d < dim; d++) tangent[a][d] += f->dN[k][a] * x[k * dim + d];
-      for (int b = 0; b < e->dim; b++) {
-        f->d2N[k][a][b] = d2N[(k * e->dim + a) * e->dim + b];
-        for (int d = 0; d < dim; d++) f->bend[a][b][d] += f->d2N[k][a][b] * x[k * dim + d];
-      }
     }
   }
 }
@@ -120,58 +116,8 @@ int FrictionFootFind(int dim, ElementType type, const double *x, const double no
 }
 
 /*@
-  FrictionFootForces - gives the force on a node of the face as a linear map of the force of the slave point.
-
-  Not collective
-
-  Input Parameters:
-+ foot - the foot
-- node - of the face
-
-  Output Parameter:
-. force - the force on the node is force F; that on the slave point is F itself
-
-  Note:
-  Plain C.
-@*/
-void FrictionFootForces(const FrictionFoot *foot, int node, double force[3][3])
-{
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) {
-      force[i][j] = i == j ? -foot->N[node] : 0;
-      for (int a = 0; a < foot->tangents; a++)
-        force[i][j] += foot->distance * foot->dN[node][a] * foot->normal[i] * foot->inverse[1 + a][j];
-    }
-  }
-}
-
-/* The change of F^a where the force is held: G D[c; F] = -c Dn - F^b Dy_,b, with Dy_,b = sum_k N_k,b dx_k + y_,ba Dxi_a
-   and G [Ddistance; Dxi] = w - distance Dn. */
-static void VaryComponents(const FrictionFoot *f, const double part[3], int a, double by_place[3], double by_normal[3],
-                           double by_tangent[2][3])
-{
-  const double *row = f->inverse[1 + a];
-
-  for (int j = 0; j < 3; j++) {
-    double bent = 0;
-
-    for (int b = 0; b < f->tangents; b++) {
-      for (int c = 0; c < f->tangents; c++) {
-        double along = 0;
-
-        for (int d = 0; d < 3; d++) along += row[d] * f->bend[b][c][d];
-        bent += part[1 + b] * along * f->inverse[1 + c][j];
-      }
-      by_tangent[b][j] = -part[1 + b] * row[j];
-    }
-    by_place[j]  = -bent;
-    by_normal[j] = -part[0] * row[j] + f->distance * bent;
-  }
-}
-
-/*@
-  FrictionFootVary - gives the derivatives of the force on a node of the face, where the force of the slave point is
-held.
+  FrictionFootVary - gives the derivatives of the force on a node of the master's face, where the force of the slave
+  point is held.
 
   Not collective
 
@@ -184,34 +130,113 @@ held.
 . by - the derivatives
 
   Note:
+  With G = (n, y_,1, y_,2) and G (Ddistance, Dxi) = w - distance Dn, the force -N_k F changes by -F N_k,a Dxi_a.
   Plain C.
 @*/
 void FrictionFootVary(const FrictionFoot *foot, const double F[3], int node, FrictionFootVariation *by)
 {
-  const double *n = foot->normal, distance = foot->distance;
-  double        part[3] = {0, 0, 0}; /* c and F^a */
+  memset(by, 0, sizeof(*by));
+  for (int a = 0; a < foot->tangents; a++) {
+    for (int i = 0; i < 3; i++) {
+      for (int j = 0; j < 3; j++) {
+        const double change = F[i] * foot->dN[node][a] * foot->inverse[1 + a][j];
+
+        by->by_place[i][j] -= change;
+        by->by_normal[i][j] += foot->distance * change;
+      }
+    }
+  }
+}
+
+/*@
+  FrictionLeverMake - makes the lever of a slave point.
+
+  Not collective
+
+  Input Parameters:
++ dim     - 2 or 3
+. normal  - of the slave point, as that of the foot
+- tangent - z_1 and z_2; z_2 does not count in two dimensions
+
+  Output Parameter:
+. lever - the lever
+
+  Note:
+  Returns 0 where the tangents and the normal span no space. Plain C.
+@*/
+int FrictionLeverMake(int dim, const double normal[3], const double tangent[2][3], FrictionLever *lever)
+{
+  const double axis[3] = {0, 0, 1};
+
+  lever->tangents = dim - 1;
+  return Invert(normal, tangent[0], dim == 2 ? axis : tangent[1], lever->inverse);
+}
+
+/*@
+  FrictionLeverForces - gives the force on a node of the lever as a linear map of the force of the slave point.
+
+  Not collective
+
+  Input Parameters:
++ lever - the lever
+. foot  - the foot of its slave point
+- slope - D of the node
+
+  Output Parameter:
+. force - the force on the node is force F
+
+  Note:
+  Plain C.
+@*/
+void FrictionLeverForces(const FrictionLever *lever, const FrictionFoot *foot, const double slope[2],
+                         double force[3][3])
+{
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      force[i][j] = 0;
+      for (int a = 0; a < lever->tangents; a++)
+        force[i][j] += foot->distance * slope[a] * foot->normal[i] * lever->inverse[1 + a][j];
+    }
+  }
+}
+
+/*@
+  FrictionLeverVary - gives the derivatives of the force on a node of the lever, where the force of the slave point is
+  held.
+
+  Not collective
+
+  Input Parameters:
++ lever - the lever
+. foot  - the foot of its slave point
+. F     - the force of the slave point
+- slope - D of the node
+
+  Output Parameter:
+. by - the derivatives
+
+  Note:
+  With Z = (n, z_1, z_2), Z D(c, F^a) = -c Dn - F^b Dz_b. Plain C.
+@*/
+void FrictionLeverVary(const FrictionLever *lever, const FrictionFoot *foot, const double F[3], const double slope[2],
+                       FrictionFootVariation *by)
+{
+  const double *n = foot->normal, *away = foot->inverse[0], distance = foot->distance;
+  double        part[3] = {0, 0, 0}, row[3] = {0, 0, 0}, sum = 0; /* c and F^a; sum_a D_a times row a; sum_a D_a F^a */
 
   memset(by, 0, sizeof(*by));
-  for (int i = 0; i < 1 + foot->tangents; i++)
-    for (int d = 0; d < 3; d++) part[i] += foot->inverse[i][d] * F[d];
-  for (int a = 0; a < foot->tangents; a++) {
-    const double dN = foot->dN[node][a];
-    double       place[3], normal[3], tangent[2][3], bend = 0; /* of F^a; bend: factor of Dxi_a, of all F^b N_k,ba */
-
-    VaryComponents(foot, part, a, place, normal, tangent);
-    for (int b = 0; b < foot->tangents; b++) bend += foot->d2N[node][b][a] * part[1 + b];
-    for (int i = 0; i < 3; i++) {
-      by->by_normal[i][i] += distance * dN * part[1 + a];
-      for (int j = 0; j < 3; j++) {
-        const double along = foot->inverse[1 + a][j], away = foot->inverse[0][j]; /* Dxi_a and Ddistance by w */
-
-        by->by_place[i][j] +=
-          -F[i] * dN * along + n[i] * (dN * part[1 + a] * away + distance * bend * along + distance * dN * place[j]);
-        by->by_normal[i][j] += distance * F[i] * dN * along -
-                               distance * n[i] * (dN * part[1 + a] * away + distance * bend * along) +
-                               distance * dN * n[i] * normal[j];
-        for (int b = 0; b < foot->tangents; b++) by->by_tangent[b][i][j] += distance * dN * n[i] * tangent[b][j];
-      }
+  for (int i = 0; i < 1 + lever->tangents; i++)
+    for (int d = 0; d < 3; d++) part[i] += lever->inverse[i][d] * F[d];
+  for (int a = 0; a < lever->tangents; a++) {
+    sum += slope[a] * part[1 + a];
+    for (int d = 0; d < 3; d++) row[d] += slope[a] * lever->inverse[1 + a][d];
+  }
+  for (int i = 0; i < 3; i++) {
+    by->by_normal[i][i] += distance * sum;
+    for (int j = 0; j < 3; j++) {
+      by->by_place[i][j] += sum * n[i] * away[j];
+      by->by_normal[i][j] -= distance * n[i] * (sum * away[j] + part[0] * row[j]);
+      for (int b = 0; b < lever->tangents; b++) by->by_tangent[b][i][j] -= distance * part[1 + b] * n[i] * row[j];
     }
   }
 }

@@ -79,11 +79,13 @@ static void AddAnchorNodes(const ContactPair *pair, PetscInt q)
   }
 }
 
-/* Adds the nodes of the foot's face of slave point q to the list of nodes. */
+/* Adds the nodes of the foot's face of slave point q and of its lever to the list of nodes. */
 static PetscErrorCode AddFootNodes(const ContactPair *pair, PetscInt q)
 {
   const FrictionFoot *foot;
   PetscBool           found;
+  const PetscInt     *lever;
+  const PetscReal    *slope;
 
   PetscFunctionBeginUser;
   PetscCall(FrictionPointFoot(pair, q, &foot, &found));
@@ -93,6 +95,11 @@ static PetscErrorCode AddFootNodes(const ContactPair *pair, PetscInt q)
 
     FrictionNodeSign(pair, FrictionFootPoint(pair, q, k), &node, sign);
     ContactWorkNodesAdd(pair->work, 1, &node);
+  }
+  if (found) {
+    const PetscInt n = FrictionLeverNodes(pair, q, &lever, &slope);
+
+    ContactWorkNodesAdd(pair->work, n, lever);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -113,13 +120,14 @@ static PetscErrorCode PreparePoints(const ContactPair *pair, PetscInt c, PetscIn
     PetscCall(FrictionPointFoot(pair, q, &foot, &found));
     if (pair->friction->anchored[c] && FrictionTermTakes(pair, k)) PetscCall(PointTurns(pair, q, &turns));
     *room += pair->variations->end[q] - pair->variations->first[q] + 3 * FACE_MAX_NODES;
+    if (found) *room += pair->slaves->lever_ptr[q + 1] - pair->slaves->lever_ptr[q];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
   FrictionTermNodes - lists the nodes of a term and of its friction, each once, into the work's number: those of its
-  first variations, of its slave points' own faces, and of the faces of feet and anchors.
+  first variations, of its slave points' own faces and levers, and of the faces of feet and anchors.
 
   Not collective
 
@@ -271,8 +279,9 @@ static PetscErrorCode AddShares(TermBlock *b, PetscInt q, PetscReal weight)
 {
   static const PetscReal one[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const PetscInt        *node;
-  const PetscReal       *S;
+  const PetscReal       *S, *slope;
   const PetscInt         n = FrictionOwnNodes(b->pair, q, &node, &S);
+  PetscInt               n_lever;
   const FrictionFoot    *foot;
   PetscBool              found;
 
@@ -280,56 +289,87 @@ static PetscErrorCode AddShares(TermBlock *b, PetscInt q, PetscReal weight)
   PetscCall(FrictionPointFoot(b->pair, q, &foot, &found));
   if (b->pair->master && !found) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt a = 0; a < n; a++) AddShare(b, node[a], one, weight * S[a], NULL);
-  for (int k = 0; found && k < foot->nodes; k++) {
-    PetscReal force[3][3], sign[3];
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < foot->nodes; k++) {
+    PetscReal sign[3];
     PetscInt  at;
 
-    FrictionFootForces(foot, k, force);
     FrictionNodeSign(b->pair, FrictionFootPoint(b->pair, q, k), &at, sign);
-    AddShare(b, at, force, weight, sign);
+    AddShare(b, at, one, -weight * foot->N[k], sign);
+  }
+  n_lever = FrictionLeverNodes(b->pair, q, &node, &slope);
+  for (PetscInt k = 0; k < n_lever; k++) {
+    PetscReal force[3][3];
+
+    FrictionLeverForces(&b->pair->friction->lever[q], foot, &slope[2 * k], force);
+    AddShare(b, node[k], force, weight, NULL);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds how the force F of slave point q moves over the nodes of the foot's face, where F is held. */
+/* Adds the derivatives of the force on one node, with the forces of slave point q held. sign: of the node, see
+   FrictionNodeSign(). */
+static PetscErrorCode AddNodeMotion(TermBlock *b, PetscInt q, const FrictionFoot *foot, PetscInt at,
+                                    const PetscReal sign[3], FrictionFootVariation *by)
+{
+  const ContactPair *pair = b->pair;
+  const PetscInt    *node;
+  const PetscReal   *S, *slope;
+  PetscInt           n = FrictionOwnNodes(pair, q, &node, &S);
+  PetscReal         *rows;
+
+  PetscFunctionBeginUser;
+  if (pair->work->slot[at] < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  rows = &b->value[b->row_of[pair->work->slot[at]] * b->dim * b->columns];
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      by->by_place[i][j] *= sign[i];
+      by->by_normal[i][j] *= sign[i];
+      for (int a = 0; a < 2; a++) by->by_tangent[a][i][j] *= sign[i];
+    }
+  }
+  for (PetscInt a = 0; a < n; a++) AddColumns(b, rows, node[a], S[a], by->by_place, NULL);
+  for (int l = 0; l < foot->nodes; l++) {
+    PetscReal other[3];
+    PetscInt  with;
+
+    FrictionNodeSign(pair, FrictionFootPoint(pair, q, l), &with, other);
+    AddColumns(b, rows, with, -foot->N[l], by->by_place, other);
+  }
+  n = FrictionLeverNodes(pair, q, &node, &slope);
+  for (PetscInt l = 0; l < n; l++)
+    for (int a = 0; a < b->dim - 1; a++) AddColumns(b, rows, node[l], slope[2 * l + a], by->by_tangent[a], NULL);
+  PetscCall(AddVariations(b, rows, q, 1, by->by_normal, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds how the force F of slave point q moves over the nodes of the foot's face, and how those of its lever move, where
+   F is held. */
 static PetscErrorCode AddFootMotion(TermBlock *b, PetscInt q, const PetscReal F[3])
 {
-  const ContactPair  *pair = b->pair;
-  const PetscInt     *node;
-  const PetscReal    *S;
-  const PetscInt      n   = FrictionOwnNodes(pair, q, &node, &S);
-  const int           dim = b->dim;
-  const FrictionFoot *foot;
-  PetscBool           found;
+  const ContactPair    *pair   = b->pair;
+  const PetscReal       one[3] = {1, 1, 1}, *slope;
+  const FrictionFoot   *foot;
+  FrictionFootVariation by;
+  const PetscInt       *node;
+  PetscInt              n;
+  PetscBool             found;
 
   PetscFunctionBeginUser;
   PetscCall(FrictionPointFoot(pair, q, &foot, &found));
-  for (int k = 0; found && k < foot->nodes; k++) {
-    FrictionFootVariation by;
-    PetscReal             sign[3], *rows;
-    PetscInt              at;
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < foot->nodes; k++) {
+    PetscReal sign[3];
+    PetscInt  at;
 
     FrictionNodeSign(pair, FrictionFootPoint(pair, q, k), &at, sign);
-    if (pair->work->slot[at] < 0) continue;
-    rows = &b->value[b->row_of[pair->work->slot[at]] * dim * b->columns];
     FrictionFootVary(foot, F, k, &by);
-    for (int i = 0; i < 3; i++) {
-      for (int j = 0; j < 3; j++) {
-        by.by_place[i][j] *= sign[i];
-        by.by_normal[i][j] *= sign[i];
-        for (int a = 0; a < 2; a++) by.by_tangent[a][i][j] *= sign[i];
-      }
-    }
-    for (PetscInt a = 0; a < n; a++) AddColumns(b, rows, node[a], S[a], by.by_place, NULL);
-    for (int l = 0; l < foot->nodes; l++) {
-      PetscReal other[3];
-      PetscInt  with;
-
-      FrictionNodeSign(pair, FrictionFootPoint(pair, q, l), &with, other);
-      AddColumns(b, rows, with, -foot->N[l], by.by_place, other);
-      for (int a = 0; a < foot->tangents; a++) AddColumns(b, rows, with, foot->dN[l][a], by.by_tangent[a], other);
-    }
-    PetscCall(AddVariations(b, rows, q, 1, by.by_normal, NULL));
+    PetscCall(AddNodeMotion(b, q, foot, at, sign, &by));
+  }
+  n = FrictionLeverNodes(pair, q, &node, &slope);
+  for (PetscInt k = 0; k < n; k++) {
+    FrictionLeverVary(&pair->friction->lever[q], foot, F, &slope[2 * k], &by);
+    PetscCall(AddNodeMotion(b, q, foot, node[k], one, &by));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,6 @@
 /* Slave points of both formulations: where they are, their normals, weights and offsets. */
 #include "search/slavepoints.h"
+#include "slavelevers.h"
 
 /* Makes the star forest from the owners to the nodes, whose keys are complete. */
 static PetscErrorCode CreateForest(SlavePoints points)
@@ -21,6 +22,41 @@ static PetscErrorCode CreateForest(SlavePoints points)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A face goes to each rank that owns one of its nodes. */
+static PetscBool OwnsNode(const void *context, PetscInt f, PetscMPIInt r)
+{
+  const ContactSurface surface = (const ContactSurface)context;
+  const Facet         *facet   = &surface->faces[f];
+
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+    if (surface->mesh->node_owner[facet->nodes[a]] == r) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Takes the nodes of slave points that are nodes, and those around them where faces have arrived. */
+static PetscErrorCode TakeNodes(SlavePoints points, const PetscInt nodes[], PetscInt n_records,
+                                const FaceRecord *records)
+{
+  const PetscInt n    = points->n;
+  Mesh           mesh = points->mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n + n_records * FACE_MAX_NODES, &points->nodes));
+  for (PetscInt i = 0; i < n; i++) {
+    points->nodes[i] = (NodeKey){.id    = mesh->node_id[nodes[i]],
+                                 .owner = mesh->node_owner[nodes[i]],
+                                 .local = mesh->node_owner_local[nodes[i]]};
+    for (int d = 0; d < mesh->dim; d++) points->nodes[i].X[d] = mesh->coords[nodes[i] * mesh->dim + d];
+  }
+  points->n_nodes = n;
+  for (PetscInt f = 0; f < n_records; f++) {
+    FaceRecordKeys(&records[f], &points->nodes[points->n_nodes]);
+    points->n_nodes += ElementGet(records[f].facet.type)->nodes;
+  }
+  points->n_nodes = NodeKeysUnique(points->n_nodes, points->nodes);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SlavePointsCreateNodes - makes slave points that are nodes: S = 1, no offset.
 
@@ -31,56 +67,48 @@ static PetscErrorCode CreateForest(SlavePoints points)
 . n       - number of nodes
 . nodes   - local nodes, nodes[n]
 . size    - size of the faces around each of them (length)
-- height  - height of the elements below these faces (length)
+. height  - height of the elements below these faces (length)
+- levers  - make the points' levers
 
   Output Parameter:
 . out - the slave points
 @*/
 PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const PetscInt nodes[],
-                                      const PetscReal size[], const PetscReal height[], SlavePoints *out)
+                                      const PetscReal size[], const PetscReal height[], PetscBool levers,
+                                      SlavePoints *out)
 {
-  Mesh        mesh = surface->mesh;
+  Mesh        mesh      = surface->mesh;
+  PetscInt    n_records = 0;
+  FaceRecord *records   = NULL;
   SlavePoints points;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&points));
   points->mesh    = mesh;
   points->surface = surface;
-  points->n_nodes = points->n = n;
-  PetscCall(PetscMalloc1(n, &points->nodes));
+  points->n       = n;
+  if (levers) {
+    PetscCall(FaceRecordsShare(surface, NULL, NULL, OwnsNode, surface, &n_records, &records));
+    FaceRecordsSort(n_records, records);
+  }
+  PetscCall(TakeNodes(points, nodes, n_records, records));
   PetscCall(PetscMalloc6(n + 1, &points->ptr, n, &points->node, n, &points->S, n, &points->hat, n, &points->weight,
                          n * mesh->dim, &points->offset));
   PetscCall(PetscArrayzero(points->offset, n * mesh->dim));
   PetscCall(PetscMalloc2(n, &points->size, n, &points->height));
   PetscCall(PetscArraycpy(points->size, size, n));
   PetscCall(PetscArraycpy(points->height, height, n));
-  for (PetscInt i = 0; i < n; i++) {
-    points->nodes[i] = (NodeKey){.id    = mesh->node_id[nodes[i]],
-                                 .owner = mesh->node_owner[nodes[i]],
-                                 .local = mesh->node_owner_local[nodes[i]]};
-    for (int d = 0; d < mesh->dim; d++) points->nodes[i].X[d] = mesh->coords[nodes[i] * mesh->dim + d];
-  }
-  n = NodeKeysUnique(n, points->nodes);
   for (PetscInt q = 0; q < n; q++) {
     points->ptr[q]  = q;
-    points->node[q] = NodeKeysFind(n, points->nodes, mesh->node_id[nodes[q]]);
+    points->node[q] = NodeKeysFind(points->n_nodes, points->nodes, mesh->node_id[nodes[q]]);
     points->S[q] = points->hat[q] = points->weight[q] = 1;
   }
   points->ptr[n] = n;
+  if (levers) PetscCall(SlaveLeversAroundNodes(points, n_records, records));
+  PetscCall(PetscFree(records));
   PetscCall(CreateForest(points));
   *out = points;
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A face goes to each rank that owns one of its nodes. */
-static PetscBool OwnsNode(const void *context, PetscInt f, PetscMPIInt r)
-{
-  const ContactSurface surface = (const ContactSurface)context;
-  const Facet         *facet   = &surface->faces[f];
-
-  for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
-    if (surface->mesh->node_owner[facet->nodes[a]] == r) return PETSC_TRUE;
-  return PETSC_FALSE;
 }
 
 /* Makes the nodes and faces of the points from the faces that arrived. */
@@ -122,12 +150,14 @@ static PetscErrorCode TakeRecords(SlavePoints points, PetscInt n_records, FaceRe
   Input Parameters:
 + surface  - the slave surface
 . geometry - axisymmetric weights are over 360 degrees
-- finer    - how fine the quadrature is, see FaceRuleGet()
+. finer    - how fine the quadrature is, see FaceRuleGet()
+- levers   - make the points' levers
 
   Output Parameter:
 . out - the slave points, with offsets 0
 @*/
-PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geometry, int finer, SlavePoints *out)
+PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geometry, int finer, PetscBool levers,
+                                           SlavePoints *out)
 {
   const int   dim = surface->mesh->dim;
   PetscInt    n_records, n = 0, entries = 0;
@@ -174,6 +204,7 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
     }
   }
   points->ptr[n] = entries;
+  if (levers) PetscCall(SlaveLeversOnFaces(points));
   PetscCall(PetscFree(records));
   PetscCall(CreateForest(points));
   PetscCall(PetscCalloc1(3 * points->n_nodes, &points->normal));
@@ -222,6 +253,7 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *points)
     PetscCall(FaceMapsDestroy(&p->maps));
     PetscCall(PetscFree(p->normal));
   }
+  PetscCall(SlaveLeversDestroy(p));
   PetscCall(PetscFree(p->end));
   PetscCall(PetscFree6(p->ptr, p->node, p->S, p->hat, p->weight, p->offset));
   PetscCall(PetscFree2(p->size, p->height));
@@ -274,16 +306,14 @@ void SlavePointsPosition(SlavePoints points, PetscInt q, PetscReal *x)
 static PetscErrorCode NodeNormals(SlavePoints points, const PetscReal *u, PetscReal *normals)
 {
   Mesh       mesh = points->mesh;
-  PetscReal *area, *all, *at;
+  PetscReal *area, *all;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(mesh->n_nodes, &area, 3 * mesh->n_nodes, &all, 3 * points->n_nodes, &at));
+  PetscCall(PetscMalloc2(mesh->n_nodes, &area, 3 * mesh->n_nodes, &all));
   PetscCall(SurfaceNodeAreas(points->surface, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, u, area, all));
-  for (PetscInt i = 0; i < points->n_nodes; i++) /* slave nodes are owned */
-    for (int d = 0; d < 3; d++) at[3 * i + d] = all[3 * points->nodes[i].local + d];
-  for (PetscInt q = 0; q < points->n; q++)
-    for (int d = 0; d < 3; d++) normals[3 * q + d] = at[3 * points->node[q] + d];
-  PetscCall(PetscFree3(area, all, at));
+  for (PetscInt q = 0; q < points->n; q++) /* slave nodes are owned */
+    for (int d = 0; d < 3; d++) normals[3 * q + d] = all[3 * points->nodes[points->node[q]].local + d];
+  PetscCall(PetscFree2(area, all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -23,6 +23,10 @@ typedef struct {
   PetscReal     *S, *hat, *weight; /* shape and hat functions at these nodes; area weight of each point */
   PetscReal     *size, *height;    /* of the slave's faces at each point, and of the elements below them (length) */
   PetscReal     *offset;           /* n*dim, along the normal at the time when it was taken (length) */
+  /* Where friction needs them: the nodes around each point with two slopes each, so that sum slope x are tangents of
+     the slave's surface at the point. NULL: not asked for. */
+  PetscInt      *lever_ptr, *lever_node;
+  PetscReal     *lever_slope;
   PetscReal     *end;              /* n_nodes*dim: SurfaceNodeEnds() at the last SlavePointsFindEnds(), of any length */
   /* The following members are for surface-to-surface contact only. */
   PetscReal   *normal; /* n_nodes*3: mean normal around each node after SlavePointsNormals(), of any length */
@@ -37,8 +41,8 @@ typedef struct {
 } *SlavePoints;
 
 PetscErrorCode SlavePointsCreateNodes(ContactSurface, PetscInt n, const PetscInt nodes[], const PetscReal size[],
-                                      const PetscReal height[], SlavePoints *);
-PetscErrorCode SlavePointsCreateQuadrature(ContactSurface, Geometry, int finer, SlavePoints *);
+                                      const PetscReal height[], PetscBool levers, SlavePoints *);
+PetscErrorCode SlavePointsCreateQuadrature(ContactSurface, Geometry, int finer, PetscBool levers, SlavePoints *);
 PetscErrorCode SlavePointsDestroy(SlavePoints *);
 PetscErrorCode SlavePointsMove(SlavePoints, const PetscReal *u);
 PetscBool      SlavePointIsOwn(SlavePoints, PetscInt q, PetscMPIInt rank);

@@ -227,7 +227,7 @@ def stiff():
 
 def ironing():
     """A tool with sharp ends is drawn through a soft slab, whose surface it folds before it."""
-    for mu in (0.3, 0.5):
+    for mu in (0.3, 0.5, 0.8):
         finished = run(args, SCENES.parent / "jobs/ironing.yaml", out=f"mu_{mu}",
                        overrides=[f"contact.0.friction.mu={mu}", "output.every=0"])
         probes = finished.summary()["probes"]

@@ -132,10 +132,16 @@ CASES["meshed tool, diffuse, far turned"] = (RUNS / "slide_cylinder.yaml", PUSHE
     "{x: 3}, motion: [{rz: 70}]}"
 ])
 
+# Where a case's forces are this strongly curved, one-sided differences need a shorter step than PETSc's 1.5e-8: their
+# deviation is in proportion to it, 2.4e-4 at 1e-6, 3.7e-6 at 1.5e-8 and 4.9e-7 at 2e-9.
+STEPS = {"turning rigid cylinder, facets, surface to surface, sticks": 2e-9}
+
 args = arguments()
 check = Check()
 for name, (scene, overrides) in CASES.items():
-    finished = run(args, scene, "-snes_test_jacobian", out=name.replace(" ", "_").replace(",", ""), overrides=overrides)
+    step = ("-snes_test_err", str(STEPS[name])) if name in STEPS else ()
+    finished = run(args, scene, "-snes_test_jacobian", *step, out=name.replace(" ", "_").replace(",", ""),
+                   overrides=overrides)
     ratios = [float(ratio) for ratio in re.findall(r"\|\|J - Jfd\|\|_F/\|\|J\|\|_F = ([0-9.e+-]+)", finished.text)]
     if not name.startswith("follower"):
         check.holds(f"{name}: contact is closed", finished.summary()["contact_nodes"] > 0)

@@ -205,69 +205,107 @@ static void test_kept(void **state)
   for (int d = 0; d < 3; d++) assert_true(fabs(out.traction[d] - traction[d]) <= 1e-13 * norm(traction));
 }
 
-/* The force on one node of the face over slave point, normal and nodes of the face. */
+/* The forces of a slave point over its face, which holds it at xi, its normal and the nodes of a face of the master.
+   Numbers x: normal, nodes of the slave's face, nodes of the master's. node: of the master's face, then of the slave's.
+ */
 typedef struct {
   int         dim, node;
   ElementType type;
-  double      F[3];
+  double      F[3], S[FACE_MAX_NODES], slope[FACE_MAX_NODES][2];
 } Case;
 
-static int place(const Case *c, const double *x, FrictionFoot *foot)
-{
-  double relative[FACE_MAX_NODES * 3];
+enum { CASE_NUMBERS = 3 + 6 * FACE_MAX_NODES };
 
-  for (int k = 0; k < ElementGet(c->type)->nodes; k++)
-    for (int d = 0; d < c->dim; d++) relative[k * c->dim + d] = x[6 + 3 * k + d] - x[d];
-  return FrictionFootFind(c->dim, c->type, relative, x + 3, foot);
+static const double *case_node(const Case *c, const double *x, int master, int k)
+{
+  return x + 3 + 3 * (master * ElementGet(c->type)->nodes + k);
+}
+
+static void case_point(const Case *c, const double *x, double point[3])
+{
+  for (int d = 0; d < 3; d++) {
+    point[d] = 0;
+    for (int k = 0; k < ElementGet(c->type)->nodes; k++) point[d] += c->S[k] * case_node(c, x, 0, k)[d];
+  }
+}
+
+static int place(const Case *c, const double *x, FrictionFoot *foot, FrictionLever *lever)
+{
+  double relative[FACE_MAX_NODES * 3], point[3], tangent[2][3] = {{0}};
+
+  case_point(c, x, point);
+  for (int k = 0; k < ElementGet(c->type)->nodes; k++) {
+    for (int d = 0; d < c->dim; d++) {
+      relative[k * c->dim + d] = case_node(c, x, 1, k)[d] - point[d];
+      for (int a = 0; a < c->dim - 1; a++) tangent[a][d] += c->slope[k][a] * case_node(c, x, 0, k)[d];
+    }
+  }
+  return FrictionFootFind(c->dim, c->type, relative, x, foot) && FrictionLeverMake(c->dim, x, tangent, lever);
 }
 
 static void nodal(const double *x, void *context, double value[3])
 {
-  const Case  *c = context;
-  FrictionFoot foot;
-  double       force[3][3];
+  const Case   *c = context;
+  const int     n = ElementGet(c->type)->nodes;
+  FrictionFoot  foot;
+  FrictionLever lever;
+  double        force[3][3];
 
-  assert_true(place(c, x, &foot));
-  FrictionFootForces(&foot, c->node, force);
+  assert_true(place(c, x, &foot, &lever));
+  for (int d = 0; d < 3; d++) value[d] = c->node < n ? -foot.N[c->node] * c->F[d] : 0;
+  if (c->node < n) return;
+  FrictionLeverForces(&lever, &foot, c->slope[c->node - n], force);
   for (int d = 0; d < 3; d++) value[d] = force[d][0] * c->F[0] + force[d][1] * c->F[1] + force[d][2] * c->F[2];
 }
 
-/* Slave point, normal and a shaken, bent face: 6 + 3 nodes numbers. */
+/* Two faces, shaken and bent, one above the other. */
 static void make_case(Case *c, double *x)
 {
-  const Element *e = ElementGet(c->type);
+  const Element *e     = ElementGet(c->type);
+  double         xi[2] = {0.1 * any(), 0.1 * any()}, dN[FACE_MAX_NODES * 2];
 
-  for (int d = 0; d < 3; d++) x[d] = d < c->dim ? 0.1 * any() + (e->corners == 3 ? 0.3 : 0) : 0;
-  x[c->dim - 1] = 0.3 + 0.1 * any();
-  fill(c->dim, 0.2, x + 3);
-  x[3 + c->dim - 1] = 1 + 0.1 * any();
-  for (int k = 0; k < e->nodes; k++) {
-    fill(c->dim, 0.05, x + 6 + 3 * k);
-    for (int a = 0; a < e->dim; a++) x[6 + 3 * k + a] += e->node[k][a];
+  if (e->corners == 3) xi[0] += 0.3;
+  if (e->corners == 3) xi[1] += 0.3;
+  ElementShape(c->type, xi, c->S, dN, NULL);
+  fill(c->dim, 0.2, x);
+  x[c->dim - 1] = 1 + 0.1 * any();
+  for (int k = 0; k < e->nodes; k++)
+    for (int a = 0; a < e->dim; a++) c->slope[k][a] = dN[k * e->dim + a];
+  for (int k = 0; k < 2 * e->nodes; k++) {
+    double *at = x + 3 + 3 * k;
+
+    fill(c->dim, 0.05, at);
+    for (int a = 0; a < e->dim; a++) at[a] += e->node[k % e->nodes][a];
+    if (k < e->nodes) at[c->dim - 1] += 0.3;
   }
   fill(c->dim, 1, c->F);
 }
 
-/* The derivative along a direction from FrictionFootVary(). */
+/* The derivative along a direction from FrictionFootVary() and FrictionLeverVary(). */
 static void vary(const Case *c, const double *x, const double *direction, double slope[3])
 {
+  const int             n = ElementGet(c->type)->nodes;
   FrictionFoot          foot;
+  FrictionLever         lever;
   FrictionFootVariation by;
   double                w[3], tangent[2][3] = {{0}};
 
-  assert_true(place(c, x, &foot));
-  FrictionFootVary(&foot, c->F, c->node, &by);
+  assert_true(place(c, x, &foot, &lever));
+  if (c->node < n)
+    FrictionFootVary(&foot, c->F, c->node, &by);
+  else
+    FrictionLeverVary(&lever, &foot, c->F, c->slope[c->node - n], &by);
+  case_point(c, direction, w);
   for (int d = 0; d < 3; d++) {
-    w[d] = direction[d];
-    for (int k = 0; k < foot.nodes; k++) {
-      w[d] -= foot.N[k] * direction[6 + 3 * k + d];
-      for (int a = 0; a < foot.tangents; a++) tangent[a][d] += foot.dN[k][a] * direction[6 + 3 * k + d];
+    for (int k = 0; k < n; k++) {
+      w[d] -= foot.N[k] * case_node(c, direction, 1, k)[d];
+      for (int a = 0; a < lever.tangents; a++) tangent[a][d] += c->slope[k][a] * case_node(c, direction, 0, k)[d];
     }
   }
   for (int i = 0; i < 3; i++) {
     slope[i] = 0;
     for (int j = 0; j < 3; j++)
-      slope[i] += by.by_place[i][j] * w[j] + by.by_normal[i][j] * direction[3 + j] +
+      slope[i] += by.by_place[i][j] * w[j] + by.by_normal[i][j] * direction[j] +
                   by.by_tangent[0][i][j] * tangent[0][j] + by.by_tangent[1][i][j] * tangent[1][j];
   }
 }
@@ -276,12 +314,12 @@ static void check_foot(int dim, ElementType type)
 {
   for (int trial = 0; trial < 10; trial++) {
     Case      c = {.dim = dim, .type = type};
-    double    x[6 + 3 * FACE_MAX_NODES], direction[6 + 3 * FACE_MAX_NODES], slope[3], expected[3];
-    const int n = 6 + 3 * ElementGet(type)->nodes;
+    double    x[CASE_NUMBERS], direction[CASE_NUMBERS], slope[3], expected[3];
+    const int n = 3 + 6 * ElementGet(type)->nodes;
 
     make_case(&c, x);
     for (int i = 0; i < n; i += 3) fill(dim, 1, direction + i);
-    for (c.node = 0; c.node < ElementGet(type)->nodes; c.node++) {
+    for (c.node = 0; c.node < 2 * ElementGet(type)->nodes; c.node++) {
       double worst = 1;
 
       vary(&c, x, direction, expected);
@@ -308,27 +346,33 @@ static void test_foot(void **state)
   check_foot(3, ELEMENT_QUAD9);
 }
 
-/* The forces on slave point and face have no sum and no moment. */
+/* Adds a force at x to a sum of forces, and its moment to a sum of moments. */
+static void add_force(const double x[3], const double force[3], double sum[3], double moment[3])
+{
+  for (int d = 0; d < 3; d++) {
+    sum[d] += force[d];
+    moment[d] += x[(d + 1) % 3] * force[(d + 2) % 3] - x[(d + 2) % 3] * force[(d + 1) % 3];
+  }
+}
+
+/* The forces on slave point, master's face and lever have no sum and no moment. */
 static void check_balance(int dim, ElementType type)
 {
   for (int trial = 0; trial < 10; trial++) {
-    Case         c = {.dim = dim, .type = type};
-    FrictionFoot foot;
-    double       x[6 + 3 * FACE_MAX_NODES], sum[3], moment[3] = {0, 0, 0};
+    Case          c = {.dim = dim, .type = type};
+    FrictionFoot  foot;
+    FrictionLever lever;
+    double        x[CASE_NUMBERS], sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, point[3];
 
     make_case(&c, x);
-    assert_true(place(&c, x, &foot));
-    memcpy(sum, c.F, sizeof(sum));
-    for (c.node = 0; c.node < foot.nodes; c.node++) {
-      double force[3], arm[3];
+    assert_true(place(&c, x, &foot, &lever));
+    case_point(&c, x, point);
+    add_force(point, c.F, sum, moment);
+    for (c.node = 0; c.node < 2 * foot.nodes; c.node++) {
+      double force[3];
 
       nodal(x, &c, force);
-      for (int d = 0; d < 3; d++) {
-        sum[d] += force[d];
-        arm[d] = x[6 + 3 * c.node + d] - x[d];
-      }
-      for (int d = 0; d < 3; d++)
-        moment[d] += arm[(d + 1) % 3] * force[(d + 2) % 3] - arm[(d + 2) % 3] * force[(d + 1) % 3];
+      add_force(case_node(&c, x, c.node < foot.nodes, c.node % foot.nodes), force, sum, moment);
     }
     assert_true(norm(sum) <= 1e-14 * norm(c.F) && norm(moment) <= 1e-13 * norm(c.F));
   }
@@ -340,6 +384,35 @@ static void test_balance(void **state)
   check_balance(2, ELEMENT_EDGE3);
   check_balance(3, ELEMENT_TRI3);
   check_balance(3, ELEMENT_QUAD9);
+}
+
+/* Two faces of a flat master side by side, under a slave's face that is not parallel to them. Where the foot goes on
+   from one face to the other, no force of the lever jumps. */
+static void test_crossing(void **state)
+{
+  double before[2][3] = {{0}}, jump = 0, size = 0;
+  Case   c = {.dim = 2, .type = ELEMENT_EDGE2, .F = {1, 0.1, 0}, .S = {0.5, 0.5}, .slope = {{-0.5}, {0.5}}};
+
+  (void)state;
+  for (int side = 0; side < 2; side++) { /* the master's faces are as long as 2 and 0.7 */
+    const double x[15] = {0.1, 1, 0, -1, 0.2, 0, 1, 0.4, 0, side ? -0.03 : -2.03, 0, 0, side ? 0.67 : -0.03, 0, 0};
+    FrictionFoot  foot;
+    FrictionLever lever;
+
+    assert_true(place(&c, x, &foot, &lever));
+    assert_true(fabs(foot.xi[0] - (side ? -1 : 1)) < 1e-12);
+    for (c.node = 2; c.node < 4; c.node++) {
+      double force[3];
+
+      nodal(x, &c, force);
+      for (int d = 0; d < 2; d++) {
+        if (side) jump = fmax(jump, fabs(force[d] - before[c.node - 2][d]));
+        before[c.node - 2][d] = force[d];
+        size                  = fmax(size, fabs(force[d]));
+      }
+    }
+  }
+  assert_true(size > 0.05 && jump <= 1e-14);
 }
 
 /* The vector with given components in the frame of two tangents, six numbers. */
@@ -399,7 +472,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_law),     cmocka_unit_test(test_rotation),
                                      cmocka_unit_test(test_kept),    cmocka_unit_test(test_foot),
-                                     cmocka_unit_test(test_balance), cmocka_unit_test(test_frame)};
+                                     cmocka_unit_test(test_balance), cmocka_unit_test(test_crossing),
+                                     cmocka_unit_test(test_frame)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,8 +23,10 @@ typedef struct {
   PetscReal *off;   /* 3: from there to the slave point, in the face's frame (length) */
   PetscReal *place; /* 3: in an analytic tool, at its first position (length, in the scene's coordinates) */
   PetscInt  *at;    /* number of the face in the lists in force; -1: not in them */
-  /* Of each slave point: its foot at the last projection. */
-  FrictionFoot *foot;
+  /* Of each slave point: its foot and its lever at the last projection. */
+  FrictionFoot  *foot;
+  FrictionLever *lever;
+  PetscInt      *lever_node; /* contact nodes of the levers, as in SlavePoints; -1: not known yet */
   int          *facet; /* in the point's list; -1: not known yet */
   PetscBool    *known;
   /* Of each slave point: derivatives of its own N over the nodes of its first variation, dim*dim for each node, at the
