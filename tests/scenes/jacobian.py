@@ -10,7 +10,7 @@ COARSE_PIPE = [
     "mesh.parameters.n_arc=5", "mesh.parameters.n_len=1", "loads.0.uy=-10", "stepping={control: fixed, initial: 0.25}",
     "probes=[]"
 ]
-TURNING = ["mesh.parameters.n_x=3", "probes=[]", "stepping.initial=0.1"]
+TURNING = ["mesh.parameters.n_x=4", "stepping.initial=0.1"]
 FOLLOWER = [
     "kinematics=finite", "bodies.0.material.law=neo_hookean", "loads.0.pressure=200", "loads.0.follower=true",
     "stepping={control: fixed, initial: 0.5}", "mesh.parameters.n_arc=3", "mesh.parameters.n_wall=2"
