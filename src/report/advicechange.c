@@ -349,15 +349,27 @@ static int MayBeShorter(const ChangePlace *at)
   return MeanStep(at) > CHANGE_DT_MIN_NEAR && at->figures->run->way->steps <= RUN_MANY_STEPS;
 }
 
+/* A result that may be wrong needs shorter steps, however many there are. */
+static int PathMayBeFiner(const ChangePlace *at)
+{
+  return MeanStep(at) > CHANGE_DT_MIN_NEAR;
+}
+
+/* Halves the steps by their length alone. */
+static void WritePath(const ChangePlace *at, char *text, size_t size)
+{
+  WriteNumber("stepping", at->figures->scene->stepping.control == STEP_FIXED ? "initial" : "dt_max", MeanStep(at) / 2,
+              text, size);
+}
+
 static void WriteShorter(const ChangePlace *at, char *text, size_t size)
 {
-  const Scene  scene = at->figures->scene;
-  const double half  = MeanStep(at) / 2;
+  const Scene scene = at->figures->scene;
 
   if (scene->stepping.control == STEP_CONTACT && scene->stepping.N_c_fraction > 0)
     WriteNumber("stepping", "N_c_fraction", scene->stepping.N_c_fraction / 2, text, size);
   else
-    WriteNumber("stepping", scene->stepping.control == STEP_FIXED ? "initial" : "dt_max", half, text, size);
+    WritePath(at, text, size);
 }
 
 static void WriteFlow(const ChangePlace *at, char *text, size_t size)
@@ -491,6 +503,7 @@ static const Change changes[CHANGES] = {
   [CHANGE_SHORTER]        = {"stepping", AXIS_STEP, -1, MayBeShorter, WriteShorter},
   [CHANGE_SHORTER_MIN]    = {"stepping.dt_min", AXIS_STEP, -1, StopsEarly, WriteShorterMin},
   [CHANGE_FLOW]           = {"stepping.plastic_strain", AXIS_STEP, -1, MayBeShorter, WriteFlow},
+  [CHANGE_PATH]           = {"stepping", AXIS_STEP, -1, PathMayBeFiner, WritePath},
   [CHANGE_MORE_NODES]     = {"stepping.N_c", AXIS_STEP, 1, CountsNodes, WriteMoreNodes},
   [CHANGE_LONGER]         = {"stepping", AXIS_STEP, 1, Always, WriteNothing},
   [CHANGE_PREDICTION]     = {"stepping.prediction", AXIS_PREDICTION, 1, PredictsAfterwards, WritePrediction},

@@ -1,5 +1,6 @@
 /* The run in one JSON file, see summary.h. */
 #include "summary.h"
+#include "advice.h"
 #include "files/textfile.h"
 #include "scene/commandline.h"
 #include <cJSON.h>
@@ -202,8 +203,21 @@ static void AddEnergy(cJSON *json, Scene scene, const StepRecord *last)
   AddReal(map, "elastic", energy.elastic);
   AddReal(map, "plastic", energy.plastic);
   AddReal(map, "work", energy.work);
+  AddReal(map, "apart",
+          energy.plastic > 0 ? PetscAbsReal(energy.work - energy.elastic - energy.plastic) / energy.plastic : NAN);
   AddReal(json, "max_plastic_strain", energy.strain);
   AddReal(json, "max_plastic_growth", energy.growth);
+}
+
+static void AddAdviceLine(const char *line, void *list)
+{
+  cJSON_AddItemToArray(list, cJSON_CreateString(line));
+}
+
+/* Adds the lines of advice as the last screen prints them. */
+static void AddAdvice(cJSON *json, const RunFigures *figures)
+{
+  AdviceGive(figures, AddAdviceLine, cJSON_AddArrayToObject(json, "advice"));
 }
 
 static void AddPartition(cJSON *json, const Mesh mesh)
@@ -366,6 +380,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddContact(json, figures);
   AddFluids(json, figures);
   AddCertificate(json, figures);
+  AddAdvice(json, figures);
   text = cJSON_Print(json);
   PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for summary.json");
   PetscCall(TextFileReplace(directory, "summary.json", text));

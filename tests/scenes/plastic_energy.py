@@ -34,6 +34,15 @@ for name, overrides in CASES.items():
     energy = finished.summary()["energy"]
     check.near(name, energy["elastic"] + energy["plastic"], energy["work"], BOUND * energy["work"])
     check.holds(f"{name}: it yields", energy["plastic"] > energy["elastic"])
+# Few steps are too long for a tool that travels along a body that flows. A line of advice says so.
+finished = run(args, SCENES / "tool.yaml", out="few_steps", overrides=COMMON + [
+    TOOL + "motion: [{uy: -0.8, ux: 3}]}}",
+    "bodies.0.material={law: von_mises, E: 1000, nu: 0.3, yield: 20, hardening: {linear: 50}}",
+    "stepping={control: fixed, initial: 0.2, dt_min: 1e-3}"
+])
+lines = [line for line in finished.summary()["advice"] if "of the plastic work apart" in line]
+check.holds("advice of few steps", len(lines) == 1 and "-set stepping." in lines[0], str(lines))
+check.holds("the last screen has it", lines and f"advice   {lines[0]}" in finished.text)
 # The bound on the growth of plastic strains sees them beside the numbers of backstresses, too.
 finished = run(args, SCENES / "tool.yaml", "-quiet", out="growth", overrides=COMMON + MOVED + [
     f"bodies.0.material={BACKSTRESSES}", f"stepping={{plastic_strain: {GROWTH}, dt_min: 1e-4}}"

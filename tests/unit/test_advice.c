@@ -243,6 +243,33 @@ static void test_flow(void **state)
   Expect(&c, NULL);
 }
 
+/* Steps that are too long for the path of plastic flow; what the trapezoidal rule loses of elastic energy alone does
+   not count, and many steps are no reason to be silent. */
+static void test_path(void **state)
+{
+  Case c;
+
+  (void)state;
+  Good(&c);
+  c.last.energy = (EnergyFigures){.elastic = 700, .plastic = 1000, .work = 1660};
+  Expect(&c, NULL);
+  c.last.energy.work = 1400;
+  Expect(&c,
+         "work and energies of the bodies are 30 % of the plastic work apart: steps may be too long for the path of "
+         "plastic flow, and forces and strains wrong; compare with shorter ones: -set stepping.dt_max=0.05");
+  c.last.energy.work = 2000; /* either sign */
+  Expect(&c, "are 30 % of the plastic work apart");
+  c.whole.stepping.control = STEP_FIXED;
+  Expect(&c, "-set stepping.initial=0.05");
+  c.whole.stepping.dt_max = 1;
+  c.way.steps = c.way.newton_accepted = 200;
+  Expect(&c, "-set stepping.initial=0.0025");
+  c.last.energy         = (EnergyFigures){.elastic = 1e5, .plastic = 1000, .work = 1.005e5};
+  c.way.steps           = 10;
+  c.way.newton_accepted = 50;
+  Expect(&c, NULL);
+}
+
 /* What can go wrong in a scene, all of it at once */
 static void Bad(Case *c, StepControlKind control, int formulation, int adjust, int augment)
 {
@@ -272,7 +299,7 @@ static void Bad(Case *c, StepControlKind control, int formulation, int adjust, i
   c->way.cuts[CUT_SHAPE]                  = 40;
   c->way.newton_accepted                  = 500;
   c->whole.kinematics                     = KINEMATICS_FINITE;
-  c->last.energy.growth                   = 0.5;
+  c->last.energy                          = (EnergyFigures){.plastic = 1, .work = 2, .growth = 0.5};
 }
 
 /* Lines do not contradict each other, and each change of theirs can be made and is written. */
@@ -409,11 +436,11 @@ static void test_kernels(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_length),   cmocka_unit_test(test_locking),
-                                     cmocka_unit_test(test_foretold), cmocka_unit_test(test_pairs),
-                                     cmocka_unit_test(test_steps),    cmocka_unit_test(test_agree),
-                                     cmocka_unit_test(test_order),    cmocka_unit_test(test_sides),
-                                     cmocka_unit_test(test_kernels),  cmocka_unit_test(test_flow)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_length), cmocka_unit_test(test_locking), cmocka_unit_test(test_foretold),
+    cmocka_unit_test(test_pairs),  cmocka_unit_test(test_steps),   cmocka_unit_test(test_agree),
+    cmocka_unit_test(test_order),  cmocka_unit_test(test_sides),   cmocka_unit_test(test_kernels),
+    cmocka_unit_test(test_flow),   cmocka_unit_test(test_path)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
