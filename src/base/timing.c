@@ -2,8 +2,8 @@
 #include "base/timing.h"
 #include <mpi.h>
 
-const char *const TimingNames[] = {"setup", "search", "fit", "assembly_elastic", "assembly_contact", "solve", "certificate",
-                                   "output"};
+const char *const TimingNames[] = {"setup", "search", "fit", "assembly_elastic", "assembly_contact", "solve",
+                                   "certificate", "output"};
 
 /* Room for every purpose within every other, twice. Time of a purpose that is begun deeper counts for the one around
    it. */

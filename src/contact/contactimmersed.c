@@ -61,7 +61,8 @@ static PetscErrorCode AskBodies(Mesh mesh, int n_bodies, const int *bodies, doub
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Centres of the cells behind the faces of a surface, or of the faces, but for faces with a node that is marked. */
+/* Centres of the cells behind the faces of a surface, or of the faces, but for faces with a node that is marked
+   and for those that a pair with slave and master treats. */
 static PetscErrorCode Centres(Mesh mesh, ContactSurface surface, PetscBool faces, const PetscReal *mark, PetscInt *n,
                               PetscReal *x)
 {
@@ -77,7 +78,7 @@ static PetscErrorCode Centres(Mesh mesh, ContactSurface surface, PetscBool faces
 
     for (int a = 0; a < ElementGet(face->type)->nodes; a++)
       marked = (PetscBool)(marked || mark[face->nodes[a]] > 0);
-    if (marked) continue;
+    if (marked || (surface->face_marks && surface->face_marks[f])) continue;
     MeshCellCoordinates(mesh, c, X);
     for (int k = 0; k < corners && faces; k++)
       for (int d = 0; d < mesh->dim; d++) X[k * mesh->dim + d] = mesh->coords[face->nodes[k] * mesh->dim + d];

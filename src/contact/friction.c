@@ -7,6 +7,10 @@
 /* Cosine of the angle, 10 degrees, by which the slip of a node may turn within a step: the step is straight, and its
    end gives the direction of all of it. */
 #define FRICTION_TURN 0.984807753012208
+/* A penalty of what sticks below this part of the automatic one comes from pressures that are round-off, as of bodies
+   that touch without a load. */
+#define FRICTION_SLIGHT 1e-6
+
 /* Allocates the friction of a pair, without anchors. The penalty of what sticks is the automatic one, without the
    factor that the pressure's has: on a pinched pipe Newton's method takes 90 iterations with it, and with ten times as
    much it fails where many nodes change between sticking and slipping. */
@@ -512,7 +516,7 @@ static PetscErrorCode SetStiffness(ContactPair *pair, PetscReal t)
     most = PetscMax(most, FrictionBound(&in, value.pressure) / (slip * pair->size[c]));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPIU_MAX, pair->mesh->comm));
-  pair->friction->stiffness = most > 0 ? most : pair->friction->automatic;
+  pair->friction->stiffness = most > FRICTION_SLIGHT * pair->friction->automatic ? most : pair->friction->automatic;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

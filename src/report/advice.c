@@ -368,6 +368,8 @@ static const ChangeKind tries[][ADVICE_CHANGES] = {
   [SOLVE_LEAKED]      = {CHANGE_DISPLACEMENT, CHANGE_CHECK},
   [SOLVE_TURNED]      = {CHANGE_SHORTER_MIN, CHANGE_CHECK},
   [SOLVE_ROUTINE]     = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK},
+  [SOLVE_RESTLESS]    = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK},
+  [SOLVE_JUMP]        = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK},
   [SOLVE_NAN]         = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK}};
 
 /* Does a line name a change already? */
@@ -433,7 +435,7 @@ static void AddTries(const RunFigures *figures, Advice *advice)
   if (failure->n) at.body = failure->node[0].body;
   if (squeezed)
     at.body = failure->squeezed_body;
-  else if (solve->result == SOLVE_DOMAIN && failure->inverted_body >= 0)
+  else if ((solve->result == SOLVE_DOMAIN || solve->result == SOLVE_ROUTINE) && failure->inverted_body >= 0)
     at.body = failure->inverted_body;
   if (solve->result == SOLVE_LOST) { /* a node that was not deep was lost by a long step */
     const PetscReal deep = at.pair ? at.pair->quality.max_penetration_over_h : 0;

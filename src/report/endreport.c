@@ -237,7 +237,8 @@ static void PrintFailure(const RunFigures *figures, FILE *stream)
     if (node->pair >= 0) fprintf(stream, ", pair '%s'", figures->pairs[node->pair].name);
     fprintf(stream, "\n");
   }
-  if (way->failed.solve.result == SOLVE_WINDOW) fprintf(stream, "where    %s\n", way->failed.solve.detail);
+  if (way->failed.solve.result == SOLVE_WINDOW || way->failed.solve.result == SOLVE_UNCERTIFIED)
+    fprintf(stream, "where    %s\n", way->failed.solve.detail);
   fprintf(stream,
           "tried    %lld times, dt from %.3g down to %.3g (dt_min %.3g), the last time %lld iterations to a residual "
           "of %.2g\n",

@@ -98,8 +98,8 @@ static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
   if (body->formulation == FORMULATION_MIXED && !SceneLawSplits(scene, body))
     PetscCall(SceneRefuse(
       scene, body->path, "formulation",
-      "needs a law whose volume part is separate; allowed with svk: full | enhanced | fbar, with umat: full | "
-      "fbar",
+      "needs a law whose volume part is separate; allowed with svk and hyperfoam: full | enhanced | fbar, with umat: "
+      "full | fbar",
       Formulations[body->formulation]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -592,7 +592,7 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
   PetscBool          moved;
 
   PetscFunctionBeginUser;
-  *report = (SolveReport){.result = SOLVE_CONVERGED};
+  *report = (SolveReport){.result = SOLVE_CONVERGED, .failure = {.inverted = -1, .inverted_body = -1}};
   PetscCall(ModelSolveFirst(model, t, slowly, report));
   while (model->contact && window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
     PetscCall(ModelMoveFluids(model, report, &moved));

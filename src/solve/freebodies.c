@@ -1,6 +1,7 @@
 /* Bodies that only contact holds: which they are, their springs, and what of them is kept from step to step. */
 #include "freebodiesimpl.h"
 #include "kernels/elementkernel.h"
+#include "mesh/pressurenodes.h"
 
 /* All springs of a body together are this part of the stiffness of the elements below one slave node. What a spring
    takes from a force that a whole contact carries is less than this part, and ten times more would still be below 1e-6.
@@ -226,12 +227,13 @@ PetscErrorCode FreeBodiesSprings(FreeBodies b, Vec like, ContactSprings *springs
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   PetscCall(PetscCalloc2(b->n_pieces, &nodes, mesh->n_nodes * mesh->dim, &values));
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) nodes[b->piece[i]] += mesh->node_owner[i] == rank;
+  for (PetscInt i = 0; i < mesh->n_nodes; i++)
+    nodes[b->piece[i]] += mesh->node_owner[i] == rank && !IsPressureNode(mesh, i);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, nodes, (PetscMPIInt)b->n_pieces, MPIU_INT, MPI_SUM, mesh->comm));
   for (PetscInt i = 0; i < mesh->n_nodes; i++) {
     const PetscInt p = b->piece[i];
 
-    if (mesh->node_owner[i] != rank || !b->stabilised[p]) continue;
+    if (mesh->node_owner[i] != rank || !b->stabilised[p] || IsPressureNode(mesh, i)) continue;
     for (int d = 0; d < mesh->dim; d++)
       values[i * mesh->dim + d] = FREE_BODIES_SPRINGS * b->stiffness[p] / (PetscReal)nodes[p];
   }

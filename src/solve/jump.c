@@ -18,8 +18,9 @@
 
   Note:
   Two things together tell a jump: the tangent became indefinite on the way, so that steps were turned round or the
-  solve needed a viscous restraint, and the bodies moved much faster than in the step before. The first step of a run has none before it. Without contact, whose
-  changes make the tangent of an iterate indefinite, too, it is then to be repeated with a smaller one.
+  solve needed a viscous restraint, and the bodies moved much faster than in the step before. The first step of a run
+  has none before it. Without contact, whose changes make the tangent of an iterate indefinite, too, it is then to be
+  repeated with a smaller one, unless a viscous restraint has led it.
 @*/
 PetscErrorCode ModelFindJump(Model model, SolveReport *report)
 {
@@ -37,7 +38,10 @@ PetscErrorCode ModelFindJump(Model model, SolveReport *report)
   PetscFunctionBeginUser;
   if (!report->turned && !report->damped) PetscFunctionReturn(PETSC_SUCCESS);
   if (!(work->rate > 0)) {
-    if (!model->contact) report->result = SOLVE_JUMP;
+    if (!model->contact && !report->damped && work->accepted_t == 0) {
+      model->problem->inverted = -1;
+      report->result           = SOLVE_JUMP;
+    }
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));

@@ -268,8 +268,8 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
 }
 
 /*@
-  ProblemTangent - computes the tangent of elements, loads, contact, contact springs and damping at (u, t) into problem->A and
-  problem->P.
+  ProblemTangent - computes the tangent of elements, loads, contact, contact springs and damping at (u, t) into problem->A
+  and problem->P.
 
   Collective
 
@@ -302,7 +302,7 @@ PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const StressR
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(ContactSpringsTangent(problem->springs, problem->P));
   PetscCall(DampingTangent(problem->damping, problem->P));
-  if (problem->tied || DampingChanged(problem->damping)) change->pattern = PETSC_TRUE; /* no factor of an earlier tangent serves */
+  if (problem->tied || DampingChanged(problem->damping)) change->pattern = PETSC_TRUE; /* no earlier factor serves */
   problem->tied = PETSC_FALSE;
   if (!joined) PetscCall(SumOperatorSet(problem->A, change->C));
   PetscFunctionReturn(PETSC_SUCCESS);

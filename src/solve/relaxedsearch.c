@@ -268,6 +268,25 @@ static PetscErrorCode Relax(const Search *s, PetscReal rise, PetscReal slope, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Lets the energies of this search be those of volumes that yield: the whole step ends at x - y. */
+static PetscErrorCode YieldVolumes(const Search *s)
+{
+  const PetscInt n       = s->model->mesh->n_nodes * s->model->mesh->dim;
+  Problem        problem = s->model->problem;
+  PetscReal     *u;
+
+  PetscFunctionBeginUser;
+  if (!ProblemConservative(problem) || !ProblemHasFormulation(problem, FORMULATION_MIXED))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n, &u));
+  PetscCall(ProblemDisplacements(problem, s->x, s->model->t, u));
+  PetscCall(VecWAXPY(s->w, -1, s->y, s->x));
+  PetscCall(ProblemSetTrial(problem, s->w, s->model->t));
+  PetscCall(ElasticityYield(problem->elasticity, u, problem->trial));
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Returns to the start of the step that waits, and shortens it. */
 static PetscErrorCode Return(const Search *s)
 {
@@ -282,6 +301,7 @@ static PetscErrorCode Return(const Search *s)
   PetscCall(VecCopy(step->y, work->step));
   PetscCall(SNESComputeFunction(s->snes, s->x, s->F));
   work->objective = OBJECTIVE_ENERGY;
+  PetscCall(YieldVolumes(s));
   PetscCall(Shorten(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -332,25 +352,6 @@ static PetscErrorCode SearchClosely(const Search *s, PetscReal slope, PetscBool 
 static PetscBool SearchJumps(const Search *s)
 {
   return (PetscBool)(ProblemConservative(s->model->problem) && ProblemIsPlastic(s->model->problem));
-}
-
-/* Lets the energies of this search be those of volumes that yield: the whole step ends at x - y. */
-static PetscErrorCode YieldVolumes(const Search *s)
-{
-  const PetscInt n       = s->model->mesh->n_nodes * s->model->mesh->dim;
-  Problem        problem = s->model->problem;
-  PetscReal     *u;
-
-  PetscFunctionBeginUser;
-  if (!ProblemConservative(problem) || !ProblemHasFormulation(problem, FORMULATION_MIXED))
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(n, &u));
-  PetscCall(ProblemDisplacements(problem, s->x, s->model->t, u));
-  PetscCall(VecWAXPY(s->w, -1, s->y, s->x));
-  PetscCall(ProblemSetTrial(problem, s->w, s->model->t));
-  PetscCall(ElasticityYield(problem->elasticity, u, problem->trial));
-  PetscCall(PetscFree(u));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Chooses how much of the step is taken, by energies. */

@@ -409,10 +409,20 @@ static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether the control and the bound on plastic strain take a step that has converged. */
+static PetscErrorCode LoadStepperJudge(LoadStepper stepper, PetscReal dt, PetscReal *most, PetscBool *taken)
+{
+  PetscFunctionBeginUser;
+  *most  = 0;
+  *taken = PETSC_TRUE;
+  if (stepper->control->judge) PetscCall(stepper->control->judge(stepper->model, dt, &stepper->size, taken));
+  if (*taken) PetscCall(LoadStepperBoundStrain(stepper, dt, most, taken));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Tries one step, and repeats it with smaller dt until it converges and the control accepts it, or dt falls below
    dt_min. A step whose first linear solve is singular is not repeated, because the tangent at its start is singular for
-   any dt. A fluid that leaks
-   ends the steps. */
+   any dt. A fluid that leaks ends the steps. */
 static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record, PetscBool *advanced)
 {
   Model           model  = stepper->model;
@@ -433,18 +443,19 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     PetscCall(LoadStepperTry(stepper, end, dt, &failures, &solve));
     record->attempts++;
     CountSolve(end, &solve, record, &stepper->report);
-    if (solve.result == SOLVE_CONVERGED) PetscCall(ModelCertify(model, &solve));
     if (solve.result == SOLVE_CONVERGED) {
-      *advanced = PETSC_TRUE;
-      if (stepper->control->judge) PetscCall(stepper->control->judge(model, dt, &stepper->size, advanced));
-      if (*advanced) PetscCall(LoadStepperBoundStrain(stepper, dt, &most, advanced));
-      if (*advanced) {
-        PetscCall(LoadStepperAccept(stepper, dt, most, clipped, &solve, record));
-        PetscFunctionReturn(PETSC_SUCCESS);
+      PetscCall(LoadStepperJudge(stepper, dt, &most, advanced));
+      if (!*advanced) {
+        PetscCall(ModelRestore(model));
+        report->steps_repeated++;
+        continue;
       }
-      PetscCall(ModelRestore(model));
-      report->steps_repeated++;
-      continue;
+      PetscCall(ModelCertify(model, &solve));
+    }
+    *advanced = (PetscBool)(solve.result == SOLVE_CONVERGED);
+    if (*advanced) {
+      PetscCall(LoadStepperAccept(stepper, dt, most, clipped, &solve, record));
+      PetscFunctionReturn(PETSC_SUCCESS);
     }
     PetscCall(
       PetscInfo(model->snes, "step to t = %g failed: %s; %s\n", (double)end, SolveResults[solve.result], solve.detail));
