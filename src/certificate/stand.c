@@ -284,6 +284,20 @@ static double Cosine(int dim, const Piece *a, const Piece *b)
   return Dot(m, n);
 }
 
+/* Keeps that a point has passed the piece where it came in, if that is the worst. */
+static void KeepPassed(const Point *point, const Event *in, double depth, double allowed, Finding *worst)
+{
+  const Finding finding = {.kind    = FINDING_PASSED,
+                           .ratio   = depth / allowed,
+                           .depth   = depth,
+                           .allowed = allowed,
+                           .tag     = {point->tag, 0},
+                           .face    = in->piece->face,
+                           .X       = {point->X[0], point->X[1], point->X[2]}};
+
+  Keep(&finding, worst);
+}
+
 /* Judges a point that was behind one piece and has come out of another one, or stands in it. Where the two are no
    opposite sides of a wall, it is back on the side from which it came: straight motions cut corners. Where contact
    presses, it may pass the tip of a wedge as deep as it may stand in it. */
@@ -293,20 +307,12 @@ static void JudgePassage(const Look *look, const Point *point, const Event *in, 
     fmin(BehindAt(look->dim, in->piece, point, out->at.s), BehindAt(look->dim, out->piece, point, in->at.s));
   const int carried = point->closed || in->piece->closed || out->piece->closed;
   double    allowed = STAND_ROUND_OFF * fmin(point->size, fmin(in->piece->size, out->piece->size));
-  Finding   finding;
 
   if (Cosine(look->dim, in->piece, out->piece) > STAND_OPPOSED) return;
   if (carried) allowed = look->penetration * fmin(point->size, fmin(in->piece->size, out->piece->size));
   allowed += look->overlap;
   if (!(depth > allowed)) return;
-  finding = (Finding){.kind    = FINDING_PASSED,
-                      .ratio   = depth / allowed,
-                      .depth   = depth,
-                      .allowed = allowed,
-                      .tag     = {point->tag, 0},
-                      .face    = in->piece->face,
-                      .X       = {point->X[0], point->X[1], point->X[2]}};
-  Keep(&finding, worst);
+  KeepPassed(point, in, depth, allowed, worst);
 }
 
 /* Judges a point that has crossed a piece and is not found behind any surface at the end. */
@@ -315,20 +321,12 @@ static void JudgeGone(const Look *look, const Point *point, const Event *in, con
   const double depth = BehindAt(look->dim, in->piece, point, 1);
   const double allowed =
     AllowedDepth(look, point->size, point->height, point->seen, in->piece) + in->piece->sagitta + look->overlap;
-  double  foot[3];
-  Finding finding;
+  double foot[3];
 
   if (!(depth > allowed) || (end->piece && end->front)) return;
   (void)PieceClosest(look->dim, (const Place *)in->piece->x[1], point->x[1], foot);
   if (Distance(foot, point->x[1]) > depth + 0.5 * in->piece->size) return; /* it left past an end */
-  finding = (Finding){.kind    = FINDING_PASSED,
-                      .ratio   = depth / allowed,
-                      .depth   = depth,
-                      .allowed = allowed,
-                      .tag     = {point->tag, 0},
-                      .face    = in->piece->face,
-                      .X       = {point->X[0], point->X[1], point->X[2]}};
-  Keep(&finding, worst);
+  KeepPassed(point, in, depth, allowed, worst);
 }
 
 /*@
