@@ -68,8 +68,8 @@ typedef void MaterialExtrapolateFn(const Lanes H[9], const Lanes H_0[9], double 
                                    Lanes A[MATERIAL_TANGENT_SIZE]);
 
 /* A separable law is a sum of constants[0]/2 (ln J)^2 and of a part without constants[0]. Of the others svk has
-   constants[0]/2 (tr E)^2 instead, linear constants[0]/2 (tr e)^2, and hyperfoam has powers of J. constants[0] is the first one
-   of Lame's constants, or the bulk modulus where the law is isochoric: its other part does not depend on J. */
+   constants[0]/2 (tr E)^2 instead, linear constants[0]/2 (tr e)^2, and hyperfoam has powers of J. constants[0] is the first
+   one of Lame's constants, or the bulk modulus where the law is isochoric: its other part does not depend on J. */
 typedef struct {
   MaterialLawFn         *evaluate;
   MaterialShearFn       *shear;

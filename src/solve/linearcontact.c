@@ -64,7 +64,8 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
   PetscCall(ContactStepGetTerms(s->contact, &s->n, &terms));
   s->all  = s->n * ContactStepParts(s->contact);
   PetscCall(VecGetSize(model->x, &size));
-  s->most = PetscMax(LINEAR_CONTACT_TERMS * ContactStepParts(s->contact), (PetscInt)(LINEAR_CONTACT_CHEAP / PetscMax(1, size)));
+  s->most = PetscMax(LINEAR_CONTACT_TERMS * ContactStepParts(s->contact),
+                     (PetscInt)(LINEAR_CONTACT_CHEAP / PetscMax(1, size)));
   PetscCall(PetscMalloc1(s->all, &s->travel));
   PetscCall(ContactStepChange(s->contact, s->du, t, model->t, s->travel));
   if (!s->rank) PetscCall(ActiveSetCreate(s->n, ContactStepParts(s->contact), s->most, terms, s->travel, &s->active));

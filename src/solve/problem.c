@@ -268,8 +268,8 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
 }
 
 /*@
-  ProblemTangent - computes the tangent of elements, loads, contact, contact springs and damping at (u, t) into problem->A
-  and problem->P.
+  ProblemTangent - computes the tangent of elements, loads, contact, contact springs and damping at (u, t) into
+  problem->A and problem->P.
 
   Collective
 

@@ -1,6 +1,7 @@
 /* Shows what mixed elements do with multipliers: force and tangent are derivatives of the energy of an incompressible
  * element, multipliers that do not change any more leave the pressure of the whole modulus, and those that follow
- * Newton's method start from the same pressure. Elements that yield have the forces of the others. test_elementkernel.c treats mixed elements without multipliers. */
+ * Newton's method start from the same pressure. Elements that yield have the forces of the others. test_elementkernel.c
+ * treats mixed elements without multipliers. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
