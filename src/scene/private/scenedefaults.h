@@ -1,4 +1,4 @@
-/* Default values that depend on other keys. scene.c chooses them, and schemakeys.c tells them in its help. */
+/* Default values that depend on other keys. scenecontact.c chooses them, and schemakeys.c tells them in its help. */
 #pragma once
 
 /* Factor on the automatic penalty where a scene names none, and its text. It leaves up to 1 % of error in most jobs.

@@ -1,0 +1,6 @@
+/* The reader of contact pairs, for scene.c only. */
+#pragma once
+#include "scene/scene.h"
+
+PetscErrorCode SceneReadContacts(Scene);
+PetscErrorCode SceneDestroyContacts(Scene);
