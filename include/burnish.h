@@ -5,7 +5,7 @@
    process: wrong input in the scene or in the mesh comes back as the status BURNISH_WRONG_INPUT with a message, and the
    program can go on with another scene. tests/library/library.c is a small example.
 
-   BurnishSetScene() and BurnishSetRestart() forget the values of BurnishSet(). Directory, overwrite and quiet stay
+   BurnishSetScene() and BurnishSetRestart() forget the values of BurnishSet(). Directory, overwrite, quiet and trust stay
    until they are set again. A message and the path of a mesh file are valid until the next run or BurnishDestroy(). The
    value of a probe is NaN where it has none, for example without contact. Meshes that are made go to out/ in the
    working directory. One object runs at a time in a process, because PETSc's options and error handlers belong to the
@@ -40,6 +40,7 @@ PetscErrorCode BurnishSetDirectory(Burnish burnish, const char *directory);
 PetscErrorCode BurnishSetRestart(Burnish burnish, const char *directory);
 PetscErrorCode BurnishSetOverwrite(Burnish burnish, PetscBool overwrite);
 PetscErrorCode BurnishSetQuiet(Burnish burnish, PetscBool quiet);
+PetscErrorCode BurnishSetTrust(Burnish burnish, PetscBool trust);
 PetscErrorCode BurnishRun(Burnish burnish, BurnishStatus *status);
 PetscErrorCode BurnishCheck(Burnish burnish, BurnishStatus *status);
 PetscErrorCode BurnishMesh(Burnish burnish, BurnishStatus *status, const char **file);

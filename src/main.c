@@ -32,6 +32,7 @@ static PetscErrorCode SetFromCommandLine(Burnish burnish, const CommandLine *com
   PetscCall(BurnishSetDirectory(burnish, command->directory));
   PetscCall(BurnishSetOverwrite(burnish, command->overwrite ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(BurnishSetQuiet(burnish, command->quiet ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(BurnishSetTrust(burnish, command->trust ? PETSC_TRUE : PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -8,19 +8,9 @@ static PetscBool IsNameCharacter(char c)
   return isalnum((unsigned char)c) || c == '_' ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/*@
-  GeoTextStrip - copies the text of a .geo file and replaces its comments by blanks.
-
-  Not collective
-
-  Input Parameters:
-+ text    - text of the file
-- strings - PETSC_TRUE: the text between double quotes becomes blank too
-
-  Output Parameter:
-. stripped - copy of the same length, to be freed with PetscFree()
-@*/
-PetscErrorCode GeoTextStrip(const char *text, PetscBool strings, char **stripped)
+/* Copies the text of a .geo file and replaces comments and the text between double quotes by blanks. The copy has the
+   same length and is to be freed with PetscFree(). */
+static PetscErrorCode GeoTextStrip(const char *text, char **stripped)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscStrallocpy(text, stripped));
@@ -29,7 +19,7 @@ PetscErrorCode GeoTextStrip(const char *text, PetscBool strings, char **stripped
 
     if (*at == '"') {
       n += strcspn(at + 1, "\"");
-      if (strings) memset(at + 1, ' ', n - 1);
+      memset(at + 1, ' ', n - 1);
       n += at[n] == '"';
     } else if (!strncmp(at, "//", 2)) {
       n = strcspn(at, "\n");
@@ -173,7 +163,7 @@ PetscErrorCode GeoParametersAdd(const char *text, GeoParameters *parameters)
   char *code;
 
   PetscFunctionBeginUser;
-  PetscCall(GeoTextStrip(text, PETSC_TRUE, &code));
+  PetscCall(GeoTextStrip(text, &code));
   for (const char *at = code; (at = BehindWord(code, at, "DefineConstant"));)
     PetscCall(AddList(at, &parameters->declared));
   for (const char *at = code; (at = BehindWord(code, at, "Exists"));) {

@@ -2,14 +2,16 @@
    parameters. */
 #define _GNU_SOURCE 1 /* execvpe */
 #include "gmsh.h"
-#include "geoparameters.h"
+#include "base/confinement.h"
+#include "base/hash.h"
+#include "geofiles.h"
+#include "geoscript.h"
 #include "gmshfile.h"
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <stdint.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -21,8 +23,6 @@ extern char **environ;
 #define NO_PROGRAM 127
 /* This plus the number of a signal is the exit status for a gmsh that the signal has ended, the same as the shell's. */
 #define KILLED 128
-/* A .geo that includes itself must not recurse for ever. */
-#define INCLUDE_DEPTH 16
 /* A message repeats so many lines of gmsh at most. One mistake makes gmsh print dozens. */
 #define ERROR_LINES 6
 /* Hexadecimal digits in the name of the mesh file for what is meshed. */
@@ -61,13 +61,14 @@ static PetscErrorCode ChildEnvironment(char ***environment)
 }
 
 /* Becomes gmsh in the child process of GmshExecute(). It never returns. */
-static void ChildExecute(char *const arguments[], char *const environment[], int output)
+static void ChildExecute(char *const arguments[], char *const environment[], const char *confined, int output)
 {
   int input = open("/dev/null", O_RDONLY);
 
   dup2(input, STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
+  if (confined) ConfineProcess(confined);
   execvpe(arguments[0], arguments, environment);
   _exit(NO_PROGRAM);
 }
@@ -90,9 +91,9 @@ static PetscErrorCode ReadPipe(int end, char **text)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Runs gmsh without a shell. *output is all that it printed, to be freed with PetscFree(). *status is NO_PROGRAM where
-   there is no gmsh. */
-static PetscErrorCode GmshExecute(char *const arguments[], char **output, int *status)
+/* Runs gmsh without a shell and gives all that it printed, to be freed with PetscFree(). Unless `confined` is NULL, gmsh
+   can start no program and write in this folder only. The status is NO_PROGRAM where there is no gmsh. */
+static PetscErrorCode GmshExecute(char *const arguments[], const char *confined, char **output, int *status)
 {
   char **environment;
   int    ends[2];
@@ -103,7 +104,7 @@ static PetscErrorCode GmshExecute(char *const arguments[], char **output, int *s
   PetscCheck(!pipe(ends), PETSC_COMM_SELF, PETSC_ERR_SYS, "pipe: %s", strerror(errno));
   child = fork();
   PetscCheck(child >= 0, PETSC_COMM_SELF, PETSC_ERR_SYS, "fork: %s", strerror(errno));
-  if (!child) ChildExecute(arguments, environment, ends[1]);
+  if (!child) ChildExecute(arguments, environment, confined, ends[1]);
   close(ends[1]);
   PetscCall(ReadPipe(ends[0], output));
   close(ends[0]);
@@ -172,91 +173,23 @@ static void ComplainFailed(Scene scene, int status, const char *errors, const ch
              scene->mesh_file, status, last[0] ? last : " none");
 }
 
-/* What goes into a mesh. The content is hashed by FNV-1a (64 bits; Fowler, Noll, Vo), which needs no library and
-   spreads well enough for a file name. */
-typedef struct {
-  uint64_t      content;
-  GeoParameters declared; /* by the .geo and the files that it includes */
-  PetscBool     open;     /* some file cannot be followed, so that it may declare other parameters */
-} Fingerprint;
-
-static const uint64_t FNV_BASIS = 14695981039346656037ull, FNV_PRIME = 1099511628211ull;
-
-static uint64_t Hash(uint64_t hash, const char *data, size_t size)
-{
-  for (size_t i = 0; i < size; i++) hash = (hash ^ (unsigned char)data[i]) * FNV_PRIME;
-  return hash;
-}
-
-/* Makes every bit of a hash depend on every other (the last step of MurmurHash3, Appleby). Values that differ in one
-   digit have FNV hashes that differ by a small multiple of one constant. Sums of such hashes coincide: 3 + 4 is 4 + 3.
- */
-static uint64_t HashFinish(uint64_t hash)
-{
-  hash = (hash ^ (hash >> 33)) * 0xff51afd7ed558ccdull;
-  hash = (hash ^ (hash >> 33)) * 0xc4ceb9fe1a85ec53ull;
-  return hash ^ (hash >> 33);
-}
-
-static PetscErrorCode FingerprintFile(Fingerprint *, const char *, int);
-
-/* Follows every Include "FILE" and Merge "FILE". A name that gmsh computes cannot be followed. */
-static PetscErrorCode FingerprintIncludes(Fingerprint *print, const char *file, const char *text, int depth)
-{
-  const char *const commands[] = {"Include", "Merge"};
-  const char       *slash      = strrchr(file, '/');
-  int               directory  = slash ? (int)(slash - file) + 1 : 0;
-  char             *code;
-
-  PetscFunctionBeginUser;
-  PetscCall(GeoTextStrip(text, PETSC_FALSE, &code));
-  for (int i = 0; i < 2; i++) {
-    for (const char *at = code; (at = strstr(at, commands[i]));) {
-      char path[PETSC_MAX_PATH_LEN];
-
-      at += strlen(commands[i]);
-      at += strspn(at, " \t");
-      if (*at != '"') {
-        print->open = PETSC_TRUE;
-        continue;
-      }
-      at++;
-      snprintf(path, sizeof(path), "%.*s%.*s", *at == '/' ? 0 : directory, file, (int)strcspn(at, "\"\n"), at);
-      PetscCall(FingerprintFile(print, path, depth + 1));
-    }
-  }
-  PetscCall(PetscFree(code));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode FingerprintFile(Fingerprint *print, const char *file, int depth)
-{
-  char  *text;
-  size_t size;
-
-  PetscFunctionBeginUser;
-  if (depth > INCLUDE_DEPTH) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GmshFileLoad(file, &text, &size));
-  if (!text) PetscFunctionReturn(PETSC_SUCCESS); /* gmsh complains if it matters */
-  print->content = Hash(print->content, text, size + 1);
-  PetscCall(GeoParametersAdd(text, &print->declared));
-  PetscCall(FingerprintIncludes(print, file, text, depth));
-  PetscCall(PetscFree(text));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Refuses parameters that the .geo does not declare: gmsh would ignore them. A name with a dot is one of gmsh's own
    options. */
-static PetscErrorCode CheckParameters(Scene scene, const Fingerprint *print, Complaint *complaint)
+static PetscErrorCode CheckParameters(Scene scene, PetscBool trust, const GeoFiles *files, Complaint *complaint)
 {
   char *names;
 
   PetscFunctionBeginUser;
-  PetscCall(GeoParametersText(&print->declared, &names));
-  for (int i = 0; i < scene->n_parameters && !print->open; i++) {
-    const char *key = scene->parameters[i].key;
+  PetscCall(GeoParametersText(&files->declared, &names));
+  for (int i = 0; i < scene->n_parameters; i++) {
+    const char *key  = scene->parameters[i].key;
+    const char *what = trust ? NULL : GeoOptionForbidden(key, (int)strlen(key));
 
-    if (strchr(key, '.') || GeoParametersFind(&print->declared, key)) continue;
+    if (what)
+      Complain(complaint,
+               "%s: %s; allowed: options of geometry and mesh (-trust on the command line allows the others)",
+               SceneWhere(scene, "mesh.parameters", key), what);
+    if (files->open || strchr(key, '.') || GeoParametersFind(&files->declared, key)) continue;
     Complain(complaint, "%s: '%s' declares no parameter of this name; allowed: %s",
              SceneWhere(scene, "mesh.parameters", key), scene->mesh_file, names);
   }
@@ -265,24 +198,26 @@ static PetscErrorCode CheckParameters(Scene scene, const Fingerprint *print, Com
 }
 
 /* Hashes all that the mesh depends on. The order of parameters in the scene does not matter, as each is hashed apart
-   and the hashes are added. */
-static PetscErrorCode FingerprintScene(Scene scene, uint64_t *content, Complaint *complaint)
+   and the hashes are added. *open: the geometry may read files that the hash does not know. */
+static PetscErrorCode HashScene(Scene scene, PetscBool trust, uint64_t *content, PetscBool *open, Complaint *complaint)
 {
-  Fingerprint print = {.content = FNV_BASIS};
-  char        text[64];
-  uint64_t    sum = 0;
+  GeoFiles files;
+  char     text[64];
+  uint64_t sum = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(FingerprintFile(&print, scene->mesh_file, 0));
-  PetscCall(CheckParameters(scene, &print, complaint));
+  PetscCall(GeoFilesRead(scene, trust, &files, complaint));
+  PetscCall(CheckParameters(scene, trust, &files, complaint));
   for (int i = 0; i < scene->n_parameters; i++) {
     const ScenePair *pair = &scene->parameters[i];
 
-    sum += HashFinish(Hash(Hash(FNV_BASIS, pair->key, strlen(pair->key) + 1), pair->value, strlen(pair->value) + 1));
+    sum += HashFinish(
+      HashBytes(HashBytes(HASH_START, pair->key, strlen(pair->key) + 1), pair->value, strlen(pair->value) + 1));
   }
   snprintf(text, sizeof(text), "%016llx %d %d", (unsigned long long)sum, scene->dim, scene->order);
-  *content = Hash(print.content, text, strlen(text));
-  PetscCall(GeoParametersReset(&print.declared));
+  *content = HashBytes(files.content, text, strlen(text));
+  *open    = files.open;
+  PetscCall(GeoFilesReset(&files));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -341,8 +276,9 @@ static PetscErrorCode MeshIsWhole(const char *file, PetscBool *whole)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Runs gmsh on the .geo. The mesh gets its name when it is whole. */
-static PetscErrorCode MeshGeometry(Scene scene, const char *file, Complaint *complaint)
+/* Runs gmsh on the .geo. The mesh gets its name when it is whole. gmsh may write in the folder `confined` only,
+   anywhere if this is NULL. */
+static PetscErrorCode MeshGeometry(Scene scene, const char *file, const char *confined, Complaint *complaint)
 {
   char         temporary[PETSC_MAX_PATH_LEN + TEXT_PARTS_IN_NAME], dim[16], order[16], errors[1024], *output;
   const char **arguments;
@@ -378,7 +314,7 @@ static PetscErrorCode MeshGeometry(Scene scene, const char *file, Complaint *com
   arguments[n++] = "-o";
   arguments[n++] = temporary;
   arguments[n]   = NULL;
-  PetscCall(GmshExecute((char *const *)arguments, &output, &status));
+  PetscCall(GmshExecute((char *const *)arguments, confined, &output, &status));
   ErrorLines(output, errors, sizeof(errors));
   PetscCall(MeshIsWhole(temporary, &whole));
   if (status || errors[0])
@@ -420,7 +356,8 @@ static PetscErrorCode MakeDirectories(const char *directory, Complaint *complain
 
   Input Parameters:
 + scene     - its mesh file, parameters, order and dimension are read
-- directory - where mesh files are kept; it is made if it is not there
+. directory - where mesh files are kept; it is made if it is not there
+- trust     - PETSC_TRUE: the geometry may run programs and write files
 
   Output Parameters:
 + file      - the mesh file, DIRECTORY/mesh-HASH.msh (PETSC_MAX_PATH_LEN characters)
@@ -432,14 +369,18 @@ static PetscErrorCode MakeDirectories(const char *directory, Complaint *complain
   includes, the parameters, dimension and order. The other digits stand for gmsh's version. Where there is no gmsh, a
   mesh of the same contents is taken whichever version made it. A parameter that the .geo does not declare is a
   complaint that lists those that it declares (geoparameters.h).
+
+  A mesh that is there is taken as it is, unless the geometry may read files that the hash does not know: then it is
+made anew each time.
 @*/
-PetscErrorCode GmshGenerate(Scene scene, const char *directory, char *file, PetscReal *seconds, Complaint *complaint)
+PetscErrorCode GmshGenerate(Scene scene, const char *directory, PetscBool trust, char *file, PetscReal *seconds,
+                            Complaint *complaint)
 {
   char *const    ask[] = {(char *)"gmsh", (char *)"--version", NULL};
   char           prefix[TEXT_PARTS_IN_NAME], *version;
   int            status;
   uint64_t       content = 0;
-  PetscBool      found;
+  PetscBool      found, open = PETSC_FALSE;
   struct stat    there;
   PetscLogDouble start, end;
 
@@ -453,11 +394,11 @@ PetscErrorCode GmshGenerate(Scene scene, const char *directory, char *file, Pets
   if (strlen(directory) + TEXT_PARTS_IN_NAME > PETSC_MAX_PATH_LEN)
     Complain(complaint, "the path '%s' is too long", directory);
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FingerprintScene(scene, &content, complaint));
+  PetscCall(HashScene(scene, trust, &content, &open, complaint));
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   snprintf(prefix, sizeof(prefix), "mesh-%0*llx", CONTENT_DIGITS,
            (unsigned long long)(content >> (64 - 4 * CONTENT_DIGITS)));
-  PetscCall(GmshExecute(ask, &version, &status));
+  PetscCall(GmshExecute(ask, NULL, &version, &status));
   if (status == NO_PROGRAM) {
     PetscCall(FindMesh(directory, prefix, file, &found));
     if (!found) {
@@ -467,14 +408,14 @@ PetscErrorCode GmshGenerate(Scene scene, const char *directory, char *file, Pets
                SceneWhere(scene, "mesh", "file"), scene->mesh_file, scene->file, directory, prefix);
     }
   } else {
-    uint64_t hash = Hash(FNV_BASIS, version, strlen(version));
+    uint64_t hash = HashBytes(HASH_START, version, strlen(version));
 
     snprintf(file, PETSC_MAX_PATH_LEN, "%s/%s%0*llx.msh", directory, prefix, VERSION_DIGITS,
              (unsigned long long)(hash >> (64 - 4 * VERSION_DIGITS)));
-    if (stat(file, &there)) {
+    if (open || stat(file, &there)) {
       PetscCall(PetscTime(&start));
       PetscCall(MakeDirectories(directory, complaint));
-      if (!complaint->text[0]) PetscCall(MeshGeometry(scene, file, complaint));
+      if (!complaint->text[0]) PetscCall(MeshGeometry(scene, file, trust ? NULL : directory, complaint));
       PetscCall(PetscTime(&end));
       *seconds = (PetscReal)(end - start);
     }

@@ -23,7 +23,8 @@
   Input Parameters:
 + comm      - all ranks; rank 0 runs gmsh
 . scene     - mesh file, order and parameters
-- directory - where meshes are kept
+. directory - where meshes are kept
+- trust     - PETSC_TRUE: the .geo may run programs and write files
 
   Output Parameters:
 + file    - path of the .msh file [PETSC_MAX_PATH_LEN]
@@ -31,9 +32,10 @@
 
   Note:
   A mesh is made once for each content and kept as mesh-HASH.msh. Refuses a file that is neither .geo nor .msh, and a
-  file that gmsh refuses.
+  file that gmsh refuses. Refuses a .geo that runs programs or writes files, unless `trust` is set.
 @*/
-PetscErrorCode MeshGenerate(MPI_Comm comm, Scene scene, const char *directory, char *file, PetscReal *seconds)
+PetscErrorCode MeshGenerate(MPI_Comm comm, Scene scene, const char *directory, PetscBool trust, char *file,
+                            PetscReal *seconds)
 {
   const char *ending    = strrchr(scene->mesh_file, '.');
   Complaint   complaint = {""};
@@ -49,7 +51,7 @@ PetscErrorCode MeshGenerate(MPI_Comm comm, Scene scene, const char *directory, c
   if (!strcmp(ending, ".msh"))
     PetscCall(PetscStrncpy(file, scene->mesh_file, PETSC_MAX_PATH_LEN));
   else if (!rank)
-    PetscCall(GmshGenerate(scene, directory, file, seconds, &complaint));
+    PetscCall(GmshGenerate(scene, directory, trust, file, seconds, &complaint));
   PetscCall(ComplaintRefuse(comm, &complaint));
   PetscCallMPI(MPI_Bcast(file, PETSC_MAX_PATH_LEN, MPI_CHAR, 0, comm));
   PetscCallMPI(MPI_Bcast(seconds, 1, MPIU_REAL, 0, comm));

@@ -13,7 +13,7 @@
 #include "mesh/meshgroup.h"
 #include "mesh/meshquality.h"
 
-PetscErrorCode MeshGenerate(MPI_Comm, Scene, const char *directory, char *file, PetscReal *seconds);
+PetscErrorCode MeshGenerate(MPI_Comm, Scene, const char *directory, PetscBool trust, char *file, PetscReal *seconds);
 PetscErrorCode MeshCreate(MPI_Comm, Scene, const char *file, Mesh *);
 PetscErrorCode MeshDestroy(Mesh *);
 void           MeshGatherNodes(Mesh, PetscInt n, const PetscInt nodes[], const PetscReal *values, PetscReal *gathered);

@@ -176,6 +176,25 @@ PetscErrorCode BurnishSetQuiet(Burnish burnish, PetscBool quiet)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  BurnishSetTrust - lets scenes run programs and write files of their own choice.
+
+  Logically collective
+
+  Input Parameters:
++ burnish - the object
+- trust   - PETSC_TRUE: a .geo may use commands such as SystemCall and Save, and PETSc options of a scene may name files
+
+  Note:
+  Without it such a scene is refused as wrong input. Set it for scenes of people whom you trust only.
+@*/
+PetscErrorCode BurnishSetTrust(Burnish burnish, PetscBool trust)
+{
+  PetscFunctionBeginUser;
+  burnish->input.trust = trust;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Forgets what is left of the last run. */
 static PetscErrorCode ForgetRun(Burnish burnish)
 {

@@ -1,6 +1,7 @@
 /* Scene, mesh, model, load steps, results: one after the other. */
 #include "run.h"
 #include <petsctime.h>
+#include <string.h>
 #include "base/errorlog.h"
 #include "base/interruption.h"
 #include "base/refusal.h"
@@ -8,8 +9,9 @@
 #include "report/rundirectory.h"
 
 /* Puts the scene's PETSc options into PETSc's database, below those of the environment and of the command line: only
-   options that nobody has set. The database belongs to the process, so that RunDestroy() takes them out again. */
-static PetscErrorCode RunInsertOptions(Run *run)
+   options that nobody has set. The database belongs to the process, so that RunDestroy() takes them out again. A value
+   such as ascii:FILE has PETSc write a file, which a scene may do only if the user trusts it. */
+static PetscErrorCode RunInsertOptions(Run *run, PetscBool trust)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(run->scene->n_petsc, &run->options));
@@ -17,6 +19,11 @@ static PetscErrorCode RunInsertOptions(Run *run)
     char      key[256];
     PetscBool set;
 
+    if (!trust && strchr(run->scene->petsc[i].value, ':'))
+      PetscCall(RefuseInput(run->comm,
+                            "%s: '%s' names a file to write; allowed: values without ':' (-trust on the command line "
+                            "allows files, for a scene that you trust)",
+                            SceneWhere(run->scene, "petsc", run->scene->petsc[i].key), run->scene->petsc[i].value));
     PetscCall(PetscSNPrintf(key, sizeof(key), "-%s", run->scene->petsc[i].key));
     PetscCall(PetscOptionsHasName(NULL, NULL, key, &set));
     if (set) continue;
@@ -34,13 +41,13 @@ static PetscErrorCode RunOpen(Run *run, const RunInput *input)
   if (input->directory && !input->directory[0])
     PetscCall(RefuseInput(run->comm, "the directory of the results has no name; allowed: a path"));
   PetscCall(SceneRead(run->comm, input->scene, input->n_set, input->set, &run->scene));
-  PetscCall(RunInsertOptions(run));
+  PetscCall(RunInsertOptions(run, input->trust));
   PetscCall(PetscSNPrintf(run->directory, sizeof(run->directory), "%s%s", input->directory ? input->directory : "out/",
                           input->directory ? "" : run->scene->name));
   if (input->task != RUN_MESH) PetscCall(RunDirectoryCheckPath(run->comm, run->directory));
   PetscCall(ErrorLogSetDirectory(run->directory));
   if (input->task == RUN_SOLVE) PetscCall(RunDirectoryCheck(run->comm, run->scene, run->directory, input->overwrite));
-  PetscCall(MeshGenerate(run->comm, run->scene, "out", run->mesh_file, &run->mesh_s));
+  PetscCall(MeshGenerate(run->comm, run->scene, "out", input->trust, run->mesh_file, &run->mesh_s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -55,7 +62,7 @@ static PetscErrorCode RunReopen(Run *run, const RunInput *input)
   PetscCall(ErrorLogSetDirectory(run->directory));
   PetscCall(CheckpointOpen(run->comm, run->directory, &run->checkpoint));
   PetscCall(CheckpointReadScene(run->checkpoint, input->n_set, input->set, &run->scene));
-  PetscCall(RunInsertOptions(run));
+  PetscCall(RunInsertOptions(run, input->trust));
   PetscCall(RunDirectoryCheckRestart(run->comm, run->scene, run->directory));
   PetscCall(CheckpointMeshFile(run->checkpoint, run->mesh_file));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -6,8 +6,9 @@
 #include <string.h>
 
 static const char Usage[] =
-  "usage: burnish [-check | -mesh] SCENE.yaml [-o DIR] [-set KEY=VALUE]... [-overwrite] [-quiet] [PETSc options]\n"
-  "       burnish -restart DIR [-set KEY=VALUE]... [-quiet] [PETSc options]\n"
+  "usage: burnish [-check | -mesh] SCENE.yaml [-o DIR] [-set KEY=VALUE]... [-overwrite] [-quiet] [-trust] [PETSc "
+  "options]\n"
+  "       burnish -restart DIR [-set KEY=VALUE]... [-quiet] [-trust] [PETSc options]\n"
   "       burnish -help | -version";
 
 /* Keeps a complaint with the usage, unless an earlier argument has caused one already. */
@@ -100,6 +101,8 @@ static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
     line->overwrite = 1;
   } else if (!strcmp(word, "-quiet")) {
     line->quiet = 1;
+  } else if (!strcmp(word, "-trust")) {
+    line->trust = 1;
   } else if (!strcmp(word, "-restart")) {
     line->restart = CommandLineValue(line, argc, argv, i, "needs the directory of a run");
   } else if (!strcmp(word, "-time_limit")) {
@@ -218,6 +221,9 @@ void CommandLineHelp(FILE *file)
         "                   solver and stepping\n"
         "  -overwrite       lets DIR hold another scene's results\n"
         "  -quiet           no progress on the terminal\n"
+        "  -trust           lets the scene run programs and write files of its own (gmsh's SystemCall and Save, PETSc "
+        "options that\n"
+        "                   name files); for scenes of people whom you trust\n"
         "  -time_limit S    ends the run after the step that leaves just the time to write a checkpoint, S seconds "
         "from its start\n"
         "All other options are PETSc's.\n\n"

@@ -19,7 +19,7 @@ typedef struct {
   double      time_limit; /* value of -time_limit in seconds, or 0 for no limit */
   int         n_set;
   char      **set; /* values of -set, each KEY=VALUE */
-  int         overwrite, quiet;
+  int         overwrite, quiet, trust;
   /* The arguments that are left for PetscInitialize(). The first one is the program's name. */
   int    argc;
   char **argv;

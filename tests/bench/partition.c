@@ -216,7 +216,7 @@ int main(int argc, char **argv)
   PetscFunctionBeginUser;
   PetscCall(PetscInitialize(NULL, NULL, NULL, NULL));
   PetscCall(SceneRead(PETSC_COMM_WORLD, file, n_set, set, &scene));
-  PetscCall(MeshGenerate(PETSC_COMM_WORLD, scene, "out/bench", mesh_file, &seconds));
+  PetscCall(MeshGenerate(PETSC_COMM_WORLD, scene, "out/bench", PETSC_FALSE, mesh_file, &seconds));
   PetscCall(MeshCreate(PETSC_COMM_WORLD, scene, mesh_file, &study.mesh));
   PetscCall(AddPairs(scene, &study));
   PetscCall(DMPlexCreatePartitionerGraph(study.mesh->dm, 0, &n, &study.offsets, &study.adjacency, NULL));

@@ -41,7 +41,7 @@ static Mesh MakeMesh(const char *name, Scene *scene)
 
   snprintf(path, sizeof(path), "%s/%s", folder, name);
   assert_int_equal(SceneRead(PETSC_COMM_WORLD, path, 0, NULL, scene), 0);
-  assert_int_equal(MeshGenerate(PETSC_COMM_WORLD, *scene, folder, file, &seconds), 0);
+  assert_int_equal(MeshGenerate(PETSC_COMM_WORLD, *scene, folder, PETSC_FALSE, file, &seconds), 0);
   assert_int_equal(MeshCreate(PETSC_COMM_WORLD, *scene, file, &mesh), 0);
   return mesh;
 }

@@ -109,7 +109,7 @@ static Mesh MakeMesh(Scene scene, char file[PETSC_MAX_PATH_LEN])
   PetscReal seconds;
   Mesh      mesh;
 
-  if (Refused(MeshGenerate(PETSC_COMM_WORLD, scene, folder, file, &seconds))) fail_msg("%s", refused);
+  if (Refused(MeshGenerate(PETSC_COMM_WORLD, scene, folder, PETSC_FALSE, file, &seconds))) fail_msg("%s", refused);
   if (Refused(MeshCreate(PETSC_COMM_WORLD, scene, file, &mesh))) fail_msg("%s", refused);
   return mesh;
 }
@@ -722,7 +722,7 @@ static void TryWrong(const Wrong *test)
   refused[0] = '\0';
   WriteText("scene.yaml", text, path);
   if (Refused(SceneRead(PETSC_COMM_WORLD, path, 0, NULL, &scene))) return;
-  if (!Refused(MeshGenerate(PETSC_COMM_WORLD, scene, folder, file, &seconds)) &&
+  if (!Refused(MeshGenerate(PETSC_COMM_WORLD, scene, folder, PETSC_FALSE, file, &seconds)) &&
       !Refused(MeshCreate(PETSC_COMM_WORLD, scene, file, &mesh))) {
     if (!Refused(MeshCheckQuality(mesh, scene)))
       Refused(MeshGetGroup(mesh, scene, "loads.0", "surface", scene->loads[0].region, mesh->dim - 1, &group));

@@ -226,7 +226,7 @@ static PetscErrorCode CreateMesh(const Case *test, int n, Scene *scene, Mesh *me
 
   PetscFunctionBeginUser;
   PetscCall(SceneCreate(test, n, scene));
-  PetscCall(MeshGenerate(PETSC_COMM_SELF, *scene, folder, file, &seconds));
+  PetscCall(MeshGenerate(PETSC_COMM_SELF, *scene, folder, PETSC_FALSE, file, &seconds));
   PetscCall(MeshCreate(PETSC_COMM_SELF, *scene, file, mesh));
   PetscCall(PetscCalloc1((*mesh)->n_nodes, &boundary));
   PetscCall(Constrain(*scene, *mesh, boundary));
@@ -347,12 +347,12 @@ static void AddNodalPressureError(const Rule *rule, const Case *test, Mesh mesh,
 static void Errors(const Rule *rule, const Case *test, Mesh mesh, const PetscReal *u, const PetscReal *mean,
                    PetscReal error[QUANTITIES])
 {
-  const Element   *e      = ElementGet(test->type);
-  const KernelCase kernel = {.type        = test->type,
-                             .geometry    = test->geometry,
-                             .kinematics  = KINEMATICS_SMALL,
-                             .law         = MATERIAL_LINEAR,
-                             .formulation = FORMULATION_MIXED};
+  const Element   *e                   = ElementGet(test->type);
+  const KernelCase kernel              = {.type        = test->type,
+                                          .geometry    = test->geometry,
+                                          .kinematics  = KINEMATICS_SMALL,
+                                          .law         = MATERIAL_LINEAR,
+                                          .formulation = FORMULATION_MIXED};
   const PetscReal  compression         = young / (3 * (1 - 2 * poisson)); /* bulk modulus */
   const Material   material            = MaterialFromModuli(MATERIAL_LINEAR, young, poisson);
   PetscReal        sum[2 * QUANTITIES] = {0};

@@ -269,7 +269,7 @@ static PetscErrorCode CreateMesh(MPI_Comm comm, const Case *test, int n, Scene *
 
   PetscFunctionBeginUser;
   PetscCall(SceneCreate(comm, test, n, scene));
-  PetscCall(MeshGenerate(comm, *scene, folder, file, &seconds));
+  PetscCall(MeshGenerate(comm, *scene, folder, PETSC_FALSE, file, &seconds));
   PetscCall(MeshCreate(comm, *scene, file, mesh));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCheck(size == 1 || (*mesh)->n_cells < (*mesh)->n_cells_global, PETSC_COMM_SELF, PETSC_ERR_PLIB,

@@ -77,7 +77,7 @@ static PetscReal Generate(const char *parameters, char *file, Complaint *complai
 
   complaint->text[0] = '\0';
   snprintf(directory, sizeof(directory), "%s/out/meshes", folder);
-  assert_int_equal(GmshGenerate(scene, directory, file, &seconds, complaint), 0);
+  assert_int_equal(GmshGenerate(scene, directory, PETSC_FALSE, file, &seconds, complaint), 0);
   assert_int_equal(SceneDestroy(&scene), 0);
   return seconds;
 }
@@ -108,7 +108,7 @@ static void test_meshed_once(void **state)
 
   WriteText("size.geo", longer, strlen(longer), path);
   snprintf(path, sizeof(path), "%s/out/meshes", folder);
-  assert_int_equal(GmshGenerate(scene, path, other, &seconds, &complaint), 0);
+  assert_int_equal(GmshGenerate(scene, path, PETSC_FALSE, other, &seconds, &complaint), 0);
   assert_string_equal(complaint.text, "");
   assert_string_not_equal(first, other);
   assert_int_equal(SceneDestroy(&scene), 0);
@@ -209,14 +209,14 @@ static void test_mistakes_in_geo(void **state)
   WriteText("block.geo", wrong, strlen(wrong), path);
   snprintf(directory, sizeof(directory), "%s/out/meshes", folder);
   complaint.text[0] = '\0';
-  assert_int_equal(GmshGenerate(scene, directory, file, &seconds, &complaint), 0);
+  assert_int_equal(GmshGenerate(scene, directory, PETSC_FALSE, file, &seconds, &complaint), 0);
   assert_non_null(strstr(complaint.text, "gmsh failed on"));
   assert_non_null(strstr(complaint.text, "line 2"));
   assert_int_equal(access(file, F_OK), -1);
 
   unlink(path);
   complaint.text[0] = '\0';
-  assert_int_equal(GmshGenerate(scene, directory, file, &seconds, &complaint), 0);
+  assert_int_equal(GmshGenerate(scene, directory, PETSC_FALSE, file, &seconds, &complaint), 0);
   assert_non_null(strstr(complaint.text, "there is no file"));
   assert_int_equal(SceneDestroy(&scene), 0);
 }

@@ -100,7 +100,7 @@ static void CheckBlocks(const char *smoother, const char *formulation, double ga
   Write("scene.yaml", text, path, sizeof(path));
   assert_int_equal(SceneRead(PETSC_COMM_WORLD, path, 0, NULL, &scene), 0);
   assert_string_equal(SmootherNames[scene->contacts[0].smoother], smoother);
-  assert_int_equal(MeshGenerate(PETSC_COMM_WORLD, scene, folder, mesh_file, &seconds), 0);
+  assert_int_equal(MeshGenerate(PETSC_COMM_WORLD, scene, folder, PETSC_FALSE, mesh_file, &seconds), 0);
   assert_int_equal(MeshCreate(PETSC_COMM_WORLD, scene, mesh_file, &mesh), 0);
   assert_int_equal(LoadsCreate(mesh, scene, &loads), 0);
   assert_int_equal(ElasticityCreate(mesh, scene, &elasticity), 0);

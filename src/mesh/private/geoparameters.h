@@ -24,4 +24,3 @@ PetscErrorCode GeoParametersAdd(const char *text, GeoParameters *);
 PetscBool      GeoParametersFind(const GeoParameters *, const char *name);
 PetscErrorCode GeoParametersText(const GeoParameters *, char **text);
 PetscErrorCode GeoParametersReset(GeoParameters *);
-PetscErrorCode GeoTextStrip(const char *text, PetscBool strings, char **stripped);

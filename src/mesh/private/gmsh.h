@@ -4,4 +4,4 @@
 #include "base/complaint.h"
 #include "scene/scene.h"
 
-PetscErrorCode GmshGenerate(Scene, const char *directory, char *file, PetscReal *seconds, Complaint *);
+PetscErrorCode GmshGenerate(Scene, const char *directory, PetscBool trust, char *file, PetscReal *seconds, Complaint *);

@@ -1,0 +1,107 @@
+"""Scenes of strangers: geometry that runs programs or writes files is refused with its file and line, does nothing, and
+leaves no mesh. With -trust it is taken. A file that the geometry reads makes a new mesh when it changes."""
+import pathlib
+import re
+import shutil
+
+from harness import SCENES, Check, arguments, run
+
+SQUARE = (SCENES.parent.parent / "meshes" / "square.geo").read_text()
+args = arguments()
+check = Check()
+place = pathlib.Path(args.out).resolve() / "geometry"
+shutil.rmtree(place, ignore_errors=True)
+place.mkdir(parents=True)
+
+
+def write(name, text):
+    (place / name).write_text(text)
+    return place / name
+
+
+def scene(geometry, *options, overrides=()):
+    return run(args, SCENES / "wrong_mesh.yaml", "-check", *options, out="check",
+               overrides=[f"mesh.file={geometry}", *overrides], must=None)
+
+
+def says(what, pattern, finished):
+    check.holds(what, re.search(pattern, finished.text), finished.text.strip()[:250])
+
+
+def mesh(geometry, *options):
+    """Bytes of the mesh that a geometry gives."""
+    finished = run(args, SCENES / "wrong_mesh.yaml", "-mesh", *options, out="check",
+                   overrides=[f"mesh.file={geometry}"], must=None)
+    found = re.search(r"(\S*mesh-\w+\.msh)", finished.text)
+    return pathlib.Path(found[1]).read_bytes() if found else finished.text
+
+
+def footprint():
+    return sorted(path.name for path in place.iterdir())
+
+
+TOUCH = f"touch {place}/done"
+MAIN = {
+    "system_call": (f'SystemCall "{TOUCH}";', "runs a program"),
+    "system": (f'System Sprintf("{TOUCH}");', "runs a program"),
+    "non_blocking": (f"NonBlockingSystemCall '{TOUCH}';", "runs a program"),
+    "behind_comment": (f'// "\nIf (0)\nEndIf\nSystemCall "{TOUCH}"; /* " */', "runs a program"),
+    "onelab": (f'OnelabRun("x", "{TOUCH}");', "runs a program"),
+    "field": (f'Field[1] = ExternalProcess; Field[1].CommandLine = "{TOUCH}"; Background Field = 1;', "runs a program"),
+    "made_name": (f'S2N[StrCat("System", "Call")] "{TOUCH}";', "makes a name"),
+    "save": (f'Save "{place}/done.msh";', "writes a file"),
+    "print": (f'name = "{place}/done.geo_unrolled"; Print Str(name);', "writes a file"),
+    "printf": (f'Printf("%g", 1) >> "{place}/done";', "writes a file"),
+    "folder": (f'CreateDir "{place}/done";', "makes a folder"),
+    "long_text": (f'x = "{"x" * 1023}"; y = "{"y" * 1100}; SystemCall \'{TOUCH}\'; z = "; w = "";', "1023 characters"),
+    "computed": ('For i In {1:1}\nInclude Sprintf("evil%g.geo", i);\nEndFor', "made while gmsh runs"),
+    "included": ('Include "evil1.geo";', "evil1.geo:2: 'SystemCall' runs a program"),
+    "merged": ('Merge "evil2.txt";', "evil2.txt:1: 'SystemCall' runs a program"),
+    "variable": ('f = "evil1.geo"; Include StrCat(CurrentDirectory, f);', "evil1.geo:2: 'SystemCall' runs a program"),
+    "late_value": ('Macro m\nInclude Str(f);\nReturn\nf = "good.geo"; Include "later.geo";', "made while gmsh runs"),
+    "packed": ('Merge "x.geo.gz";', "another program"),
+    "option": ('General.OptionsFileName = "x"; General.SaveOptions = 1;', "write files of its own"),
+    "solver": ('Solver.Executable0 = "sh";', "programs that gmsh runs"),
+}
+write("evil1.geo", f'\nSystemCall "{TOUCH}";\n')
+write("evil2.txt", f'SystemCall "{TOUCH}";\n')
+write("good.geo", "h = 1;\n")
+write("later.geo", 'f = "evil1.geo";\nCall m;\n')
+for name, (command, pattern) in MAIN.items():
+    geometry = write(f"{name}.geo", SQUARE + command + "\n")
+    before = footprint()
+    finished = scene(geometry)
+    says(f"{name}: refused", pattern, finished)
+    check.holds(f"{name}: exit 1, nothing done", finished.status == 1 and footprint() == before,
+                f"status {finished.status}, new: {set(footprint()) - set(before)}")
+geometry = write("beside.geo", SQUARE)
+write("beside.geo.opt", f'SystemCall "{TOUCH}";\n')
+says("options beside the .geo: refused", r"beside.geo.opt:1: 'SystemCall'", scene(geometry))
+says("option as parameter: refused", "programs that gmsh runs",
+     scene(write("plain.geo", SQUARE), overrides=["mesh.parameters={Solver.Executable0: sh}"]))
+says("PETSc option with a file: refused", "petsc.*names a file to write",
+     scene(place / "plain.geo", overrides=[f"petsc={{snes_view: 'ascii:{place}/done'}}"]))
+check.holds("nothing was done", not (place / "done").exists(), "no file")
+
+# With -trust the same commands run, and files of names that are made while gmsh runs make a new mesh when they change.
+trusted = scene(place / "printf.geo", "-trust")
+check.holds("-trust: taken", trusted.status == 0 and (place / "done").exists(), trusted.text.strip()[-200:])
+READS = {
+    "include": ('Include "number.geo";', ()),
+    "variable_of_a_name": ('DefineConstant[f = {"number.geo", Name "x"}]; Merge Str(f);', ()),
+    "list_from_file": ('l() = ListFromFile("numbers.txt"); lx = l(0);', ()),
+    "made_name_trusted": ('Include Sprintf("numbe%gr.geo", 1);', ("-trust",)),
+}
+for name, (command, options) in READS.items():
+    write("number.geo", "lx = 1;\n")
+    write("numbe1r.geo", "lx = 1;\n")
+    write("numbers.txt", "1\n")
+    geometry = write(f"reads_{name}.geo", SQUARE.replace("middle = invert", f"{command}\nmiddle = invert"))
+    first, again = mesh(geometry, *options), mesh(geometry, *options)
+    write("number.geo", "lx = 2;\n")
+    write("numbe1r.geo", "lx = 2;\n")
+    write("numbers.txt", "2\n")
+    other = mesh(geometry, *options)
+    check.holds(f"{name}: a changed file makes a new mesh", isinstance(first, bytes) and first == again != other,
+                first[:200] if isinstance(first, str) else "")
+check.finish()
