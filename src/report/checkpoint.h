@@ -5,7 +5,7 @@
      mesh/file  the .msh file with gmsh's tags, so that a restart needs no gmsh and no other file
      model/     displacements by node, load parameter, scales;  path/  the last states;  linear/  counts of solves
      contact/   state by pair and slave node;  stepper/  step size and counts
-     results/   last step, probes, what steps.csv and results.h5 held;  options/  PETSc's options
+     results/   last step, probes, what steps.csv and results.vtkhdf held;  options/  PETSc's options
 
    A run calls CheckpointCreate(), CheckpointSetRun(), and CheckpointWrite() whenever the state is to be kept. A restart
    calls CheckpointOpen(), CheckpointReadScene() and CheckpointMeshFile(), makes the same objects as any run, and calls

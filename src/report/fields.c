@@ -1,31 +1,38 @@
-/* The states of a run in results.h5, see fields.h. */
+/* The states of a run in results.vtkhdf, see fields.h. */
 #include "fields.h"
 #include "files/fileimage.h"
 #include "files/hdf5table.h"
+#include "toolshapes.h"
+#include "vtkhdf.h"
 #include "xdmf.h"
+#include <errno.h>
 #include <math.h>
+#include <string.h>
+#include <unistd.h>
 
-enum { DATASET_PATH_SIZE = 512 /* characters of a path in results.h5 */ };
+/* The file of the states */
+#define FIELDS_FILE "results.vtkhdf"
 
 struct _n_Fields {
-  Model      model;
-  Scene      scene;
-  char       directory[PETSC_MAX_PATH_LEN], file[PETSC_MAX_PATH_LEN];
-  PetscInt  *owned; /* local nodes that this rank owns */
-  Hdf5Table  nodes;
-  int        n_pairs;
-  Hdf5Table *pairs;                /* slave nodes, per contact pair */
-  PetscInt   cells[ELEMENT_TYPES]; /* rows of /mesh/cells_TYPE */
-  PetscInt   n_written, room;
-  PetscReal *t;     /* of the written steps */
-  PetscInt  *shows; /* what they hold: bits by kind; a restart may change it */
-  Xdmf       xdmf;  /* what they show */
-  char      *image; /* rank 0: image of the file, between loading and FieldsResume() */
+  Model       model;
+  Scene       scene;
+  char        directory[PETSC_MAX_PATH_LEN], file[PETSC_MAX_PATH_LEN];
+  PetscInt   *owned; /* local nodes that this rank owns */
+  Hdf5Table   nodes;
+  int         n_pairs;
+  Hdf5Table  *pairs;                /* slave nodes, per contact pair */
+  PetscInt    cells[ELEMENT_TYPES]; /* rows of /mesh/cells_TYPE */
+  PetscInt    n_written, room;
+  PetscReal  *t;     /* of the written steps */
+  PetscInt   *shows; /* what they hold: bits by kind; a restart may change it */
+  FieldsIndex index; /* what they hold, for the views of the file */
+  ToolShapes  tools;
+  char       *image; /* rank 0: image of the file, between loading and FieldsResume() */
 };
 
 /* What output.fields may ask for, and what ParaView sees of it */
 enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT, SHOW_SOLID_PRESSURE, SHOW_PLASTIC, SHOW_FRICTION, SHOW_KINDS };
-static const XdmfArray shown[] = {
+static const FieldsArray shown[] = {
   {"displacement", 3, SHOW_DISPLACEMENT},
   {"von_mises", 1, SHOW_STRESS},
   {"stress", 6, SHOW_STRESS},
@@ -124,15 +131,32 @@ static PetscErrorCode FieldsWriteNodes(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the rigid tools to the list of what the file holds. */
+static void FieldsListTools(Fields fields)
+{
+  FieldsIndex *index = &fields->index;
+
+  for (int s = 0; s < fields->tools.n; s++) {
+    const ToolShape *shape = &fields->tools.shape[s];
+
+    index->blocks[index->n_blocks++] = (FieldsBlock){.name   = shape->name,
+                                                     .number = shape->number,
+                                                     .tool   = PETSC_TRUE,
+                                                     .type   = shape->type,
+                                                     .n      = shape->n_cells,
+                                                     .nodes  = shape->n_nodes};
+  }
+}
+
 /* Gives the row of every local cell in the table of its type, by body and then cell_id. Each rank counts its part of
    the cell_ids by body and type. */
 static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
 {
-  const Mesh mesh   = fields->model->mesh;
-  const int  n_keys = fields->scene->n_bodies * ELEMENT_TYPES;
-  Xdmf      *xdmf   = &fields->xdmf;
-  PetscInt  *key, *keys, *rows, *count, *before;
-  Hdf5Table  by_id;
+  const Mesh   mesh   = fields->model->mesh;
+  const int    n_keys = fields->scene->n_bodies * ELEMENT_TYPES;
+  FieldsIndex *index  = &fields->index;
+  PetscInt    *key, *keys, *rows, *count, *before;
+  Hdf5Table    by_id;
 
   PetscFunctionBeginUser;
   PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_cells_global, mesh->n_cells, mesh->cell_id, &by_id));
@@ -148,16 +172,19 @@ static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
     PetscInt         *cells = &fields->cells[type];
 
     if (count[k])
-      xdmf->blocks[xdmf->n_blocks++] = (XdmfBlock){.body  = fields->scene->bodies[k / ELEMENT_TYPES].name,
-                                                   .type  = type,
-                                                   .first = *cells,
-                                                   .n     = count[k]};
+      index->blocks[index->n_blocks++] = (FieldsBlock){.name   = fields->scene->bodies[k / ELEMENT_TYPES].name,
+                                                       .number = k / ELEMENT_TYPES,
+                                                       .type   = type,
+                                                       .first  = *cells,
+                                                       .n      = count[k],
+                                                       .nodes  = mesh->n_body_global};
     before[k] += *cells;
     *cells += count[k];
   }
   for (PetscInt c = 0; c < by_id.n; c++) rows[c] = before[keys[c]]++;
   PetscCall(PetscSFBcastBegin(by_id.sf, MPIU_INT, rows, row, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(by_id.sf, MPIU_INT, rows, row, MPI_REPLACE));
+  FieldsListTools(fields);
   PetscCall(PetscFree2(count, before));
   PetscCall(PetscFree3(key, keys, rows));
   PetscCall(Hdf5TableDestroy(&by_id));
@@ -195,9 +222,9 @@ static PetscErrorCode FieldsWriteCellTable(Fields fields, hid_t file, ElementTyp
 
 static PetscErrorCode FieldsWriteCells(Fields fields, hid_t file)
 {
-  const Xdmf *xdmf = &fields->xdmf;
-  PetscInt   *row;
-  char        path[DATASET_PATH_SIZE], body_path[DATASET_PATH_SIZE];
+  const FieldsIndex *index = &fields->index;
+  PetscInt          *row;
+  char               path[DATASET_PATH_SIZE], body_path[DATASET_PATH_SIZE];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(fields->model->mesh->n_cells, &row));
@@ -208,9 +235,9 @@ static PetscErrorCode FieldsWriteCells(Fields fields, hid_t file)
     PetscCall(PetscSNPrintf(body_path, sizeof(body_path), "%s_body", path));
     PetscCall(FieldsWriteCellTable(fields, file, (ElementType)type, row, 0, fields->cells[type], path, body_path));
   }
-  for (int b = 0; b < xdmf->n_blocks; b++) {
+  for (int b = 0; b < index->n_blocks && !index->blocks[b].tool; b++) {
     PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/block_%d", b));
-    PetscCall(FieldsWriteCellTable(fields, file, xdmf->blocks[b].type, row, xdmf->blocks[b].first, xdmf->blocks[b].n,
+    PetscCall(FieldsWriteCellTable(fields, file, index->blocks[b].type, row, index->blocks[b].first, index->blocks[b].n,
                                    path, NULL));
   }
   PetscCall(PetscFree(row));
@@ -255,12 +282,71 @@ static PetscErrorCode FieldsWriteSlaveNodes(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Writes a table that rank 0 has as a whole. */
+static PetscErrorCode FieldsWriteWhole(Fields fields, hid_t file, const char *path, PetscInt n, int width, hid_t type,
+                                       const void *values)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(fields->model->mesh->comm, &rank));
+  PetscCall(Hdf5TableWrite(file, path, (hsize_t)n, 0, rank ? 0 : (hsize_t)n, width, type, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Writes the meshes of the rigid tools. In `grid_cells` their nodes are counted behind all nodes that come before. */
+static PetscErrorCode FieldsWriteTools(Fields fields, hid_t file)
+{
+  int64_t before = fields->model->mesh->n_body_global;
+  char    path[DATASET_PATH_SIZE];
+
+  PetscFunctionBeginUser;
+  for (int s = 0; s < fields->tools.n; s++) {
+    const ToolShape *shape = &fields->tools.shape[s];
+    const int        nodes = ElementGet(shape->type)->nodes;
+    int64_t         *cells;
+
+    PetscCall(PetscMalloc1(shape->n_cells * nodes, &cells));
+    for (PetscInt i = 0; i < shape->n_cells * nodes; i++) cells[i] = shape->cells[i] + before;
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/tools/%s/nodes", shape->name));
+    PetscCall(FieldsWriteWhole(fields, file, path, shape->n_nodes, 3, H5T_NATIVE_DOUBLE, shape->nodes));
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/tools/%s/cells", shape->name));
+    PetscCall(FieldsWriteWhole(fields, file, path, shape->n_cells, nodes, H5T_NATIVE_INT64, shape->cells));
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/tools/%s/grid_cells", shape->name));
+    PetscCall(FieldsWriteWhole(fields, file, path, shape->n_cells, nodes, H5T_NATIVE_INT64, cells));
+    PetscCall(PetscFree(cells));
+    before += shape->n_nodes;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Writes how far the tools have moved. */
+static PetscErrorCode FieldsWriteToolPlaces(Fields fields, hid_t file, PetscReal t)
+{
+  char       path[DATASET_PATH_SIZE];
+  PetscReal *displacement;
+
+  PetscFunctionBeginUser;
+  for (int s = 0; s < fields->tools.n; s++) {
+    const ToolShape *shape = &fields->tools.shape[s];
+
+    PetscCall(PetscMalloc1(shape->n_nodes * 3, &displacement));
+    ToolShapePlace(shape, t, displacement);
+    PetscCall(
+      PetscSNPrintf(path, sizeof(path), "/steps/%04d/tools/%s/displacement", (int)fields->n_written, shape->name));
+    PetscCall(FieldsWriteWhole(fields, file, path, shape->n_nodes, 3, H5T_NATIVE_DOUBLE, displacement));
+    PetscCall(PetscFree(displacement));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Writes everything that does not change from step to step. */
 static PetscErrorCode FieldsWriteMesh(Fields fields, hid_t file)
 {
   PetscFunctionBeginUser;
   PetscCall(FieldsWriteNodes(fields, file));
   PetscCall(FieldsWriteCells(fields, file));
+  PetscCall(FieldsWriteTools(fields, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -502,28 +588,29 @@ static PetscErrorCode FieldsRemember(Fields fields, PetscReal t)
   }
   fields->shows[fields->n_written] = FieldsShown(fields);
   fields->t[fields->n_written++]   = t;
-  fields->xdmf.t                   = fields->t;
-  fields->xdmf.shows               = fields->shows;
-  fields->xdmf.n_steps             = fields->n_written;
+  fields->index.t                  = fields->t;
+  fields->index.shows              = fields->shows;
+  fields->index.n_steps            = fields->n_written;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Prepares what the text will show. Cells are numbered when the file is made. */
-static PetscErrorCode FieldsPrepareXdmf(Fields fields)
+/* Prepares what the views of the file will show. Cells are numbered when the file is made. */
+static PetscErrorCode FieldsPrepareIndex(Fields fields)
 {
-  Xdmf *xdmf = &fields->xdmf;
+  FieldsIndex *index = &fields->index;
 
   PetscFunctionBeginUser;
-  xdmf->name  = fields->scene->name;
-  xdmf->nodes = fields->model->mesh->n_body_global;
-  PetscCall(PetscCalloc1(fields->scene->n_bodies * ELEMENT_TYPES, &xdmf->blocks));
-  xdmf->n_arrays = COUNT(shown);
-  xdmf->arrays   = shown;
+  index->name  = fields->scene->name;
+  index->nodes = fields->model->mesh->n_body_global;
+  PetscCall(ToolShapesCreate(fields->model->mesh, fields->scene, &fields->tools));
+  PetscCall(PetscCalloc1(fields->scene->n_bodies * ELEMENT_TYPES + fields->tools.n, &index->blocks));
+  index->n_arrays = COUNT(shown);
+  index->arrays   = shown;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  FieldsCreate - prepares results.h5 and results.xdmf in a directory; no file is touched yet.
+  FieldsCreate - prepares results.vtkhdf and results.xdmf in a directory; no file is touched yet.
 
   Collective
 
@@ -547,7 +634,7 @@ PetscErrorCode FieldsCreate(Model model, Scene scene, const char *directory, Fie
   fields->model = model;
   fields->scene = scene;
   PetscCall(PetscStrncpy(fields->directory, directory, sizeof(fields->directory)));
-  PetscCall(PetscSNPrintf(fields->file, sizeof(fields->file), "%s/results.h5", directory));
+  PetscCall(PetscSNPrintf(fields->file, sizeof(fields->file), "%s/" FIELDS_FILE, directory));
   fields->n_pairs = model->contact ? ContactPairs(model->contact) : 0;
   PetscCall(PetscCalloc1(fields->n_pairs, &fields->pairs));
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
@@ -560,7 +647,7 @@ PetscErrorCode FieldsCreate(Model model, Scene scene, const char *directory, Fie
   }
   PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_body_global, n, id, &fields->nodes));
   PetscCall(PetscFree(id));
-  PetscCall(FieldsPrepareXdmf(fields));
+  PetscCall(FieldsPrepareIndex(fields));
   *result = fields;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -582,15 +669,40 @@ PetscErrorCode FieldsDestroy(Fields *fields)
   PetscCall(PetscFree((*fields)->image));
   PetscCall(PetscFree((*fields)->owned));
   PetscCall(PetscFree((*fields)->pairs));
-  PetscCall(PetscFree((*fields)->xdmf.blocks));
+  PetscCall(PetscFree((*fields)->index.blocks));
+  PetscCall(ToolShapesDestroy(&(*fields)->tools));
   PetscCall(PetscFree((*fields)->t));
   PetscCall(PetscFree((*fields)->shows));
   PetscCall(PetscFree(*fields));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gives results.vtkhdf the second name by which readers of HDF5 know it. A copy of the directory may hold an old file
+   of that name in the place of the link. A file system without links does without the name. */
+static PetscErrorCode FieldsLink(Fields fields)
+{
+  char    link[PETSC_MAX_PATH_LEN], target[PETSC_MAX_PATH_LEN];
+  ssize_t n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(link, sizeof(link), "%s/results.h5", fields->directory));
+  n = readlink(link, target, sizeof(target));
+  if (n == (ssize_t)strlen(FIELDS_FILE) && !strncmp(target, FIELDS_FILE, (size_t)n)) PetscFunctionReturn(PETSC_SUCCESS);
+  unlink(link);
+  if (symlink(FIELDS_FILE, link)) errno = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FieldsWriteViews(Fields fields)
+{
+  PetscFunctionBeginUser;
+  PetscCall(XdmfWrite(&fields->index, fields->directory));
+  PetscCall(FieldsLink(fields));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  FieldsWrite - adds the model's present state to results.h5 and writes results.xdmf anew.
+  FieldsWrite - adds the model's present state to results.vtkhdf and writes results.xdmf anew.
 
   Collective
 
@@ -626,10 +738,12 @@ PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
   if (FieldsShows(fields, SHOW_STRESS)) PetscCall(FieldsWriteStress(fields, file));
   if (FieldsShows(fields, SHOW_PLASTIC)) PetscCall(FieldsWritePlasticStrain(fields, file));
   if (FieldsShows(fields, SHOW_CONTACT)) PetscCall(FieldsWriteContact(fields, file));
+  PetscCall(FieldsWriteToolPlaces(fields, file, t));
   CallHDF5(H5Fclose(file));
   PetscCall(FieldsRemember(fields, t));
   PetscCallMPI(MPI_Comm_rank(fields->model->mesh->comm, &rank));
-  if (rank == 0) PetscCall(XdmfWrite(&fields->xdmf, fields->directory));
+  if (rank == 0) PetscCall(VtkHdfUpdate(&fields->index, fields->file));
+  if (rank == 0) PetscCall(FieldsWriteViews(fields));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -668,9 +782,9 @@ PetscErrorCode FieldsArchive(Fields fields, Archive archive)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   stream = open_memstream(&image, &length);
-  PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a part of results.h5");
+  PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a part of results.vtkhdf");
   PetscCall(ArchiveExtract(archive, "results/image", stream));
-  PetscCheck(!fclose(stream), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a part of results.h5");
+  PetscCheck(!fclose(stream), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a part of results.vtkhdf");
   PetscCall(PetscMalloc1(length, &fields->image));
   PetscCall(PetscArraycpy(fields->image, image, length));
   free(image);
@@ -678,7 +792,7 @@ PetscErrorCode FieldsArchive(Fields fields, Archive archive)
 }
 
 /*@
-  FieldsResume - takes results.h5 and results.xdmf back to the states of the loaded checkpoint.
+  FieldsResume - takes results.vtkhdf and results.xdmf back to the states of the loaded checkpoint.
 
   Collective
 
@@ -715,6 +829,6 @@ PetscErrorCode FieldsResume(Fields fields, PetscBool *lost)
   PetscCall(FieldsNumberCells(fields, row)); /* for the blocks that the text shows */
   PetscCall(PetscFree(row));
   PetscCall(FieldsListSlaveNodes(fields));
-  if (rank == 0) PetscCall(XdmfWrite(&fields->xdmf, fields->directory));
+  if (rank == 0) PetscCall(FieldsWriteViews(fields));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

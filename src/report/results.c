@@ -25,7 +25,7 @@ struct _n_Results {
   PetscReal   deepest;          /* largest penetration so far, in face sizes */
   PetscReal  *standing;         /* per contact pair: largest depth of master nodes in written states (length) */
   PetscReal   standing_over_h;  /* the largest of all pairs, in face sizes */
-  PetscBool   stepped, written; /* there is an accepted step; results.h5 holds it */
+  PetscBool   stepped, written; /* there is an accepted step; results.vtkhdf holds it */
   double      started;          /* MPI_Wtime() of ResultsStart() */
   RunUsage    before;           /* of the parts of the run before this one */
   PetscInt    restarts;         /* how many they are */
@@ -116,7 +116,7 @@ static PetscErrorCode ResultsResume(Results results)
 
   PetscFunctionBeginUser;
   PetscCall(FieldsResume(results->fields, &lost));
-  if (lost) TerminalWarnLost(results->terminal, "results.h5", results->last.step);
+  if (lost) TerminalWarnLost(results->terminal, "results.vtkhdf", results->last.step);
   if (results->rank) PetscFunctionReturn(PETSC_SUCCESS);
   RunDirectoryClearSummary(results->directory);
   PetscCall(RunDirectoryWriteRecord(results->scene, results->directory));
@@ -172,7 +172,7 @@ static PetscErrorCode ResultsWatchMasters(Results results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Writes the state of the last accepted step into results.h5. */
+/* Writes the state of the last accepted step into results.vtkhdf. */
 static PetscErrorCode ResultsWriteFields(Results results)
 {
   PetscFunctionBeginUser;
@@ -333,8 +333,8 @@ PetscErrorCode ResultsArchive(Results results, Archive archive)
 }
 
 /*@
-  ResultsFinish - writes the last accepted state into results.h5 unless it is there, summary.json, and the last lines on
-  the terminal.
+  ResultsFinish - writes the last accepted state into results.vtkhdf unless it is there, summary.json, and the last
+lines on the terminal.
 
   Collective
 

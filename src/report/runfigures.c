@@ -115,8 +115,8 @@ PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run,
   PetscCall(DirectSolverServes(ksp, &figures->direct));
   BlasFind(&figures->blas);
   CertificateGetFigures(model->certificate, &figures->certificate);
-  figures->certified = (PetscBool)(model->certificate &&
-                                   figures->certificate.steps - figures->certificate.refused == run->way->steps);
+  figures->certified =
+    (PetscBool)(model->certificate && figures->certificate.steps - figures->certificate.refused == run->way->steps);
   figures->n_fluids = FluidCount(model->problem->fluids);
   PetscCall(PetscMalloc1(figures->n_fluids, &figures->fluids));
   for (int i = 0; i < figures->n_fluids; i++) FluidGetReport(model->problem->fluids, i, &figures->fluids[i]);

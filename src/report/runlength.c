@@ -85,7 +85,7 @@ int RunStepsAreMany(Scene scene, PetscInt steps, PetscInt failed, char *text)
 
   Input Parameters:
 + scene - of the run
-. bytes - size of results.h5
+. bytes - size of results.vtkhdf
 - t     - load parameter to which they were written
 
   Output Parameter:
@@ -100,7 +100,7 @@ int RunResultsAreLarge(Scene scene, PetscReal bytes, PetscReal t, char *text)
 
   if (foretold <= RUN_LARGE_BYTES) return 0;
   snprintf(text, RUN_LENGTH_TEXT,
-           "results.h5 %s %.1f GB with output.every: %d; output.every: %d, or fewer output.fields",
+           "results.vtkhdf %s %.1f GB with output.every: %d; output.every: %d, or fewer output.fields",
            t < 1 ? "will have" : "has", (double)foretold / 1e9, scene->output.every,
            (int)PetscCeilReal(foretold / RUN_LARGE_BYTES) * PetscMax(scene->output.every, 1));
   return 1;
@@ -119,6 +119,6 @@ PetscReal RunResultsBytes(const char *directory)
   char        path[PETSC_MAX_PATH_LEN];
   struct stat file;
 
-  snprintf(path, sizeof(path), "%s/results.h5", directory);
+  snprintf(path, sizeof(path), "%s/results.vtkhdf", directory);
   return stat(path, &file) ? 0 : (PetscReal)file.st_size;
 }

@@ -172,7 +172,7 @@ static PetscErrorCode AddListed(Scene scene, int entry, const char *path, int n_
 }
 
 /* Adds the pairs of one entry. */
-static PetscErrorCode AddEntry(Scene scene, int entry, int *n, SurfacePair **pairs)
+static PetscErrorCode ListEntry(Scene scene, int entry, int *n, SurfacePair **pairs)
 {
   char           path[KEY_PATH_LENGTH];
   Node           surfaces;
@@ -216,7 +216,7 @@ PetscErrorCode SceneListSurfacePairs(Scene scene, int *n, SurfacePair **pairs)
   PetscFunctionBeginUser;
   *n     = 0;
   *pairs = NULL;
-  for (int i = 0; i < SchemaCount(SceneDocument(scene), "contact"); i++) PetscCall(AddEntry(scene, i, n, pairs));
+  for (int i = 0; i < SchemaCount(SceneDocument(scene), "contact"); i++) PetscCall(ListEntry(scene, i, n, pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -71,10 +71,13 @@ def rows(directory):
 
 
 def written(directory):
-    """Every dataset of results.h5, and the step numbers of the written states."""
+    """Every dataset of results.h5 but those put together from others, and the step numbers of the written states."""
     sets = {}
     with h5py.File(directory / "results.h5", "r") as file:
-        file.visititems(lambda name, item: sets.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
+        file["steps"].visititems(lambda name, item: sets.update({name: item[()]})
+                                 if isinstance(item, h5py.Dataset) and not item.is_virtual else None)
+        file["mesh"].visititems(lambda name, item: sets.update({name: item[()]}))
+        assert file["VTKHDF/Steps"].attrs["NSteps"] == len(file["steps"])
         return sets, [int(file["steps"][group].attrs["step"]) for group in sorted(file["steps"])]
 
 
@@ -447,11 +450,11 @@ def refusals():
     less = go_on(fields, overrides=["output={every: 1, fields: [displacement]}"])
     with h5py.File(fields / "results.h5", "r") as file:
         held = [sorted(file["steps"][group]) for group in sorted(file["steps"])]
-    check.holds("-set output.fields: from here on", less.status == 0 and held[-1] == ["displacement"]
+    check.holds("-set output.fields: from here on", less.status == 0 and set(held[-1]) - {"tools"} == {"displacement"}
                 and "stress" in held[0] and len(held) == 13)
     text = (fields / "results.xdmf").read_text()
-    check.holds("-set output.fields: results.xdmf knows",
-                text.count("Name=\"displacement\"") == 13 and text.count("Name=\"von_mises\"") == 12)
+    of_bodies = len(re.findall(r"/steps/\d+/displacement<", text))
+    check.holds("-set output.fields: results.xdmf knows", of_bodies == 13 and text.count("Name=\"von_mises\"") == 12)
     no_room(whole, reference)
 
 
@@ -461,16 +464,16 @@ def no_room(whole, reference):
     disk = out / "disk"
     shutil.rmtree(disk, ignore_errors=True)
     disk.mkdir()
-    size = sum(file.stat().st_size for file in reference.iterdir()) + len(whole) // 2
+    size = sum(file.lstat().st_size for file in reference.iterdir()) + len(whole) // 2
     script = """mount -t tmpfs -o size=$1 none "$2" || exit 77
-        cp "$3"/* "$2"
+        cp -P "$3"/* "$2"
         mpirun -n 2 "$4" -restart "$2" -set output.every=0 -set output.checkpoint=1 -quiet
         echo "status $?"
         mpirun -n 1 "$4" -restart "$2" -set output.checkpoint=0 -quiet &&
-          rm -f "$2"/checkpoint.h5.tmp && cp "$2"/* "$3" """
+          rm -f "$2"/checkpoint.h5.tmp && cp -P "$2"/* "$3" """
     full = out / "full"
     shutil.rmtree(full, ignore_errors=True)
-    shutil.copytree(reference, full)
+    shutil.copytree(reference, full, symlinks=True)
     command = ["unshare", "-m", "sh", "-c", script, "sh", str(size), str(disk), str(full), args.burnish]
     ended = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     if ended.returncode in (1, 77) and "status" not in ended.stdout:

@@ -108,7 +108,7 @@ static void test_length(void **state)
   c.way.steps_failed            = 0;
   c.figures.results_bytes       = 2.5e9;
   c.figures.scene->output.every = 1;
-  Expect(&c, "results.h5 has 2.5 GB with output.every: 1; output.every: 3, or fewer output.fields");
+  Expect(&c, "results.vtkhdf has 2.5 GB with output.every: 1; output.every: 3, or fewer output.fields");
   c.figures.results_bytes = 1e9;
   Expect(&c, NULL);
 }
@@ -142,7 +142,7 @@ static void test_foretold(void **state)
   assert_int_equal(RunResultsAreLarge(scene, 9e7, 0.01, text), 0);
   assert_int_equal(RunResultsAreLarge(scene, 2e8, 0.5, text), 0);
   assert_int_equal(RunResultsAreLarge(scene, 2e8, 0.1, text), 1);
-  assert_string_equal(text, "results.h5 will have 2.0 GB with output.every: 2; output.every: 4, or fewer "
+  assert_string_equal(text, "results.vtkhdf will have 2.0 GB with output.every: 2; output.every: 4, or fewer "
                             "output.fields");
   PetscFree(scene);
 }

@@ -30,7 +30,7 @@ typedef struct {
   PetscInt           dofs;
   char               effects[1024];
   RunUsage           usage;         /* of all parts of the run */
-  PetscReal          results_bytes; /* size of results.h5 */
+  PetscReal          results_bytes; /* size of results.vtkhdf */
   PetscInt           restarts;      /* their number less one */
   LinearCounts       linear;
   const char        *options_changed; /* lines, see optionrecord.h */

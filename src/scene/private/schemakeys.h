@@ -30,7 +30,7 @@ typedef enum {
 } ValueType;
 
 /* The longest name of the scene, a pair or a probe, in characters. The name of a pair becomes part of a path in
-   results.h5, for which report/fields.c has 512 characters. The name of the scene becomes the name of a directory,
+   results.vtkhdf, for which report/fields.c has 512 characters. The name of the scene becomes the name of a directory,
    which has at most 255 characters. */
 #define SCHEMA_LONGEST_NAME 100
 /* The longest name of a group of the mesh, in characters. gmsh 4.8 cuts longer names off when it writes a mesh. */
