@@ -690,6 +690,29 @@ PetscErrorCode FrictionPointForces(const ContactPair *pair, PetscInt q, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the moment about the origin of the force on the master at the foot of slave point q, which is -F on the slave: the
+   force on the slave's face and its lever have the same moment with the other sign. */
+static PetscErrorCode AddMoment(const ContactPair *pair, PetscInt q, const PetscReal F[3], PetscReal moment[3])
+{
+  const FrictionFoot *foot;
+  PetscReal           x[3], u[3];
+  PetscBool           found;
+
+  PetscFunctionBeginUser;
+  if (F[0] == 0 && F[1] == 0 && F[2] == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
+  if (pair->master && !found) PetscFunctionReturn(PETSC_SUCCESS);
+  PlainPlace(pair, q, x, u);
+  for (int d = 0; d < pair->mesh->dim; d++)
+    x[d] += u[d] + pair->mesh->centre[d] - (found ? foot->distance * foot->normal[d] : 0);
+  for (int d = 0; d < 3; d++) {
+    const int i = (d + 1) % 3, j = (d + 2) % 3;
+
+    moment[d] += x[i] * F[j] - x[j] * F[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds up the forces on slave nodes. Where terms share their points, the hat functions distribute the points' forces,
    also to terms of other ranks. */
 static PetscErrorCode NodalForces(ContactPair *pair)
@@ -745,6 +768,7 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(pair->friction->force, 3 * pair->lists->n_slaves));
+  PetscCall(PetscArrayzero(pair->friction->moment, 3));
   now->dissipated = accepted->dissipated;
   now->turned     = accepted->turned;
   for (PetscInt c = 0; c < pair->n; c++) {
@@ -780,6 +804,7 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
 
     for (int d = 0; d < pair->mesh->dim; d++) pair->total[d] -= F[d];
     PetscCall(FrictionPointForces(pair, q, F, values));
+    PetscCall(AddMoment(pair, q, F, pair->friction->moment));
   }
   PetscCall(NodalForces(pair));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -795,10 +820,9 @@ PetscErrorCode FrictionShow(const ContactPair *pair, const PetscReal *area, Cont
     for (int d = 0; d < 3; d++) f->traction[3 * c + d] = f->nodal[3 * c + d] / area[pair->node[c]];
     f->status[c] = pair->now.status[c] == CONTACT_OPEN ? 0 : pair->now.slips[c] ? 2 : 1;
   }
-  nodes->traction       = f->traction;
-  nodes->slid           = pair->now.slid;
-  nodes->friction       = f->status;
-  nodes->friction_force = f->nodal;
+  nodes->traction = f->traction;
+  nodes->slid     = pair->now.slid;
+  nodes->friction = f->status;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -818,7 +842,7 @@ PetscErrorCode ContactPairFriction(Contact contact, int p, ContactFriction *fric
 {
   const ContactPair *pair   = &contact->pairs[p];
   const Friction     f      = pair->friction;
-  PetscReal          sum[9] = {0}, most[2] = {0};
+  PetscReal          sum[12] = {0}, most[2] = {0};
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; f && c < pair->n; c++) {
@@ -831,9 +855,11 @@ PetscErrorCode ContactPairFriction(Contact contact, int p, ContactFriction *fric
   }
   sum[6] = pair->now.dissipated;
   sum[8] = pair->now.turned;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 9, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
+  for (int d = 0; f && d < 3; d++) sum[9 + d] = f->moment[d];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 12, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
   *friction = (ContactFriction){.force         = {sum[0], sum[1], sum[2]},
+                                .moment        = {sum[9], sum[10], sum[11]},
                                 .sticking      = (PetscInt)sum[3],
                                 .slipping      = (PetscInt)sum[4],
                                 .slipped_area  = sum[5],

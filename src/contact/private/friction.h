@@ -41,6 +41,7 @@ typedef struct {
   PetscInt  *guide;    /* the slave point whose anchor gives the tangents; -1: none */
   int       *axis;     /* of an analytic tool: that which gives the tangents */
   PetscReal *force;    /* 3 for each slave point, in the last residual */
+  PetscReal  moment[3]; /* about the origin, of these forces on the master at their feet; of this rank's slave points */
   PetscReal *nodal;    /* 3 for each term: force on the slave node, that of its neighbours on shared faces included */
   PetscReal *elastic;  /* of each term: elastic slip (length) */
   PetscReal *traction, *status; /* 3 and 1 for each term: what ContactGetNodes() shows */
