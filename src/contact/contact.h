@@ -112,6 +112,7 @@ typedef struct {
   PetscReal force[3];  /* on the slave; axisymmetric: over 360 degrees */
   PetscReal moment[3]; /* on the master, about the origin of the scene; in the plane the third one alone */
   PetscInt  sticking, slipping;
+  PetscInt  footless; /* of these, nodes with points from which no line along the normal meets the master */
   PetscReal sticking_area, slipped_area; /* reference areas of the sticking and the slipping nodes */
   PetscReal elastic;                     /* largest elastic slip (length) */
   PetscReal slid;                        /* longest slip of a node so far, without the elastic one (length) */
