@@ -9,8 +9,8 @@ from harness import Check, arguments, run, SCENES
 RUNS = SCENES.parent.parent / "runs"
 MU = 0.3
 
-args = arguments(("part", "what is shown", ("flat", "bounds", "circle", "shear", "belt", "turn", "turn_solid", "bar", "rings", "hold",
-                                             "stiff", "ironing", "die", "paper")))
+args = arguments(("part", "what is shown", ("flat", "bounds", "circle", "shear", "belt", "turn", "turn_solid", "bar",
+                                             "rings", "hold", "stiff", "ironing", "die", "paper")))
 check = Check()
 
 
@@ -192,14 +192,16 @@ def turn_solid():
                   for k, place in enumerate(("lower_bottom", "upper_top")) for i, c in enumerate("xyz"))
             ])
             fields, friction = contact(finished)
-            check.holds(f"{name}, t up to {end}: all stick", friction["slipping"] == 0 and friction["without_foot"] == 0)
+            check.holds(f"{name}, t up to {end}: all stick, and all points have feet",
+                        friction["slipping"] == 0 and friction["without_foot"] == 0)
             results.append((fields["pressure"].ravel(), numpy.linalg.norm(fields["traction"], axis=1)))
         for k, what in enumerate(("pressure", "traction")):
             change = abs(results[1][k] - results[0][k]).max() / results[0][k].max()
             check.near(f"{name}: {what} after the turn", change, 0, allowed)
         forces = numpy.array([[finished.summary()["probes"][f"{place}_{c}"] for c in "xyz"]
                               for place in ("lower_bottom", "upper_top")])
-        check.near(f"{name}: sum of the reactions", abs(forces.sum(axis=0)).max() / numpy.linalg.norm(forces[0]), 0, 1e-12)
+        rest = abs(forces.sum(axis=0)).max() / numpy.linalg.norm(forces[0])
+        check.near(f"{name}: sum of the reactions", rest, 0, 1e-12)
 
 
 def bar():
