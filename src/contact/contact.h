@@ -30,7 +30,6 @@ typedef struct {
   /* With friction, else NULL: n*3 the traction on the slave in the tangent plane, friction force over present tributary
      area; the length that the node has slipped so far; 0 open, 1 sticking, 2 slipping. */
   const PetscReal *traction, *slid, *friction;
-  const PetscReal *friction_force; /* with friction, else NULL: n*3, on the slave */
 } ContactNodes;
 
 /* All pairs together, in the present state. */
@@ -110,8 +109,10 @@ typedef struct {
 
 /* What friction does in a pair, over all its slave nodes. */
 typedef struct {
-  PetscReal force[3]; /* on the slave; axisymmetric: over 360 degrees */
+  PetscReal force[3];  /* on the slave; axisymmetric: over 360 degrees */
+  PetscReal moment[3]; /* on the master, about the origin of the scene; in the plane the third one alone */
   PetscInt  sticking, slipping;
+  PetscInt  footless; /* of these, nodes with points from which no line along the normal meets the master */
   PetscReal sticking_area, slipped_area; /* reference areas of the sticking and the slipping nodes */
   PetscReal elastic;                     /* largest elastic slip (length) */
   PetscReal slid;                        /* longest slip of a node so far, without the elastic one (length) */

@@ -296,10 +296,11 @@ static PetscBool PairDrifts(const ContactPair *pair)
 /* Says whether fresh lists find the same of this term as the solve did. An open term must be open. On facets a closed
    gap must agree. On fits the gap changes a little with their frames, so frames and points must agree, and with
    offsets the gap must agree within `drift`. Area factors must agree on both, weighted by the term's pressure over
-   the pair's largest one, or be as close to a jump of what the solution asks for. depth is the largest penetration of
-   the pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead. */
+   the pair's largest one, or be as close to a jump of what the solution asks for: factor_drift. depth is the largest
+   penetration of the pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead. */
 static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscInt c, PetscReal gap,
-                            const PetscReal *factor, PetscReal t, PetscReal depth, PetscReal pressure, PetscReal drift)
+                            const PetscReal *factor, PetscReal t, PetscReal depth, PetscReal pressure, PetscReal drift,
+                            PetscReal factor_drift)
 {
   const PetscReal rest = ContactTermOnsetGap(pair, c, t), old = pair->now.gap[c],
                   own   = PetscMax(TermPressure(pair, c, old, t), TermPressure(pair, c, gap, t)),
@@ -317,7 +318,7 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
     PetscReal      low, high;
 
     FactorBracket(pair, q, factor[q], &low, &high);
-    if (share * PetscMin(PetscAbsReal(factor[q] - pair->factor[q]), high - low) > CONTACT_FACTOR_AGREES)
+    if (share * PetscMin(PetscAbsReal(factor[q] - pair->factor[q]), high - low) > factor_drift)
       return PETSC_FALSE;
     if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
   }
@@ -328,11 +329,12 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
 /* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. */
 static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscReal lag, PetscBool *agrees)
 {
-  PetscReal depth = 0, pressure = 0, drift, *gaps;
+  PetscReal depth = 0, pressure = 0, drift, factor_drift = CONTACT_FACTOR_AGREES, *gaps;
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
   drift   = PairDrifts(pair) ? lag * CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
+  if (pair->friction) factor_drift = PetscMin(factor_drift, lag * CONTACT_OFFSET_AGREES);
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
   if (pair->fit.fitted) TimingBegin(TIMING_FIT);
@@ -340,7 +342,7 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
     *agrees = TermAgrees(pair, pair->next, c, ContactTermGap(pair, pair->next_factor, gaps, c, NULL), pair->next_factor,
-                         t, depth, pressure, drift);
+                         t, depth, pressure, drift, factor_drift);
   PetscCall(PetscFree(gaps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

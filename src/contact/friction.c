@@ -29,7 +29,7 @@ PetscErrorCode FrictionCreate(ContactPair *pair)
   PetscCall(PetscCalloc1(pair->slaves->lever_ptr ? pair->slaves->lever_ptr[q] : 0, &f->lever_node));
   PetscCall(
     PetscCalloc6(n, &f->anchored, 2 * n, &f->kept, 2 * n, &f->heading, n, &f->began, n, &f->axis, n, &f->guide));
-  PetscCall(PetscCalloc4(3 * n, &f->nodal, n, &f->elastic, 3 * n, &f->traction, n, &f->status));
+  PetscCall(PetscCalloc5(3 * n, &f->nodal, n, &f->elastic, 3 * n, &f->traction, n, &f->status, n, &f->footless));
   for (PetscInt i = 0; i < q; i++) f->face[i] = f->facet[i] = f->at[i] = f->first[i] = -1;
   SearchKeepFaces(pair->search);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -46,7 +46,7 @@ PetscErrorCode FrictionDestroy(Friction *friction)
   PetscCall(PetscFree5(f->foot, f->facet, f->known, f->first, f->lever));
   PetscCall(PetscFree(f->lever_node));
   PetscCall(PetscFree6(f->anchored, f->kept, f->heading, f->began, f->axis, f->guide));
-  PetscCall(PetscFree4(f->nodal, f->elastic, f->traction, f->status));
+  PetscCall(PetscFree5(f->nodal, f->elastic, f->traction, f->status, f->footless));
   PetscCall(PetscFree(f->turns));
   PetscCall(PetscFree(*friction));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -690,6 +690,29 @@ PetscErrorCode FrictionPointForces(const ContactPair *pair, PetscInt q, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the moment about the origin of the force on the master at the foot of slave point q, which is -F on the slave:
+   the force on the slave's face and its lever have the same moment with the other sign. */
+static PetscErrorCode AddMoment(const ContactPair *pair, PetscInt q, const PetscReal F[3], PetscReal moment[3])
+{
+  const FrictionFoot *foot;
+  PetscReal           x[3], u[3];
+  PetscBool           found;
+
+  PetscFunctionBeginUser;
+  if (F[0] == 0 && F[1] == 0 && F[2] == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
+  if (pair->master && !found) PetscFunctionReturn(PETSC_SUCCESS);
+  PlainPlace(pair, q, x, u);
+  for (int d = 0; d < pair->mesh->dim; d++)
+    x[d] += u[d] + pair->mesh->centre[d] - (found ? foot->distance * foot->normal[d] : 0);
+  for (int d = 0; d < 3; d++) {
+    const int i = (d + 1) % 3, j = (d + 2) % 3;
+
+    moment[d] += x[i] * F[j] - x[j] * F[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds up the forces on slave nodes. Where terms share their points, the hat functions distribute the points' forces,
    also to terms of other ranks. */
 static PetscErrorCode NodalForces(ContactPair *pair)
@@ -727,6 +750,25 @@ static PetscBool HasTurned(const ContactPair *pair, PetscInt c, const FrictionIn
   return (PetscBool)(lengths > 0 && product < FRICTION_TURN * lengths);
 }
 
+/* Says whether a pressed term has a slave point from which no line along its normal meets the master, or that was never
+   anchored: friction is less there than it should be. */
+static PetscErrorCode TermLacksFeet(const ContactPair *pair, PetscInt c, PetscReal t, PetscBool *lacks)
+{
+  PetscFunctionBeginUser;
+  *lacks = PETSC_FALSE;
+  if (!TermPresses(pair, c, t)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && !*lacks; k++) {
+    const PetscInt      q = pair->term_point[k];
+    const FrictionFoot *foot;
+    PetscBool           found = PETSC_TRUE;
+
+    if (!FrictionTermTakes(pair, k)) continue;
+    if (pair->master) PetscCall(FrictionPointFoot(pair, q, &foot, &found));
+    *lacks = (PetscBool)(!found || pair->friction->face[q] < 0);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FrictionResidual - computes the tractions of a pair, which become its present state, and adds their forces.
 
@@ -745,6 +787,7 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(pair->friction->force, 3 * pair->lists->n_slaves));
+  PetscCall(PetscArrayzero(pair->friction->moment, 3));
   now->dissipated = accepted->dissipated;
   now->turned     = accepted->turned;
   for (PetscInt c = 0; c < pair->n; c++) {
@@ -754,6 +797,7 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
     PetscBool        acts;
 
     PetscCall(FrictionTerm(pair, c, t, &in, &out, &acts));
+    PetscCall(TermLacksFeet(pair, c, t, &pair->friction->footless[c]));
     for (PetscInt k = pair->term_ptr[c]; acts && k < pair->term_ptr[c + 1]; k++) {
       const PetscInt  q      = pair->term_point[k];
       const PetscReal weight = pair->term_weight[k] * pair->factor[q];
@@ -780,6 +824,7 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
 
     for (int d = 0; d < pair->mesh->dim; d++) pair->total[d] -= F[d];
     PetscCall(FrictionPointForces(pair, q, F, values));
+    PetscCall(AddMoment(pair, q, F, pair->friction->moment));
   }
   PetscCall(NodalForces(pair));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -795,10 +840,9 @@ PetscErrorCode FrictionShow(const ContactPair *pair, const PetscReal *area, Cont
     for (int d = 0; d < 3; d++) f->traction[3 * c + d] = f->nodal[3 * c + d] / area[pair->node[c]];
     f->status[c] = pair->now.status[c] == CONTACT_OPEN ? 0 : pair->now.slips[c] ? 2 : 1;
   }
-  nodes->traction       = f->traction;
-  nodes->slid           = pair->now.slid;
-  nodes->friction       = f->status;
-  nodes->friction_force = f->nodal;
+  nodes->traction = f->traction;
+  nodes->slid     = pair->now.slid;
+  nodes->friction = f->status;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -816,26 +860,30 @@ PetscErrorCode FrictionShow(const ContactPair *pair, const PetscReal *area, Cont
 @*/
 PetscErrorCode ContactPairFriction(Contact contact, int p, ContactFriction *friction)
 {
-  const ContactPair *pair   = &contact->pairs[p];
-  const Friction     f      = pair->friction;
-  PetscReal          sum[9] = {0}, most[2] = {0};
+  const ContactPair *pair    = &contact->pairs[p];
+  const Friction     f       = pair->friction;
+  PetscReal          sum[13] = {0}, most[2] = {0};
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; f && c < pair->n; c++) {
     for (int d = 0; d < 3; d++) sum[d] += f->nodal[3 * c + d];
     if (pair->now.status[c] == CONTACT_OPEN) continue;
     sum[pair->now.slips[c] ? 4 : 3]++;
+    sum[12] += f->footless[c];
     sum[pair->now.slips[c] ? 5 : 7] += pair->area[c];
     most[0] = PetscMax(most[0], f->elastic[c]);
     most[1] = PetscMax(most[1], pair->now.slid[c]);
   }
   sum[6] = pair->now.dissipated;
   sum[8] = pair->now.turned;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 9, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
+  for (int d = 0; f && d < 3; d++) sum[9 + d] = f->moment[d];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 13, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
   *friction = (ContactFriction){.force         = {sum[0], sum[1], sum[2]},
+                                .moment        = {sum[9], sum[10], sum[11]},
                                 .sticking      = (PetscInt)sum[3],
                                 .slipping      = (PetscInt)sum[4],
+                                .footless      = (PetscInt)sum[12],
                                 .slipped_area  = sum[5],
                                 .dissipated    = sum[6],
                                 .sticking_area = sum[7],

@@ -94,6 +94,10 @@ static void PrintFriction(const PairFigures *pair, FILE *stream)
   fprintf(stream, "slip so far up to %.3g, elastic slip up to %.3g", (double)friction->slid, (double)friction->elastic);
   if (total > 0) fprintf(stream, " (%.2g %% of both)", 100 * (double)friction->elastic / total);
   fprintf(stream, "; energy taken %.4g\n", (double)friction->dissipated);
+  if (friction->footless)
+    fprintf(stream,
+            "         %lld of these nodes have points whose normal meets no face of the master: friction lacks there\n",
+            (long long)friction->footless);
 }
 
 /* Prints what penetration leaves of error, as estimated at the end of the load. */

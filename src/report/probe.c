@@ -23,8 +23,7 @@ enum {
   SLAVE_POSITION = SLAVE_REFERENCE + 3,
   SLAVE_AREA     = SLAVE_POSITION + 3,
   SLAVE_PRESSURE,
-  SLAVE_FRICTION, /* friction force on the slave */
-  SLAVE_COLUMNS = SLAVE_FRICTION + 3
+  SLAVE_COLUMNS
 };
 
 typedef struct {
@@ -269,7 +268,6 @@ static PetscErrorCode ProbesGetSlaves(Probes probes, int pair, const GatherTable
     }
     row[SLAVE_AREA]     = slaves.area[k];
     row[SLAVE_PRESSURE] = slaves.pressure[k];
-    for (int i = 0; i < 3 && slaves.friction_force; i++) row[SLAVE_FRICTION + i] = slaves.friction_force[3 * k + i];
   }
   PetscCall(GatherTableCreate(mesh->comm, SLAVE_COLUMNS, slaves.n, rows, &probes->slaves[pair]));
   PetscCall(PetscFree(rows));
@@ -529,21 +527,16 @@ static PetscErrorCode EvaluateFriction(Probes probes, Probe *probe, PetscReal *v
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forces on the master balance those on the slave, and so do their moments. */
+/* The moment about a point from that about the origin. */
 static PetscErrorCode EvaluateFrictionTorque(Probes probes, Probe *probe, PetscReal *value)
 {
-  const GatherTable *slaves;
-  const int          i = (probe->scene->axis + 1) % 3, j = (probe->scene->axis + 2) % 3;
+  const int       i = (probe->scene->axis + 1) % 3, j = (probe->scene->axis + 2) % 3;
+  const double   *X = probe->scene->point[0];
+  ContactFriction friction;
 
   PetscFunctionBeginUser;
-  PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
-  *value = 0.0;
-  for (PetscInt k = 0; k < slaves->n; k++) {
-    const PetscReal *slave = &slaves->row[k * SLAVE_COLUMNS], *x = &slave[SLAVE_POSITION], *F = &slave[SLAVE_FRICTION];
-    const double    *X = probe->scene->point[0];
-
-    *value -= (x[i] - X[i]) * F[j] - (x[j] - X[j]) * F[i];
-  }
+  PetscCall(ContactPairFriction(probes->model->contact, probe->pair, &friction));
+  *value = friction.moment[probe->scene->axis] + X[i] * friction.force[j] - X[j] * friction.force[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

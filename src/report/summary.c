@@ -251,6 +251,7 @@ static void AddFriction(cJSON *pair, const ContactFriction *friction)
   cJSON_AddItemToObject(map, "force", cJSON_CreateDoubleArray(friction->force, 3));
   cJSON_AddNumberToObject(map, "sticking", (double)friction->sticking);
   cJSON_AddNumberToObject(map, "slipping", (double)friction->slipping);
+  cJSON_AddNumberToObject(map, "without_foot", (double)friction->footless);
   AddReal(map, "sticking_area", friction->sticking_area);
   AddReal(map, "slipping_area", friction->slipped_area);
   AddReal(map, "elastic_slip", friction->elastic);

@@ -14,8 +14,8 @@ typedef struct {
 static PetscErrorCode Allocate(SlavePoints points, PetscInt entries)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc3(points->n + 1, &points->lever_ptr, entries, &points->lever_node, 2 * entries,
-                         &points->lever_slope));
+  PetscCall(
+    PetscCalloc3(points->n + 1, &points->lever_ptr, entries, &points->lever_node, 2 * entries, &points->lever_slope));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -100,71 +100,110 @@ static void Directions(int dim, const PetscReal normal[3], PetscReal direction[2
   for (int d = 0; d < 3; d++) direction[1][d] /= length;
 }
 
-/* Adds the gradients of a face at a node to the nodes of its lever, room of which begins at `first`, and its normal to
-   the mean one. *end: end of the entries in use. */
-static void AddGradient(SlavePoints points, const FaceRecord *record, const NodeKey *keys, int at, PetscInt first,
-                        PetscInt *end, PetscReal *gradient, PetscReal normal[3])
+/* Room for the levers of nodes while they are made: as many entries for each point as the faces around it have nodes,
+   those that several faces have in common counted for each. */
+typedef struct {
+  PetscInt  *begin, *end; /* of the entries of each point: its room, and what of it is in use */
+  PetscInt  *node;
+  PetscReal *gradient; /* 3 of each entry: the sum over the faces */
+  PetscReal *normal;   /* 3 of each point: the sum of the faces' normals */
+} Rooms;
+
+/* Adds the gradients of a face at its node `at`, which is point q, to the entries of that point, and its normal to the
+   sum. */
+static void AddGradient(const SlavePoints points, const FaceRecord *record, const NodeKey *keys, int at, PetscInt q,
+                        Rooms *rooms)
 {
   FaceGradient g;
 
   FindGradient(record, keys, points->mesh->dim, at, &g);
-  for (int d = 0; d < 3; d++) normal[d] += g.area * g.normal[d];
+  for (int d = 0; d < 3; d++) rooms->normal[3 * q + d] += g.area * g.normal[d];
   for (int k = 0; k < ElementGet(record->facet.type)->nodes; k++) {
     const PetscInt node = NodeKeysFind(points->n_nodes, points->nodes, keys[k].id);
-    PetscInt       i    = first;
+    PetscInt       i    = rooms->begin[q];
 
-    while (i < *end && points->lever_node[i] != node) i++;
-    if (i == *end) (*end)++;
-    points->lever_node[i] = node;
-    for (int d = 0; d < 3; d++) gradient[3 * i + d] += g.area * g.gradient[k][d];
+    while (i < rooms->end[q] && rooms->node[i] != node) i++;
+    if (i == rooms->end[q]) rooms->end[q]++;
+    rooms->node[i] = node;
+    for (int d = 0; d < 3; d++) rooms->gradient[3 * i + d] += g.area * g.gradient[k][d];
   }
+}
+
+/* Counts the nodes of the faces around each point into the ends of the levers' rooms. point: of each node, -1: none. */
+static void CountRooms(const SlavePoints points, PetscInt n_records, const FaceRecord *records, const PetscInt *point,
+                       PetscInt *room)
+{
+  for (PetscInt f = 0; f < n_records; f++) {
+    const int nodes = ElementGet(records[f].facet.type)->nodes;
+    NodeKey   keys[FACE_MAX_NODES];
+
+    FaceRecordKeys(&records[f], keys);
+    for (int a = 0; a < nodes; a++) {
+      const PetscInt q = point[NodeKeysFind(points->n_nodes, points->nodes, keys[a].id)];
+
+      if (q >= 0) room[q + 1] += nodes;
+    }
+  }
+  for (PetscInt q = 0; q < points->n; q++) room[q + 1] += room[q];
+}
+
+/* Fills the rooms with the nodes of the faces around each point and the sums of their gradients. */
+static void FillRooms(const SlavePoints points, PetscInt n_records, const FaceRecord *records, const PetscInt *point,
+                      Rooms *rooms)
+{
+  for (PetscInt f = 0; f < n_records; f++) {
+    NodeKey keys[FACE_MAX_NODES];
+
+    FaceRecordKeys(&records[f], keys);
+    for (int a = 0; a < ElementGet(records[f].facet.type)->nodes; a++) {
+      const PetscInt q = point[NodeKeysFind(points->n_nodes, points->nodes, keys[a].id)];
+
+      if (q >= 0) AddGradient(points, &records[f], keys, a, q, rooms);
+    }
+  }
+}
+
+/* Makes the levers from the sums of the gradients. */
+static PetscErrorCode LeversFromRooms(SlavePoints points, const Rooms *rooms)
+{
+  const int dim     = points->mesh->dim;
+  PetscInt  entries = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < points->n; q++) entries += rooms->end[q] - rooms->begin[q];
+  PetscCall(Allocate(points, entries));
+  for (PetscInt q = 0; q < points->n; q++) {
+    PetscReal direction[2][3];
+    PetscInt  to = points->lever_ptr[q];
+
+    Directions(dim, &rooms->normal[3 * q], direction);
+    for (PetscInt i = rooms->begin[q]; i < rooms->end[q]; i++, to++) {
+      points->lever_node[to] = rooms->node[i];
+      for (int a = 0; a < 2; a++) points->lever_slope[2 * to + a] = Dot(direction[a], &rooms->gradient[3 * i]);
+    }
+    points->lever_ptr[q + 1] = to;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Makes the levers of nodes from all faces around them. */
 PetscErrorCode SlaveLeversAroundNodes(SlavePoints points, PetscInt n_records, const FaceRecord *records)
 {
-  const int  dim = points->mesh->dim;
-  PetscInt  *point, *end;
-  PetscReal *normal, *gradient;
+  PetscInt *point;
+  Rooms     rooms;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(points->n_nodes, &point)); /* of each node; -1: none */
+  PetscCall(PetscMalloc1(points->n_nodes, &point));
   for (PetscInt i = 0; i < points->n_nodes; i++) point[i] = -1;
   for (PetscInt q = 0; q < points->n; q++) point[points->node[points->ptr[q]]] = q;
-  PetscCall(PetscCalloc3(points->n, &end, 3 * points->n, &normal, 3 * n_records * FACE_MAX_NODES * FACE_MAX_NODES,
-                         &gradient));
-  PetscCall(Allocate(points, n_records * FACE_MAX_NODES * FACE_MAX_NODES));
-  for (int pass = 0; pass < 2; pass++) {
-    for (PetscInt f = 0; f < n_records; f++) {
-      const int nodes = ElementGet(records[f].facet.type)->nodes;
-      NodeKey   keys[FACE_MAX_NODES];
-
-      FaceRecordKeys(&records[f], keys);
-      for (int a = 0; a < nodes; a++) {
-        const PetscInt q = point[NodeKeysFind(points->n_nodes, points->nodes, keys[a].id)];
-
-        if (q < 0) continue;
-        if (pass)
-          AddGradient(points, &records[f], keys, a, points->lever_ptr[q], &end[q], gradient, &normal[3 * q]);
-        else
-          points->lever_ptr[q + 1] += nodes;
-      }
-    }
-    for (PetscInt q = 0; q < points->n && !pass; q++) {
-      points->lever_ptr[q + 1] += points->lever_ptr[q];
-      end[q] = points->lever_ptr[q];
-    }
-  }
-  for (PetscInt q = 0; q < points->n; q++) {
-    PetscReal direction[2][3];
-
-    Directions(dim, &normal[3 * q], direction);
-    for (PetscInt i = points->lever_ptr[q]; i < end[q]; i++)
-      for (int a = 0; a < dim - 1; a++) points->lever_slope[2 * i + a] = Dot(direction[a], &gradient[3 * i]);
-    for (PetscInt i = end[q]; i < points->lever_ptr[q + 1]; i++) /* nodes that several faces have in common */
-      points->lever_node[i] = points->node[points->ptr[q]];
-  }
+  PetscCall(PetscCalloc3(points->n + 1, &rooms.begin, points->n, &rooms.end, 3 * points->n, &rooms.normal));
+  CountRooms(points, n_records, records, point, rooms.begin);
+  PetscCall(PetscCalloc2(rooms.begin[points->n], &rooms.node, 3 * rooms.begin[points->n], &rooms.gradient));
+  PetscCall(PetscArraycpy(rooms.end, rooms.begin, points->n));
+  FillRooms(points, n_records, records, point, &rooms);
+  PetscCall(LeversFromRooms(points, &rooms));
   PetscCall(PetscFree(point));
-  PetscCall(PetscFree3(end, normal, gradient));
+  PetscCall(PetscFree3(rooms.begin, rooms.end, rooms.normal));
+  PetscCall(PetscFree2(rooms.node, rooms.gradient));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,8 +9,8 @@ from harness import Check, arguments, run, SCENES
 RUNS = SCENES.parent.parent / "runs"
 MU = 0.3
 
-args = arguments(("part", "what is shown", ("flat", "bounds", "circle", "shear", "belt", "turn", "bar", "rings", "hold",
-                                             "stiff", "ironing", "die", "paper")))
+args = arguments(("part", "what is shown", ("flat", "bounds", "circle", "shear", "belt", "turn", "turn_solid", "bar",
+                                             "rings", "hold", "stiff", "ironing", "die", "paper")))
 check = Check()
 
 
@@ -156,6 +156,52 @@ def turn():
         for k, what in enumerate(("pressure", "traction")):
             change = abs(results[1][k] - results[0][k]).max() / results[0][k].max()
             check.near(f"{name}: {what} after the turn", change, 0, allowed)
+
+
+def turned(place, angle):
+    """Formulas of a place that is turned about the axis (1, 2, 2)/3 through the origin."""
+    axis = ("(1/3)", "(2/3)", "(2/3)")
+    along = "(" + "+".join(f"{axis[i]}*{place[i]}" for i in range(3)) + ")"
+    across = [f"({axis[i - 2]}*{place[i - 1]}-{axis[i - 1]}*{place[i - 2]})" for i in range(3)]
+    return [f"{place[i]}*cos({angle})+{across[i]}*sin({angle})+{axis[i]}*{along}*(1-cos({angle}))" for i in range(3)]
+
+
+def turn_solid():
+    """The same in three dimensions about a general axis, 40 degrees in a step. The corners of the slave hang over the
+    master's edges. Friction and normal forces balance: the reactions of both ends have no sum."""
+    for name, own, allowed in (("surface_to_surface, live", ["contact.0.offset=live"], 1e-8),
+                               ("surface_to_surface, held", ["contact.0.offset=held"], 1e-6),
+                               ("node_to_surface, diffuse", [], 1e-6),
+                               ("node_to_surface, facet", ["contact.0.smoother=facet"], 1e-8)):
+        results = []
+        for end in (0.2, 1):
+            angle, part = f"(max(0,t*{end}-0.2)*pi/0.4)", f"min(1,t*{end}/0.2)"
+            pressed = [f"(x+0.05*{part})", f"(y-0.08*{part})", f"(z+0.03*{part})"]
+            loads = [
+                f"loads.{k}={{surface: {surface}, " +
+                ", ".join(f"u{c}: '{formula}-{c}'" for c, formula in zip("xyz", turned(place, angle))) + "}"
+                for k, (surface, place) in enumerate((("lower_bottom", "xyz"), ("upper_top", pressed)))
+            ]
+            finished = run(args, SCENES / "contact_patch.yaml", out=f"{name}_{end}".replace(", ", "_"), overrides=[
+                "mesh.parameters={n_lower: 2, depth: 1.5, n_upper: 3}", "supports=[]", "loads=[]", *loads,
+                "bodies.0.material={law: neo_hookean, E: 1000, nu: 0.3}",
+                "bodies.1.material={law: neo_hookean, E: 1000, nu: 0.3}", "contact.0.friction.mu=2",
+                "contact.0.smoother=diffuse", f"contact.0.formulation={name.split(',')[0]}",
+                f"stepping={{control: fixed, initial: {0.8 / 9 / end:.12g}, at: [{min(1, 0.2 / end):.12g}]}}", *own,
+                *(f"probes.{2 + 3 * k + i}={{name: {place}_{c}, reaction: {place}, component: {c}}}"
+                  for k, place in enumerate(("lower_bottom", "upper_top")) for i, c in enumerate("xyz"))
+            ])
+            fields, friction = contact(finished)
+            check.holds(f"{name}, t up to {end}: all stick, and all points have feet",
+                        friction["slipping"] == 0 and friction["without_foot"] == 0)
+            results.append((fields["pressure"].ravel(), numpy.linalg.norm(fields["traction"], axis=1)))
+        for k, what in enumerate(("pressure", "traction")):
+            change = abs(results[1][k] - results[0][k]).max() / results[0][k].max()
+            check.near(f"{name}: {what} after the turn", change, 0, allowed)
+        forces = numpy.array([[finished.summary()["probes"][f"{place}_{c}"] for c in "xyz"]
+                              for place in ("lower_bottom", "upper_top")])
+        rest = abs(forces.sum(axis=0)).max() / numpy.linalg.norm(forces[0])
+        check.near(f"{name}: sum of the reactions", rest, 0, 1e-12)
 
 
 def bar():

@@ -82,13 +82,14 @@ check.holds("roll: it has turned", abs(roll["turn"]) > 0.01, f"{roll['turn']:.3f
 # A roller that is pressed and drawn along rolls; the way on the slab is a little longer than that on the roller, because
 # contact stretches the slab and presses the roller's place into it.
 rolled = run(args, SCENES / "tool.yaml", out="rolled", overrides=[
-    "contact.0.friction.mu=0.3", "mesh.order=1",
+    "contact.0.friction.mu=0.3", "mesh.order=1", "probes.5={name: torque, friction_torque: punch, at: [8, 8.2]}",
     cylinder("free: [uy, rz], force: [0, -30], history: [[0, 0], [0.3, 1], [1, 1]], "
              "motion: [{ux: 3, history: [[0, 0], [0.3, 0], [1, 1]]}]")
 ])
 last = rolled.steps()[-1]
 check.near("rolled: the turn", -math.radians(last["turn"]) * 3 / last["aside"], 1, 0.05)
 check.holds("rolled: friction has next to nothing to do", abs(last["along"]) < 0.05 * 0.3 * 30, f"{last['along']:.3f}")
+check.near("rolled: moment of friction about the axle, over mu N R", last["torque"] / (0.3 * 30 * 3), 0, 1e-6)
 check.holds("rolled: few iterations", rolled.summary()["newton_iterations"] < 60,
             str(rolled.summary()["newton_iterations"]))
 # A moment that nothing resists: without friction, and with one that friction cannot bear.

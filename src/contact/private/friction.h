@@ -27,21 +27,23 @@ typedef struct {
   FrictionFoot  *foot;
   FrictionLever *lever;
   PetscInt      *lever_node; /* contact nodes of the levers, as in SlavePoints; -1: not known yet */
-  int          *facet; /* in the point's list; -1: not known yet */
-  PetscBool    *known;
+  int           *facet;      /* in the point's list; -1: not known yet */
+  PetscBool     *known;
   /* Of each slave point: derivatives of its own N over the nodes of its first variation, dim*dim for each node, at the
      last projection. first: -1: not known yet. */
   PetscInt  *first, turns_used, turns_room;
   PetscReal *turns;
   /* Of each term, since the step began. */
-  PetscBool *anchored; /* some of its points have anchors */
-  PetscReal *kept;     /* 2 lengths */
-  PetscReal *heading;  /* 2 components of the slip's direction then; 0 where the node did not slip */
-  PetscReal *began;    /* its opening, where it was open (length) */
-  PetscInt  *guide;    /* the slave point whose anchor gives the tangents; -1: none */
-  int       *axis;     /* of an analytic tool: that which gives the tangents */
-  PetscReal *force;    /* 3 for each slave point, in the last residual */
-  PetscReal *nodal;    /* 3 for each term: force on the slave node, that of its neighbours on shared faces included */
-  PetscReal *elastic;  /* of each term: elastic slip (length) */
+  PetscBool *anchored;  /* some of its points have anchors */
+  PetscReal *kept;      /* 2 lengths */
+  PetscReal *heading;   /* 2 components of the slip's direction then; 0 where the node did not slip */
+  PetscReal *began;     /* its opening, where it was open (length) */
+  PetscInt  *guide;     /* the slave point whose anchor gives the tangents; -1: none */
+  int       *axis;      /* of an analytic tool: that which gives the tangents */
+  PetscReal *force;     /* 3 for each slave point, in the last residual */
+  PetscReal  moment[3]; /* about the origin, of these forces on the master at their feet; of this rank's slave points */
+  PetscReal *nodal;     /* 3 for each term: force on the slave node, that of its neighbours on shared faces included */
+  PetscReal *elastic;   /* of each term: elastic slip (length) */
+  PetscBool *footless;  /* of each term: it presses, and some of its points have no foot or no anchor on the master */
   PetscReal *traction, *status; /* 3 and 1 for each term: what ContactGetNodes() shows */
 } *Friction;
