@@ -51,6 +51,15 @@ class Skin:
     plane: bool
 
 
+@dataclasses.dataclass
+class Tool:
+    """A rigid tool: what a picture shows."""
+
+    name: str
+    nodes: numpy.ndarray  # at the start, n x 3
+    parts: numpy.ndarray  # m x 2 nodes of lines in the plane, m x 3 of triangles in space
+
+
 def face_nodes(kind):
     """All nodes of each face of a cell."""
     corners, faces, edges = CELLS[kind]
@@ -105,6 +114,15 @@ def read_skin(path):
     lines, first, count = numpy.unique(lines, axis=0, return_index=True, return_counts=True)
     return Skin(nodes, numpy.concatenate(triangles), numpy.concatenate(triangle_body), lines, line_body[first],
                 count == 1, plane)
+
+
+def read_tools(path, plane):
+    """The rigid tools of a run's results.h5: lines in the plane, triangles in space."""
+    with h5py.File(path, "r") as file:
+        found = [(name, tool["nodes"][()], tool["cells"][()]) for name, tool in file.get("tools", {}).items()]
+    parts = {2: [(0, 1)], 3: [(0, 2), (2, 1)]} if plane else TRIANGLES
+    return [Tool(name, nodes, numpy.concatenate([cells[:, part] for part in parts[cells.shape[1]]]))
+            for name, nodes, cells in found]
 
 
 def read_states(path, *fields):

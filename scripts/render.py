@@ -18,18 +18,16 @@ import numpy
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.collections import LineCollection, PolyCollection
 
-from meshview import read_skin
+from meshview import read_skin, read_tools
 from raster import Canvas, View
 
 DISPLACEMENT = {"ux": 0, "uy": 1, "uz": 2}
 STRESS = {"stress_" + name: i for i, name in enumerate(("xx", "yy", "zz", "xy", "yz", "xz"))}
 CONTACT = ("gap", "penetration", "penalty", "pressure")  # on the slave surfaces only
 FIELDS = ("von_mises", "plastic_strain", *STRESS, "displacement", *DISPLACEMENT, *CONTACT)
-TOOLS = ("plane", "cylinder", "sphere")  # rigid masters, by their attribute in results.h5
 GREY = numpy.array([0.80, 0.82, 0.85])
 TOOL = numpy.array([0.62, 0.64, 0.68])
 ISOMETRIC = (-35, 22)  # azimuth, elevation in degrees
-ROUND = 96  # sides of a circle
 MARGIN = 0.04  # around the bodies, of their extent
 TRIAD = 85  # pixels across
 RIDGE = 0.12  # height of the largest pressure in the plane, of the bodies' extent
@@ -43,6 +41,7 @@ class Run:
         if not self.path.exists():
             sys.exit(f"render.py: {self.path} is not there; allowed: the folder of a run that has written a step")
         self.skin = read_skin(self.path)
+        self.tools = read_tools(self.path, self.skin.plane)
         with h5py.File(self.path, "r") as file:
             self.steps = sorted(file["steps"])
             self.fields = set(file["steps"][self.steps[-1]])
@@ -52,7 +51,8 @@ class Run:
         return source in self.fields and "displacement" in self.fields
 
     def state(self, step, field):
-        """Load parameter, deformed nodes, the field at the nodes, normals (of contact, or None), rigid masters."""
+        """Load parameter, deformed nodes, the field at the nodes, normals (of contact, or None), places and parts of
+        the rigid tools."""
         with h5py.File(self.path, "r") as file:
             group = file["steps"][self.steps[step]]
             u = group["displacement"][()]
@@ -64,63 +64,10 @@ class Run:
                 values = group[field][()]
             slave, normal = (numpy.isfinite(group["gap"][()]),
                              group["normal"][()]) if "gap" in group else (numpy.zeros(len(u), dtype=bool), None)
-            tools = [(kind, numpy.asarray(pair.attrs[kind]))
-                     for pair in group.get("contact", {}).values()
-                     for kind in TOOLS
-                     if kind in pair.attrs]
+            tools = [(tool.nodes + group[f"tools/{tool.name}/displacement"][()], tool.parts)
+                     for tool in self.tools
+                     if f"tools/{tool.name}" in group]
             return float(group.attrs["t"]), self.skin.nodes + u, values, slave, normal, tools
-
-
-def grid(points):
-    """Triangles between the points of a rectangular table."""
-    n = numpy.arange(points.shape[0] * points.shape[1]).reshape(points.shape[:2])
-    a, b, c, d = n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]
-    return points.reshape(-1, 3), numpy.concatenate(
-        [numpy.stack([a, b, c], axis=-1).reshape(-1, 3),
-         numpy.stack([a, c, d], axis=-1).reshape(-1, 3)])
-
-
-def across(axis):
-    """Two unit vectors that complete an axis."""
-    first = numpy.cross(axis, numpy.eye(3)[numpy.argmin(numpy.abs(axis))])
-    first /= numpy.linalg.norm(first)
-    return first, numpy.cross(axis, first) / numpy.linalg.norm(axis)
-
-
-def tool_surface(kind, values, x):
-    """Points and triangles of a rigid master, as long as the bodies at x beside it."""
-    point = values[:3]
-    turn = numpy.linspace(0, 2 * numpy.pi, ROUND + 1)[:, None, None]
-    if kind == "sphere":
-        polar = numpy.linspace(0, numpy.pi, ROUND // 2)[None, :, None]
-        ring = numpy.sin(polar) * (numpy.cos(turn) * [1, 0, 0] +
-                                   numpy.sin(turn) * [0, 0, 1]) + numpy.cos(polar) * numpy.array([0, 1, 0])
-        return grid(point + values[3] * ring)
-    axis = values[3:6] / numpy.linalg.norm(values[3:6])  # of the cylinder, closed at its ends; normal of the plane
-    first, second = across(axis)
-    along = (x - point) @ axis
-    if kind == "cylinder":
-        radius, place = values[6] * numpy.array([0, 1, 1, 0])[None, :, None], along[[along.argmin()] * 2 +
-                                                                                    [along.argmax()] * 2][None, :, None]
-        return grid(point + radius * (numpy.cos(turn) * first + numpy.sin(turn) * second) + place * axis)
-    beside = [(x - point) @ direction for direction in (first, second)]
-    low, high = [b.min() for b in beside], [b.max() for b in beside]
-    corners = [[point + s * first + t * second for t in (low[1], high[1])] for s in (low[0], high[0])]
-    return grid(numpy.array(corners))
-
-
-def tool_outline(kind, values, x):
-    """Points of a rigid master's line in the plane."""
-    point, extent = values[:3], numpy.ptp(x, axis=0).max()
-    turn = numpy.linspace(0, 2 * numpy.pi, ROUND + 1)[:, None]
-    if kind == "sphere" or (kind == "cylinder" and abs(values[5]) > 0.5):
-        return point + values[3 if kind == "sphere" else 6] * (numpy.cos(turn) * [1, 0, 0] +
-                                                               numpy.sin(turn) * [0, 1, 0])
-    direction = values[3:6] if kind == "cylinder" else numpy.cross(values[3:6], [0, 0, 1])
-    direction = direction / numpy.linalg.norm(direction)
-    centre = point + ((x.mean(axis=0) - point) @ direction) * direction
-    offset = values[6] * numpy.cross(direction, [0, 0, 1]) if kind == "cylinder" else 0
-    return centre + offset + numpy.array([[-1], [1]]) * extent * direction
 
 
 def mirrored(x, axes):
@@ -192,9 +139,7 @@ class Picture:
                              numpy.zeros(len(x)))
             canvas.lines(copy, self.lines)
         if not self.run.skin.plane and not self.contact:
-            everything = numpy.concatenate(mirrored(x, self.options.mirror))
-            for kind, where in tools:
-                points, triangles = tool_surface(kind, where, everything)
+            for points, triangles in tools:
                 canvas.triangles(points, triangles, lambda v: numpy.broadcast_to(TOOL, (len(v), 3)),
                                  numpy.zeros(len(points)))
         return canvas.image()
@@ -221,9 +166,9 @@ class Picture:
         axes.imshow(self.canvas(state, width), origin="lower", extent=frame, interpolation="antialiased")
         axes.set_title(f"{label(self.field)}, t = {state[0]:.4g}", fontsize=11)
         if self.run.skin.plane:
-            for kind, where in state[5]:
-                for line in mirrored(tool_outline(kind, where, state[1]), self.options.mirror):
-                    axes.plot(*line[:, :2].T, color="k", linewidth=1.5)
+            for points, lines in state[5]:
+                for copy in mirrored(points, self.options.mirror):
+                    axes.add_collection(LineCollection(copy[lines][:, :, :2], colors="k", linewidths=1.5))
             if self.contact:
                 self.ridge(axes, state)
             axes.set(xlim=frame[:2], ylim=frame[2:], xlabel="x", ylabel="y")
