@@ -176,6 +176,13 @@ def refusals():
             "{name: a, surfaces: [nowhere]}")
     refused("two lists of one surface", "their forces would add up",
             "{name: a, surfaces: [inner_contact]}, {name: b, surfaces: [inner_contact]}")
+    tool = "master: {plane: {point: [0, 31], normal: [0, -1]}}"
+    again = "master: {plane: {point: [4, 31], normal: [0, -2]}}"
+    refused("one tool in a list and by slave and master", "meet the same rigid tool: their forces would add up",
+            f"{{name: a, surfaces: [outer_contact], {tool}}}, {{name: b, slave: outer_contact, {again}}}")
+    run(args, RINGS, "-check", out="two_tools", overrides=[
+        f"contact=[{{name: a, surfaces: [outer_contact], {tool}}}, "
+        f"{{name: b, slave: inner_contact, {again}}}]", "probes=[]"])
     run(args, RINGS, "-check", out="named", overrides=[
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
