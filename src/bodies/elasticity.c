@@ -285,7 +285,7 @@ static PetscBool VolumeIsStiff(Scene scene, PetscInt body)
   return (PetscBool)(moduli.kappa < moduli.projected);
 }
 
-/* Counts the multipliers, and makes room for those of the present and of the accepted state. A mixed group has some if
+/* Counts the multipliers, and makes room for those of the present, the accepted and a kept state. A mixed group has some if
    the volume of one of its cells is too stiff. */
 static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
 {
@@ -311,8 +311,8 @@ static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
     if (some) n += g->n_batches * ElementPressures(&g->kernel) * KERNEL_LANES;
   }
   PetscCall(PetscFree(stiff));
-  e->state.n = e->accepted.n = n;
-  PetscCall(PetscCalloc2(n, &e->state.multiplier, n, &e->accepted.multiplier));
+  e->state.n = e->accepted.n = e->kept.n = n;
+  PetscCall(PetscCalloc3(n, &e->state.multiplier, n, &e->accepted.multiplier, n, &e->kept.multiplier));
   PetscCall(PetscMalloc1(n_yielding, &e->yielding));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -402,7 +402,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   PetscCall(PetscFree(e->column));
   PetscCall(PetscFree(e->value));
   PetscCall(PetscFree(e->buffer));
-  PetscCall(PetscFree2(e->state.multiplier, e->accepted.multiplier));
+  PetscCall(PetscFree3(e->state.multiplier, e->accepted.multiplier, e->kept.multiplier));
   PetscCall(PetscFree(e->yielding));
   PetscCall(PetscFree(e->enclosed.body));
   PetscCall(NodeMatrixDestroy(&e->matrix));

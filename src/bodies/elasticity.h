@@ -8,7 +8,8 @@
 
    Mixed elements whose volume is kept exactly, or nearly so, have multipliers (volumes.c). ElasticityFollow() changes
    them in an iteration of Newton's method, ElasticityAugment() after a solve until the volume is right.
-   ElasticityAccept() keeps them with the accepted state, ElasticityRestore() returns to those kept.
+   ElasticityAccept() keeps them with the accepted state, ElasticityRestore() returns to those. ElasticityKeep() and
+   ElasticityReturn() do so for a state on the way.
    ElasticityFindEnclosed() comes before all these: it finds the bodies whose level of pressure is free.
 
    Plastic bodies have an accepted state at each quadrature point. All evaluations start from it;
@@ -49,6 +50,8 @@ PetscErrorCode ElasticityYield(Elasticity, const PetscReal *u, const PetscReal *
 void           ElasticityYieldEnd(Elasticity);
 PetscErrorCode ElasticityAccept(Elasticity);
 PetscErrorCode ElasticityRestore(Elasticity);
+PetscErrorCode ElasticityKeep(Elasticity);
+PetscErrorCode ElasticityReturn(Elasticity);
 PetscErrorCode ElasticityArchive(Elasticity, Archive);
 PetscBool      ElasticityAugments(Elasticity);
 PetscErrorCode ElasticityFindEnclosed(Elasticity, Scene, const PetscBool *prescribed);

@@ -245,6 +245,36 @@ PetscErrorCode ElasticityRestore(Elasticity e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ElasticityKeep - remembers the present multipliers for ElasticityReturn().
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity
+@*/
+PetscErrorCode ElasticityKeep(Elasticity e)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(e->kept.multiplier, e->state.multiplier, e->state.n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElasticityReturn - returns to the multipliers that ElasticityKeep() has remembered.
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity
+@*/
+PetscErrorCode ElasticityReturn(Elasticity e)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(e->state.multiplier, e->kept.multiplier, e->state.n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Copies multipliers between the batches and rows of MIXED_PRESSURES by cell. The lanes that repeat the last cell of a
    group repeat its multipliers. */
 static void CopyByCell(Elasticity e, PetscBool loads, PetscReal *rows)

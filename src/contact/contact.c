@@ -1,30 +1,5 @@
 /* The contact object: all pairs of a scene, their accepted state, and what a checkpoint keeps of them. */
 #include "contactimpl.h"
-#include "base/refusal.h"
-
-/* Refuses two pairs of the same two surfaces, because their forces would add up. */
-static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
-{
-  PetscFunctionBeginUser;
-  for (int p = 0; p < scene->n_contacts; p++) {
-    for (int q = 0; q < p; q++) {
-      const SceneContact *a = &scene->contacts[p], *b = &scene->contacts[q];
-      const PetscBool     meshed = (PetscBool)(a->master && b->master),
-                      same       = (PetscBool)(meshed && !strcmp(a->slave, b->slave) && !strcmp(a->master, b->master));
-      /* Within a list of surfaces each of two is slave of the other with half its area. */
-      const PetscBool listed = (PetscBool)(a->listed && b->listed && !strcmp(a->path, b->path)),
-                      swapped =
-                        (PetscBool)(meshed && !listed && !strcmp(a->slave, b->master) && !strcmp(a->master, b->slave));
-
-      if (same || swapped)
-        PetscCall(RefuseInput(
-          mesh->comm,
-          "%s: contact '%s' is '%s' once more%s: their forces would add up; allowed: one pair for each two surfaces",
-          SceneWhere(scene, a->path, "slave"), a->name, b->name, swapped ? ", slave and master swapped" : ""));
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /*@
   ContactCreate - creates all pairs of the scene, without lists.
@@ -42,7 +17,7 @@ static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
 
   Notes:
   Refuses what the mesh shows to be wrong: surfaces that are missing or empty, a rigid slave, two pairs of the same
-  surfaces, planes of symmetry that are none, faces that two lists have.
+  surfaces or of the same faces and tool, planes of symmetry that are none, faces that two lists have.
 
   ContactGather() makes the first lists.
 @*/
@@ -70,7 +45,6 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscCall(PetscLogEventRegister("ContactTouch", SNES_CLASSID, &contact->event_touch));
   PetscCall(BlockMatrixCreate(mesh->comm, mesh->dim, &contact->blocks));
   PetscCall(PetscCalloc1(contact->n_pairs, &contact->pairs));
-  PetscCall(RefuseRepeatedPairs(mesh, scene));
   for (int p = 0; p < contact->n_pairs; p++) {
     PetscCall(ContactPairCreate(mesh, scene, elasticity, loads, &scene->contacts[p], &contact->pairs[p]));
     contact->pairs[p].work = &contact->work;
@@ -79,6 +53,7 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
     dense = PetscMax(dense, PetscMax(smoother->dense_capacity, contact->pairs[p].facets->dense_capacity));
     if (smoother->workspace) workspace = PetscMax(workspace, smoother->workspace(mesh->dim));
   }
+  PetscCall(ContactRefuseRepeated(contact));
   PetscCall(ContactOverride(contact));
   PetscCall(ContactWorkCreate(capacity, dense, workspace, &contact->work));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,7 +2,7 @@
 #include "contact/contactsprings.h"
 
 struct _n_Stabiliser {
-  Vec        stiffness, anchor, work; /* force per length of each free dof; where the spring has no force */
+  DofSprings dofs; /* the springs without the ties; their anchor is that of all */
   PetscInt   n_ties;
   SpringTie *ties;
   PetscReal *stretch; /* n_ties (length), at the last evaluation */
@@ -30,11 +30,7 @@ PetscErrorCode ContactSpringsCreate(Mesh mesh, const PetscReal *stiffness, Vec l
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
-  PetscCall(VecDuplicate(like, &s->stiffness));
-  PetscCall(VecDuplicate(like, &s->anchor));
-  PetscCall(VecDuplicate(like, &s->work));
-  PetscCall(VecZeroEntries(s->anchor));
-  PetscCall(MeshLocalToGlobal(mesh, stiffness, s->stiffness));
+  PetscCall(DofSpringsCreate(mesh, stiffness, like, &s->dofs));
   *out = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -51,9 +47,7 @@ PetscErrorCode ContactSpringsDestroy(ContactSprings *s)
 {
   PetscFunctionBeginUser;
   if (!*s) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDestroy(&(*s)->stiffness));
-  PetscCall(VecDestroy(&(*s)->anchor));
-  PetscCall(VecDestroy(&(*s)->work));
+  PetscCall(DofSpringsDestroy(&(*s)->dofs));
   PetscCall(PetscFree2((*s)->ties, (*s)->stretch));
   PetscCall(PetscFree(*s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -71,7 +65,7 @@ PetscErrorCode ContactSpringsDestroy(ContactSprings *s)
 PetscErrorCode ContactSpringsRelax(ContactSprings s, Vec x)
 {
   PetscFunctionBeginUser;
-  if (s) PetscCall(VecCopy(x, s->anchor));
+  if (s) PetscCall(DofSpringsAnchor(s->dofs, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -146,25 +140,6 @@ PetscErrorCode ContactSpringsRetie(ContactSprings s, PetscBool *any)
 }
 
 /*@
-  ContactSpringsVector - makes a vector of the free dofs, with zeros.
-
-  Collective
-
-  Input Parameter:
-. s - the springs
-
-  Output Parameter:
-. v - to be destroyed by the caller
-@*/
-PetscErrorCode ContactSpringsVector(ContactSprings s, Vec *v)
-{
-  PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(s->anchor, v));
-  PetscCall(VecZeroEntries(*v));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   ContactSpringsGetTie - finds the tie of a motion.
 
   Not collective
@@ -204,16 +179,18 @@ PetscBool ContactSpringsHaveTie(ContactSprings s, int motion)
   return (PetscBool)(tie && !tie->released);
 }
 
-/* Computes the stretches of the ties into s->stretch; a released one has none. work holds x less the anchors. */
-static PetscErrorCode Stretch(ContactSprings s)
+/* Computes the stretches of the ties at x into s->stretch; a released one has none. */
+static PetscErrorCode Stretch(ContactSprings s, Vec x)
 {
   const PetscScalar *d;
   PetscInt           first, end;
+  Vec                moved;
 
   PetscFunctionBeginUser;
   if (!s->n_ties) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetOwnershipRange(s->work, &first, &end));
-  PetscCall(VecGetArrayRead(s->work, &d));
+  PetscCall(DofSpringsStretch(s->dofs, x, &moved));
+  PetscCall(VecGetOwnershipRange(moved, &first, &end));
+  PetscCall(VecGetArrayRead(moved, &d));
   for (PetscInt i = 0; i < s->n_ties; i++) {
     const SpringTie *tie = &s->ties[i];
 
@@ -222,19 +199,9 @@ static PetscErrorCode Stretch(ContactSprings s)
       if (tie->dof[k] >= first && tie->dof[k] < end)
         s->stretch[i] += tie->value[k] * PetscRealPart(d[tie->dof[k] - first]);
   }
-  PetscCall(VecRestoreArrayRead(s->work, &d));
+  PetscCall(VecRestoreArrayRead(moved, &d));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->stretch, (PetscMPIInt)s->n_ties, MPIU_REAL, MPI_SUM,
-                             PetscObjectComm((PetscObject)s->work)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The forces at x of the springs at dofs, into the work vector, and the stretches of the ties. */
-static PetscErrorCode SpringForces(ContactSprings s, Vec x)
-{
-  PetscFunctionBeginUser;
-  PetscCall(VecWAXPY(s->work, -1, s->anchor, x));
-  PetscCall(Stretch(s));
-  PetscCall(VecPointwiseMult(s->work, s->work, s->stiffness));
+                             PetscObjectComm((PetscObject)x)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -257,8 +224,8 @@ PetscErrorCode ContactSpringsResidual(ContactSprings s, Vec x, Vec F)
 
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SpringForces(s, x));
-  PetscCall(VecAXPY(F, 1, s->work));
+  PetscCall(Stretch(s, x));
+  PetscCall(DofSpringsResidual(s->dofs, x, F));
   PetscCall(VecGetOwnershipRange(F, &first, &end));
   PetscCall(VecGetArray(F, &f));
   for (PetscInt i = 0; i < s->n_ties; i++) {
@@ -288,16 +255,11 @@ PetscErrorCode ContactSpringsResidual(ContactSprings s, Vec x, Vec F)
 @*/
 PetscErrorCode ContactSpringsLoad(ContactSprings s, Vec x, PetscReal *force, PetscReal *tied, PetscReal *energy)
 {
-  PetscScalar work[2] = {0, 0};
-
   PetscFunctionBeginUser;
   *force = *tied = *energy = 0;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SpringForces(s, x));
-  PetscCall(VecNorm(s->work, NORM_2, force));
-  PetscCall(VecDot(s->work, x, &work[0]));
-  PetscCall(VecDot(s->work, s->anchor, &work[1]));
-  *energy = PetscRealPart(work[0] - work[1]) / 2;
+  PetscCall(Stretch(s, x));
+  PetscCall(DofSpringsLoad(s->dofs, x, force, energy));
   for (PetscInt i = 0; i < s->n_ties; i++) {
     *tied = PetscMax(*tied, s->ties[i].stiffness * PetscAbsReal(s->stretch[i]));
     *energy += s->ties[i].stiffness * PetscSqr(s->stretch[i]) / 2;
@@ -344,7 +306,7 @@ PetscErrorCode ContactSpringsTangent(ContactSprings s, Mat A)
 
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatDiagonalSet(A, s->stiffness, ADD_VALUES));
+  PetscCall(DofSpringsTangent(s->dofs, A));
   if (!s->n_ties) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatGetOwnershipRange(A, &first, &end));
   for (PetscInt i = 0; i < s->n_ties; i++) {

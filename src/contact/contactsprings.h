@@ -1,11 +1,11 @@
 /* Weak springs that hold bodies which contact alone is to hold, until it does, and ties that hold what no contact does.
 
-   Springs join dofs to where these were. A tie holds one rigid motion of a body and resists no other: it measures the
-   motion of a few nodes, those of one cell. ContactSpringsRelax() moves the anchors to a state, in which springs and
-   ties then have no force. The owner gives the stiffness of each; freebodies.h decides which bodies have them and how
-   stiff they are. All functions but those that create accept NULL for no springs. */
+   Springs join dofs to where these were, see dofsprings.h. A tie holds one rigid motion of a body and resists no other:
+   it measures the motion of a few nodes, those of one cell. ContactSpringsRelax() moves the anchors to a state, in
+   which springs and ties then have no force. The owner gives the stiffness of each; freebodies.h decides which bodies
+   have them and how stiff they are. All functions but those that create accept NULL for no springs. */
 #pragma once
-#include "mesh/mesh.h"
+#include "bodies/dofsprings.h"
 
 /* stretch = sum value * (displacement of the dof less that of its anchor) */
 typedef struct {
@@ -20,7 +20,6 @@ typedef struct _n_Stabiliser *ContactSprings;
 
 PetscErrorCode ContactSpringsCreate(Mesh, const PetscReal *stiffness, Vec like, ContactSprings *);
 PetscErrorCode ContactSpringsDestroy(ContactSprings *);
-PetscErrorCode ContactSpringsVector(ContactSprings, Vec *);
 PetscErrorCode ContactSpringsSetTies(ContactSprings, PetscInt n, const SpringTie *);
 PetscErrorCode ContactSpringsRelease(ContactSprings, int n, const int *kept, PetscBool *any);
 PetscErrorCode ContactSpringsRetie(ContactSprings, PetscBool *any);

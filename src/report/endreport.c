@@ -134,6 +134,19 @@ static void PrintCertificate(const RunFigures *figures, FILE *stream)
   fprintf(stream, "\n");
 }
 
+/* Says that nobody has looked for edges that cross edges, where listed surfaces may do so. */
+static void PrintUnjudged(const RunFigures *figures, FILE *stream)
+{
+  const Scene scene  = figures->scene;
+  PetscBool   listed = PETSC_FALSE;
+
+  for (int p = 0; p < scene->n_contacts; p++)
+    listed = (PetscBool)(listed || (scene->contacts[p].listed && scene->contacts[p].master));
+  if (!listed || scene->geometry != GEOMETRY_SOLID || scene->output.certificate) return;
+  fprintf(stream, "unjudged edges that cross edges have no contact, and were not looked for: "
+                  "-set output.certificate=true does\n");
+}
+
 /* Prints where a fluid is, and when it leaked. */
 static void PrintFluid(const FluidReport *fluid, FILE *stream)
 {
@@ -287,6 +300,7 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
   for (int i = 0; i < figures->n_fluids && figures->last; i++) PrintFluid(&figures->fluids[i], stream);
   if (SceneIsPlastic(figures->scene) && figures->last) PrintEnergy(&figures->last->energy, stream);
   PrintCertificate(figures, stream);
+  PrintUnjudged(figures, stream);
   PrintGuards(figures, stream);
   if (way->failed.attempts) PrintFailure(figures, stream);
   AdviceGive(figures, PrintAdvice, stream);

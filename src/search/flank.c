@@ -455,9 +455,17 @@ PetscBool FlankIsBeside(const Nearest *look, int facing, int n, const int *found
   return PETSC_FALSE;
 }
 
+/* Says whether a fit past an edge between two facets would miss one of them: of a convex edge either one, of a concave
+   one a facet that takes the slave point with its whole area, as the other one does. */
+static PetscBool EdgeNeedsBoth(const Nearest *look, const FlankEdge *edge, const Candidate *c, const Candidate *o)
+{
+  return (PetscBool)(edge->convex || (NeighbourListsOpposed(look->lists, look->q, c->normal) >= 1 &&
+                                      NeighbourListsOpposed(look->lists, look->q, o->normal) >= 1));
+}
+
 /*@
-  FlankNearRidge - says whether the slave point's foot is within half a face of a sharp convex edge whose two facets
-both face the point.
+  FlankNearRidge - says whether the slave point's foot is within half a face of a sharp edge whose two facets both face
+  the point.
 
   Not collective
 
@@ -468,19 +476,22 @@ both face the point.
 - found          - their numbers
 
   Note:
-  A fit knows one side of such an edge only. The facets know both, and the normal turns from one side to the other.
+  A fit knows one side of such an edge only. The facets know both: past a convex edge the normal turns from one side to
+  the other, and a node in a concave edge, as the corner of a block in that of a box, is held by both sides.
 @*/
 PetscBool FlankNearRidge(const Nearest *look, Neighbourhoods neighbourhoods, int facing, const int *found)
 {
   for (int i = 0; i < facing; i++) {
+    const Candidate *c = &look->candidates[found[i]];
+
     if (!NeighbourhoodsIsSharp(neighbourhoods, found[i])) continue;
     for (int k = 0; k < facing; k++) {
-      FlankEdge edge;
-      PetscReal place[3];
+      const Candidate *o = &look->candidates[found[k]];
+      FlankEdge        edge;
+      PetscReal        place[3];
 
-      if (k == i || !NeighbourhoodsIsSharp(neighbourhoods, found[k])) continue;
-      if (!SharedEdge(look, &look->candidates[found[i]], &look->candidates[found[k]], &edge)) continue;
-      if (edge.convex && NeighbourhoodsMeetSharply(neighbourhoods, found[i], found[k]) &&
+      if (k == i || !NeighbourhoodsIsSharp(neighbourhoods, found[k]) || !SharedEdge(look, c, o, &edge)) continue;
+      if (EdgeNeedsBoth(look, &edge, c, o) && NeighbourhoodsMeetSharply(neighbourhoods, found[i], found[k]) &&
           FootToEdge(look, &edge, place) <= 0.5 * look->size)
         return PETSC_TRUE;
     }

@@ -169,6 +169,7 @@ static PetscErrorCode MotionStiffness(FreeBodies b, const PetscReal *u, int k, K
                                       PetscReal *stiffness)
 {
   SpringTie   tie;
+  Mat         P;
   Vec         force, x;
   PetscScalar stretch;
   PetscReal   mean = 0;
@@ -176,8 +177,9 @@ static PetscErrorCode MotionStiffness(FreeBodies b, const PetscReal *u, int k, K
 
   PetscFunctionBeginUser;
   PetscCall(MakeTie(b, u, k, &tie));
-  PetscCall(ContactSpringsVector(springs, &force));
-  PetscCall(VecDuplicate(force, &x));
+  PetscCall(KSPGetOperators(ksp, NULL, &P));
+  PetscCall(MatCreateVecs(P, &x, &force));
+  PetscCall(VecZeroEntries(force));
   PetscCall(VecGetOwnershipRange(force, &first, &end));
   for (PetscInt i = 0; i < tie.n; i++)
     if (tie.dof[i] >= first && tie.dof[i] < end) PetscCall(VecSetValue(force, tie.dof[i], tie.value[i], ADD_VALUES));

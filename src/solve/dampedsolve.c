@@ -32,22 +32,39 @@ typedef struct {
 /* Sets the restraint. The energy changes with it. */
 static void Restrain(Model model, PetscReal scale)
 {
-  DampingSet(model->problem->damping, scale);
+  DofSpringsScale(model->problem->damping, scale);
   model->work->energy = 0;
 }
 
-/* Returns to the end of the last pseudo-time step after a failure. */
+/*@
+  ModelAnchor - makes the iterate the state to which a damped solve returns after a failure, and from which its
+  restraint slows the bodies down.
+
+  Collective
+
+  Input Parameter:
+. model - model->x; the restraint is made by ModelSolveDamped()
+@*/
+PetscErrorCode ModelAnchor(Model model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(DofSpringsAnchor(model->problem->damping, model->x));
+  PetscCall(ElasticityKeep(model->problem->elasticity));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Returns to the anchor after a failure. */
 static PetscErrorCode GoBack(Model model, SolveReport *report)
 {
   PetscFunctionBeginUser;
-  PetscCall(ElasticityRestore(model->problem->elasticity));
+  PetscCall(ElasticityReturn(model->problem->elasticity));
   if (model->contact) ContactForgetLost(model->contact);
   model->work->cycling     = PETSC_FALSE;
   model->work->cycles      = 0;
   model->problem->inverted = -1;
   report->detail[0]        = '\0';
   report->result           = SOLVE_CONVERGED;
-  PetscCall(DampingReturn(model->problem->damping, model->x));
+  PetscCall(DofSpringsReturn(model->problem->damping, model->x));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(ModelStepFromSolved(model, model->problem->trial));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -57,7 +74,7 @@ static PetscErrorCode GoBack(Model model, SolveReport *report)
 static PetscErrorCode Step(Model model, ModelStage start, ModelStage solve, Relaxation *r, SolveReport *report)
 {
   const PetscInt newton = report->newton, turned = report->turned;
-  PetscReal      force, work;
+  PetscReal      force, energy;
 
   PetscFunctionBeginUser;
   Restrain(model, r->scale);
@@ -70,12 +87,13 @@ static PetscErrorCode Step(Model model, ModelStage start, ModelStage solve, Rela
     PetscCall(PetscInfo(model->snes, "pseudo-time step failed: %s\n", SolveResults[report->result]));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(DampingLoad(model->problem->damping, model->x, &force, &work));
-  PetscCall(DampingAnchor(model->problem->damping, model->x));
+  PetscCall(DofSpringsLoad(model->problem->damping, model->x, &force, &energy));
+  PetscCall(ModelAnchor(model));
   PetscCall(PetscInfo(model->snes, "pseudo-time step %" PetscInt_FMT ": restraint %g, force %g, work %g\n", r->steps,
-                      (double)(r->scale / r->mean), (double)(force / ProblemForceScale(model->problem)), (double)work));
+                      (double)(r->scale / r->mean), (double)(force / ProblemForceScale(model->problem)),
+                      (double)(2 * energy)));
   report->damped++;
-  report->damping += work;
+  report->damping += 2 * energy;
   r->steps++;
   r->force = force;
   if (force > r->most) {
@@ -112,8 +130,8 @@ static PetscErrorCode TryStatic(Model model, ModelStage solve, Relaxation *r, So
   Collective
 
   Input Parameters:
-+ model  - model->x is where the bodies start from, unless `start` sets it
-. start  - begins the load step and sets the first iterate; NULL: model->x is it
++ model  - without `start`, ModelAnchor() has kept where the bodies start from
+. start  - begins the load step, calls ModelAnchor() and sets the first iterate; NULL: the bodies start from the anchor
 . solve  - finds the equilibrium of the present problem from the first iterate
 - report - costs and failures are added to it, and the work done against the restraint
 
@@ -135,8 +153,7 @@ PetscErrorCode ModelSolveDamped(Model model, ModelStage start, ModelStage solve,
 
   PetscFunctionBeginUser;
   if (!problem->damping) PetscCall(DampingCreate(model->mesh, model->scene, model->x, &problem->damping));
-  PetscCall(DampingMean(problem->damping, problem->diagonal, &r.mean));
-  PetscCall(DampingAnchor(problem->damping, model->x));
+  PetscCall(DofSpringsMean(problem->damping, problem->diagonal, &r.mean));
   r.scale = DAMPED_FIRST * r.mean;
   while (!rests && r.steps < DAMPED_MAX_STEPS && r.failures < DAMPED_MAX_FAILURES) {
     if (report->result != SOLVE_CONVERGED) PetscCall(GoBack(model, report));

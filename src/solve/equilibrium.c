@@ -522,7 +522,7 @@ static PetscErrorCode ModelStartSlowly(Model model, SolveReport *report)
   PetscFunctionBeginUser;
   PetscCall(ModelDepart(model, model->t));
   PetscCall(VecCopy(model->work->accepted_x, model->x));
-  PetscCall(DampingAnchor(model->problem->damping, model->x));
+  PetscCall(ModelAnchor(model));
   PetscCall(ModelPredict(model, report));
   PetscCall(ModelPredictFar(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -532,19 +532,11 @@ static PetscErrorCode ModelStartSlowly(Model model, SolveReport *report)
    static solve fails. */
 static PetscErrorCode ModelSolveOn(Model model, PetscBool slowly, SolveReport *report)
 {
-  Vec x = NULL;
-
   PetscFunctionBeginUser;
-  if (slowly) {
-    PetscCall(VecDuplicate(model->x, &x));
-    PetscCall(VecCopy(model->x, x));
-  }
+  if (slowly) PetscCall(ModelAnchor(model));
   PetscCall(ModelSolveHeld(model, report));
-  if (slowly && report->result != SOLVE_CONVERGED) {
-    PetscCall(VecCopy(x, model->x));
+  if (slowly && report->result != SOLVE_CONVERGED)
     PetscCall(ModelSolveDamped(model, NULL, ModelSolveHeld, report));
-  }
-  PetscCall(VecDestroy(&x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -35,7 +35,7 @@ static PetscErrorCode ObjectiveEnergy(Model model, Vec x, PetscReal *objective)
   else
     *objective = MODEL_INVERTED;
   PetscCall(ContactSpringsEnergy(model->problem->springs, x, objective));
-  PetscCall(DampingEnergy(model->problem->damping, x, objective));
+  PetscCall(DofSpringsEnergy(model->problem->damping, x, objective));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -65,7 +65,7 @@ PetscErrorCode ProblemDestroy(Problem *problem)
 
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DampingDestroy(&p->damping));
+  PetscCall(DofSpringsDestroy(&p->damping));
   PetscCall(ContactSpringsDestroy(&p->springs));
   PetscCall(FreeBodiesDestroy(&p->bodies));
   PetscCall(FluidDestroy(&p->fluids));
@@ -181,7 +181,7 @@ PetscErrorCode ProblemCollectResidual(Problem problem, Vec x, Vec F)
   PetscFunctionBeginUser;
   PetscCall(MeshLocalToGlobal(problem->mesh, problem->f, F));
   PetscCall(ContactSpringsResidual(problem->springs, x, F));
-  PetscCall(DampingResidual(problem->damping, x, F));
+  PetscCall(DofSpringsResidual(problem->damping, x, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -301,8 +301,8 @@ PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const StressR
   PetscCall(VecNorm(problem->diagonal, NORM_2, &problem->stiffness));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(ContactSpringsTangent(problem->springs, problem->P));
-  PetscCall(DampingTangent(problem->damping, problem->P));
-  if (problem->tied || DampingChanged(problem->damping)) change->pattern = PETSC_TRUE; /* no earlier factor serves */
+  PetscCall(DofSpringsTangent(problem->damping, problem->P));
+  if (problem->tied || DofSpringsChanged(problem->damping)) change->pattern = PETSC_TRUE; /* no earlier factor serves */
   problem->tied = PETSC_FALSE;
   if (!joined) PetscCall(SumOperatorSet(problem->A, change->C));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -167,6 +167,10 @@ JOBS = [
     Job("plug_orifice", "plug pushed into an orifice", [
         Answer("radial", 90.89, 0.2, "limit"),
     ], steps=14, picture=["--mirror", "x"]),
+    # Contact without naming pairs
+    Job("comb_fingers", "two combs of leaves pushed against each other", [
+        Answer("side_force", 53.399, 0.59, "limit"),
+    ], steps=8),
     # Steel that yields
     Job("autofrettage", "hollow ball yields under pressure and is released", [
         Answer("grown", 0.00220375, 0.001, "Hill"),

@@ -6,6 +6,7 @@ FRAME, TUBE = SCENES / "c_strip.yaml", SCENES / "mirrored_tube.yaml"
 RINGS, PIPE = SCENES.parent.parent / "runs/ring_in_ring.yaml", SCENES.parent.parent / "runs/pipe_pinch.yaml"
 SHRINK, BUMPER = SCENES.parent / "jobs/shrink_fit.yaml", SCENES / "jounce_bumper.yaml"
 SIDES = 4e-3  # of a force of friction: between a list and one role of slave and master, whose points differ
+BEAMS = SCENES / "crossed_beams.yaml"
 BUMPER_SPREAD = 5e-3  # of its force: the two formulations on its coarse mesh
 EXACT = 1e-6  # forces and pressures of the same problem written in another way
 SMOOTHED = 1e-3  # the smooth surface of a bent tip of four faces is not its faces: forces, and the largest pressure
@@ -155,6 +156,14 @@ def bumper():
     check.near("bumper: force on 2 ranks", forces[2] / forces[0], 1, 1e-9)
 
 
+def edges():
+    """Beams that cross edge on edge: a run that judges its steps stops at the place, another one says what it leaves."""
+    judged = run(args, BEAMS, out="judged", must=2, overrides=["output.certificate=true"])
+    check.holds("the edge is named", "the edge of the nodes" in judged.text and "any.lower.upper" in judged.text)
+    free = run(args, BEAMS, out="unjudged")
+    check.holds("edges were not looked for", "edges that cross edges have no contact" in free.text)
+
+
 def refused(what, text, contact):
     finished = run(args, RINGS, "-check", out="refused", ranks=1, must=1, overrides=[f"contact=[{contact}]", "probes=[]"])
     check.holds(f"refused: {what}", text in finished.text, finished.text.strip().splitlines()[0])
@@ -176,11 +185,18 @@ def refusals():
             "{name: a, surfaces: [nowhere]}")
     refused("two lists of one surface", "their forces would add up",
             "{name: a, surfaces: [inner_contact]}, {name: b, surfaces: [inner_contact]}")
+    tool = "master: {plane: {point: [0, 31], normal: [0, -1]}}"
+    again = "master: {plane: {point: [4, 31], normal: [0, -2]}}"
+    refused("one tool in a list and by slave and master", "meet the same rigid tool: their forces would add up",
+            f"{{name: a, surfaces: [outer_contact], {tool}}}, {{name: b, slave: outer_contact, {again}}}")
+    run(args, RINGS, "-check", out="two_tools", overrides=[
+        f"contact=[{{name: a, surfaces: [outer_contact], {tool}}}, "
+        f"{{name: b, slave: inner_contact, {again}}}]", "probes=[]"])
     run(args, RINGS, "-check", out="named", overrides=[
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, mirror, walls, ranks, refusals, override, friction, overlap or bumper"))
+args = arguments(("case", "frame, mirror, walls, ranks, refusals, override, friction, overlap, bumper or edges"))
 check = Check()
 if args.case == "frame":
     for smoother in ("facet", "diffuse"):
@@ -191,5 +207,5 @@ elif args.case == "mirror":
     mirror("surface_to_surface")
 else:
     {"walls": walls, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
-     "overlap": overlap, "bumper": bumper}[args.case]()
+     "overlap": overlap, "bumper": bumper, "edges": edges}[args.case]()
 check.finish()

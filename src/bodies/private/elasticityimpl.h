@@ -65,7 +65,7 @@ struct _n_Elasticity {
   NodeMatrix  matrix;
   PetscReal   accepted_t; /* time of the accepted plastic state */
   PetscBool   augments;   /* a body has multipliers, perhaps on other ranks only */
-  VolumeState state, accepted;
+  VolumeState state, accepted, kept;
   PetscReal  *yielding; /* multipliers of mixed elements while energies are compared, see ElasticityYield() */
   PetscBool   yields;   /* they are */
   Enclosed    enclosed;

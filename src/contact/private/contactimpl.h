@@ -155,6 +155,8 @@ PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneCont
 PetscErrorCode ContactPairDestroy(ContactPair *);
 /* contactoverride.c */
 PetscErrorCode ContactOverride(Contact);
+/* contactrepeated.c */
+PetscErrorCode ContactRefuseRepeated(Contact);
 /* contactquery.c */
 PetscErrorCode ContactPairPressing(const ContactPair *, ContactPressing *);
 /* contactfaces.c */

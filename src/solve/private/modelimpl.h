@@ -132,6 +132,7 @@ PetscErrorCode ModelPredictFar(Model, SolveReport *);
 PetscErrorCode ModelFollowLists(Model, SolveReport *);
 /* dampedsolve.c */
 typedef PetscErrorCode (*ModelStage)(Model, SolveReport *);
+PetscErrorCode ModelAnchor(Model);
 PetscErrorCode ModelSolveDamped(Model, ModelStage start, ModelStage solve, SolveReport *);
 /* penaltyramp.c */
 PetscErrorCode ModelRampPenalty(Model, SolveReport *);
