@@ -61,7 +61,6 @@ static void law(const double *x, void *context, double value[3])
   memcpy(in.normal, x, sizeof(in.normal));
   memcpy(in.slip, x + 3, sizeof(in.slip));
   memcpy(in.along, x + 6, sizeof(in.along));
-  in.opening  = given->opening + x[9];
   in.pressure = given->pressure - given->rate * x[9];
   in.coefficient += given->steepness * (in.pressure - given->pressure);
   FrictionEvaluate(&in, &out);
@@ -74,7 +73,6 @@ static FrictionInput node(int dim, double coefficient, double began)
                       .stiffness   = 30,
                       .kept        = {0.1 * any(), dim == 3 ? 0.1 * any() : 0},
                       .rate        = 50,
-                      .opening     = -0.05,
                       .pressure    = 2.5,
                       .began       = began};
 
