@@ -167,6 +167,18 @@ JOBS = [
     Job("plug_orifice", "plug pushed into an orifice", [
         Answer("radial", 90.89, 0.2, "limit"),
     ], steps=14, picture=["--mirror", "x"]),
+    # Friction
+    Job("strip_in_rollers", "rubber strip drawn between rollers", [
+        Answer("pull", 1, 1, "limit"),
+        Answer("squeeze", 1, 1, "limit"),
+    ], steps=15, pairs=2, stiff=["contact.*.formulation=node_to_surface"]),
+    Job("belt_on_pulley", "belt pulled over a pulley, with a weight", [
+        Answer("pull", 1, 1, "limit"),
+        Answer("torque", 1, 1, "limit"),
+    ], steps=15),
+    Job("wedge_in_slot", "wedge pressed into a slot and left there", [
+        Answer("apart", 1, 1, "limit"),
+    ], steps=12),
     # Steel that yields
     Job("autofrettage", "hollow ball yields under pressure and is released", [
         Answer("grown", 0.00220375, 0.001, "Hill"),
