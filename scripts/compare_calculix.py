@@ -1,7 +1,7 @@
-"""Burnish beside CalculiX (ccx, Debian's package calculix-ccx) on pipe_pinch, cup_flattening and press_fit, one after the
-other in one run: CPU seconds, iterations, failed steps, and the force against its reference. CalculiX's input is written
-here from the same gmsh meshes: surface to surface penalty contact with Burnish's penalty, finite strain, the same law,
-loads and supports. With friction its stick slope is Burnish's penalty for what sticks.
+"""Burnish beside CalculiX (ccx, Debian's package calculix-ccx) on pipe_pinch, cup_flattening and press_fit, one after
+the other in one run: CPU seconds, iterations, failed steps, and the force against its reference. CalculiX's input is
+written here from the same gmsh meshes: surface to surface penalty contact with Burnish's penalty, finite strain, the
+same law, loads and supports. With friction its stick slope is Burnish's penalty for what sticks.
     compare_calculix.py [--burnish BINARY] [--ccx BINARY] [--repeats N] [--out DIR] [--record FILE] [CASE ...]     runs
     and prints compare_calculix.py --table FILE
     prints only
@@ -314,7 +314,8 @@ def cup_input(setting, mesh):
 
 def fit_input(setting, mesh):
     """The bore turns; its reactions are printed node by node, for their moment. The mesh has its cells clockwise."""
-    inner, outer = ({number: nodes[::-1] for number, nodes in mesh.cells((body,)).items()} for body in ("inner", "outer"))
+    inner, outer = ({number: nodes[::-1] for number, nodes in mesh.cells((body,)).items()}
+                    for body in ("inner", "outer"))
     cells = {**inner, **outer}
     places = {node: [float(x) for x in mesh.nodes[node].split(",")[1:3]] for node in mesh.group_nodes("bore")}
     turned = [
@@ -323,13 +324,13 @@ def fit_input(setting, mesh):
                                  x * math.sin(setting.turn) + y * (math.cos(setting.turn) - 1)))
     ]
     return [
-        "*NODE", *mesh.nodes.values(), *element_lines(setting.element, "SOLID", cells), *material("SOLID", 200000), "1.",
-        *surface("SLAVE", mesh.sides(setting.slave, inner, QUAD_SIDES)),
-        *surface("MASTER", mesh.sides("outer_contact", outer, QUAD_SIDES)), *contact(setting, 200000, 10 / setting.parameters["n_wall"]), *fixed(
-            mesh, {
-                "rim": "12",
-                "bore": ""
-            }), *step(setting, ["*BOUNDARY", *turned], "bore")
+        "*NODE", *mesh.nodes.values(), *element_lines(setting.element, "SOLID", cells), *material("SOLID", 200000),
+        "1.", *surface("SLAVE", mesh.sides(setting.slave, inner, QUAD_SIDES)),
+        *surface("MASTER", mesh.sides("outer_contact", outer, QUAD_SIDES)),
+        *contact(setting, 200000, 10 / setting.parameters["n_wall"]), *fixed(mesh, {
+            "rim": "12",
+            "bore": ""
+        }), *step(setting, ["*BOUNDARY", *turned], "bore")
     ]
 
 
@@ -398,7 +399,8 @@ def read_calculix(directory, setting, mesh):
 
 def run_burnish(args, setting, directory):
     command = [
-        *args.launcher, args.burnish, ROOT / "runs" / SCENES.get(setting.scene, f"{setting.scene}.yaml"), "-quiet", "-o", directory / "results"
+        *args.launcher, args.burnish, ROOT / "runs" / SCENES.get(setting.scene, f"{setting.scene}.yaml"), "-quiet",
+        "-o", directory / "results"
     ]
     mesh = "mesh={file: %s}" % make_mesh(setting, args.out)
     for override in (mesh, "output.every=0", *(part for part in setting.overrides if not part.startswith("mesh."))):
