@@ -58,7 +58,7 @@ static void LookAtSlips(ActiveSet p)
       square += PetscSqr(slip);
       p->slip[2 * i + a] = slip;
     }
-    most          = law->stiffness * FrictionCountedShare(law, opening) * PetscSqrtReal(square);
+    most          = law->stiffness * FrictionCountedShare(law, pressure) * PetscSqrtReal(square);
     p->sticks[i]  = (PetscBool)(p->slipped[i] && along < 0);
     p->slipped[i] = (PetscBool)(!p->sticks[i] && most > FrictionBound(law, pressure));
   }
@@ -209,8 +209,7 @@ static PetscReal ComponentExcess(ActiveSet p, PetscInt component, PetscReal by[A
     in.slip[l - 1] += p->end[l * p->n + i];
   }
   if (!p->pressed[i]) return excess;
-  in.opening  = term->opening + p->end[i];
-  in.pressure = -term->penalty * in.opening;
+  in.pressure = -term->penalty * (term->opening + p->end[i]);
   in.rate     = term->penalty;
   in.state    = p->sticks[i] ? FRICTION_STICKS : FRICTION_DECIDES;
   FrictionEvaluate(&in, &out);

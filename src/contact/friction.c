@@ -607,20 +607,18 @@ static void TermEvaluate(const ContactPair *pair, PetscInt c, FrictionInput *in,
 /* What the law is to be asked of a term that need not be in contact. *found: it has anchors. */
 PetscErrorCode FrictionTermAsk(const ContactPair *pair, PetscInt c, PetscReal t, FrictionInput *in, PetscBool *found)
 {
-  const Friction f     = pair->friction;
-  const LawState state = ContactTermState(pair, c, t, pair->most);
+  const Friction f = pair->friction;
   LawValue       value;
-  PetscReal      gap, area;
+  PetscReal      area;
 
   PetscFunctionBeginUser;
   *found = f->anchored[c];
   if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
-  ContactTermLaw(pair, c, t, &value, &gap, &area);
+  ContactTermLaw(pair, c, t, &value, NULL, &area);
   TermMaterial(pair, c, t, value.pressure, in);
   for (int k = 0; k < 2; k++) in->kept[k] = f->kept[2 * c + k];
-  in->rate    = value.stiffness;
-  in->opening = gap - LawOnsetGap(&state);
-  in->began   = f->began[c];
+  in->rate  = value.stiffness;
+  in->began = f->began[c];
   PetscCall(TermSlip(pair, c, t, in, found));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

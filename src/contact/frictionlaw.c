@@ -99,16 +99,16 @@ void FrictionComponents(const double normal[3], const double along[3], const dou
   for (int k = 0; k < 2; k++) component[k] = Dot(x.t[k], v);
 }
 
-/* Share of the slip that counts, and its derivative by the opening. */
+/* Share of the slip that counts, and its derivative by the gap. */
 static double CountedShare(const FrictionInput *in, double *rate)
 {
-  const double travel = in->opening - in->began;
+  const double depth = in->pressure / in->stiffness, way = in->began + depth;
 
   *rate = 0;
   if (!(in->began > 0)) return 1;
-  if (in->opening >= 0) return 0;
-  *rate = -in->began / (travel * travel);
-  return in->opening / travel;
+  if (!(depth > 0)) return 0;
+  *rate = -in->rate / in->stiffness * in->began / (way * way);
+  return depth / way;
 }
 
 /*@
@@ -117,18 +117,18 @@ static double CountedShare(const FrictionInput *in, double *rate)
   Not collective
 
   Input Parameters:
-+ in      - the node; its own opening does not count
-- opening - gap less the gap below which there is pressure (length)
++ in       - the node; its own pressure does not count
+- pressure - force per area
 
   Note:
   Plain C.
 @*/
-double FrictionCountedShare(const FrictionInput *in, double opening)
+double FrictionCountedShare(const FrictionInput *in, double pressure)
 {
   FrictionInput at = *in;
   double        rate;
 
-  at.opening = opening;
+  at.pressure = pressure;
   return CountedShare(&at, &rate);
 }
 

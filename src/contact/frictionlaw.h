@@ -9,10 +9,12 @@
                                                    t = b(p) e/|e|       else: it slips
    with the bound b = cohesion + mu p, or the limit where that is less. mu may depend on p. Without pressure b is 0.
    beta is 1 where the node was in contact when the step began. Else slip counts from the touch only: beta =
-   opening/(opening - began), between 0 and 1. In two dimensions all third components are 0.
+   depth/(depth + began) with depth = p/stiffness. So far the node would have gone on without contact, were the surface
+   as stiff across as it is along. Near the touch t = p v/began: a node that arrives within the cone of friction sticks,
+   any other one slips, whatever the penalty. In two dimensions all third components are 0.
 
    Sources: Wriggers, Computational Contact Mechanics, 2006, ch. 5 and 10 (return map); Chamoret et al. (2004), eq. 17
-   (beta). */
+   (beta, of a predicted penetration). */
 #pragma once
 
 /* What decides between sticking and slipping: the traction, or the caller. */
@@ -30,8 +32,8 @@ typedef struct {
   double        kept[2];     /* lengths */
   double        pressure;    /* p; none below 0 counts, unless the caller has it slip: in a linear step p is signed */
   double        rate;        /* -dp/dgap: force per length and area */
-  double        opening;     /* gap less the gap below which there is pressure (length) */
-  double        began;       /* the opening when the step began, where the node was open then; else 0 (length) */
+  double        began;       /* gap less the gap below which there is pressure when the step began, where the node was
+                                open then; else 0 (length) */
   FrictionState state;
 } FrictionInput;
 
@@ -45,5 +47,5 @@ typedef struct {
 
 void   FrictionComponents(const double normal[3], const double along[3], const double v[3], double component[2]);
 double FrictionBound(const FrictionInput *, double pressure);
-double FrictionCountedShare(const FrictionInput *, double opening);
+double FrictionCountedShare(const FrictionInput *, double pressure);
 void   FrictionEvaluate(const FrictionInput *, FrictionTraction *);

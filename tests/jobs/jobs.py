@@ -171,6 +171,17 @@ JOBS = [
     Job("comb_fingers", "two combs of leaves pushed against each other", [
         Answer("side_force", 53.399, 0.59, "limit"),
     ], steps=8),
+    # Friction
+    Job("strip_in_rollers", "rubber strip drawn between rollers", [
+        Answer("pull", 5.33, 0.8, "limit"),  # it varies by that as nodes come and go
+    ], steps=15, pairs=2, stiff=["contact.*.formulation=node_to_surface"]),
+    Job("belt_on_pulley", "belt pulled over a pulley, with a weight", [
+        Answer("pull", -3.8368, 0.03, "limit"),
+        Answer("torque", 46.88, 0.03, "limit"),
+    ], steps=15),
+    Job("wedge_in_slot", "wedge pressed into a slot and left there", [
+        Answer("apart", 0.1492, 0.5, "limit"),
+    ], steps=12),
     # Steel that yields
     Job("autofrettage", "hollow ball yields under pressure and is released", [
         Answer("grown", 0.00220375, 0.001, "Hill"),

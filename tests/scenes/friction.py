@@ -10,7 +10,7 @@ RUNS = SCENES.parent.parent / "runs"
 MU = 0.3
 
 args = arguments(("part", "what is shown", ("flat", "bounds", "circle", "shear", "belt", "turn", "turn_solid", "bar",
-                                             "rings", "hold", "stiff", "ironing", "die", "paper")))
+                                             "rings", "hold", "stiff", "enter", "ironing", "die", "paper")))
 check = Check()
 
 
@@ -269,6 +269,21 @@ def stiff():
         check.near(f"E {E:g}: friction over the load", -along / across, MU, 1e-6)
         check.holds(f"E {E:g}: penalties are raised once",
                     finished.summary()["contact"][0]["penalty"]["stiffened"] <= 30)
+
+
+def enter():
+    """A strip drawn through rollers by more than the width of the contact in a step, so that all nodes in contact have
+    come into it within the step: the force is that of friction, with a stiff penalty too."""
+    ends = []
+    for scale in (30, 3000):
+        finished = run(args, SCENES.parent / "jobs/strip_in_rollers.yaml", out=f"scale_{scale}", overrides=[
+            "mesh.order=1", "output.every=0", *(f"contact.{k}.penalty.scale={scale}" for k in (0, 1))
+        ])
+        pulls = [row["pull"] for row in finished.steps() if row["t"] > 0.5]
+        check.holds(f"scale {scale}: the force stays once all slips", min(pulls) > 0.9 * max(pulls),
+                    f"from {min(pulls):.3f} to {max(pulls):.3f}")
+        ends.append(pulls[-1])
+    check.near("forces with both penalties", ends[0] / ends[1], 1, 0.02)
 
 
 def ironing():

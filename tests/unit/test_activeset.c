@@ -258,8 +258,7 @@ static void RubLaw(const ActiveSetTerm *term, const double *x, FrictionState sta
   FrictionInput in = term->friction.law;
 
   for (int a = 0; a < 2; a++) in.slip[a] += x[1 + a];
-  in.opening  = term->opening + x[0];
-  in.pressure = *p = PetscMax(0, -term->penalty * in.opening);
+  in.pressure = *p = PetscMax(0, -term->penalty * (term->opening + x[0]));
   in.rate          = in.pressure > 0 ? term->penalty : 0;
   in.state         = state;
   FrictionEvaluate(&in, out);

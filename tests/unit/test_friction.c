@@ -61,7 +61,6 @@ static void law(const double *x, void *context, double value[3])
   memcpy(in.normal, x, sizeof(in.normal));
   memcpy(in.slip, x + 3, sizeof(in.slip));
   memcpy(in.along, x + 6, sizeof(in.along));
-  in.opening  = given->opening + x[9];
   in.pressure = given->pressure - given->rate * x[9];
   in.coefficient += given->steepness * (in.pressure - given->pressure);
   FrictionEvaluate(&in, &out);
@@ -74,7 +73,6 @@ static FrictionInput node(int dim, double coefficient, double began)
                       .stiffness   = 30,
                       .kept        = {0.1 * any(), dim == 3 ? 0.1 * any() : 0},
                       .rate        = 50,
-                      .opening     = -0.05,
                       .pressure    = 2.5,
                       .began       = began};
 
@@ -151,6 +149,26 @@ static void test_law(void **state)
         check_law(dim, 0.01, open * 0.03, bound, FRICTION_SLIPS);
       }
     }
+  }
+}
+
+/* Near the touch the traction is that of the way on which the node came, whatever the penalty: along it within the cone
+   of friction, at its bound beyond it. */
+static void test_touch(void **state)
+{
+  (void)state;
+  for (int trial = 0; trial < 20; trial++) {
+    const double     slope = trial % 2 ? 0.1 : 3, pressure = 1e-6;
+    FrictionInput    in = {.coefficient = 0.3, .normal = {0, 0, 1}, .along = {1, 0, 0}, .began = 0.2};
+    FrictionTraction out;
+
+    in.pressure  = pressure;
+    in.stiffness = trial < 10 ? 30 : 3000;
+    in.rate      = pow(10, trial % 5) * in.stiffness;
+    in.slip[0]   = slope * in.began;
+    FrictionEvaluate(&in, &out);
+    assert_true(fabs(out.traction[0] / (pressure * fmin(slope, in.coefficient)) - 1) <= 1e-6);
+    assert_int_equal(out.state, slope < in.coefficient ? FRICTION_STICKS : FRICTION_SLIPS);
   }
 }
 
@@ -470,10 +488,10 @@ static void test_frame(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_law),     cmocka_unit_test(test_rotation),
-                                     cmocka_unit_test(test_kept),    cmocka_unit_test(test_foot),
-                                     cmocka_unit_test(test_balance), cmocka_unit_test(test_crossing),
-                                     cmocka_unit_test(test_frame)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_law),      cmocka_unit_test(test_rotation),
+                                     cmocka_unit_test(test_kept),     cmocka_unit_test(test_touch),
+                                     cmocka_unit_test(test_foot),     cmocka_unit_test(test_balance),
+                                     cmocka_unit_test(test_crossing), cmocka_unit_test(test_frame)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,67 @@
+// A block with a slot, and a wedge of the same taper in it; plane strain. Lengths in mm.
+DefineConstant[ refine = {1, Name "divides all element sizes"} ];
+fine = 0.5 / refine;
+middle = 1.2 / refine;
+coarse = 3.6 / refine;
+a = 5 * Pi / 180;    // half of the taper
+top = 4;             // half of the slot's width at the top
+foot = top - 18 * Tan(a);
+r = 0.5;             // rounding of its edges
+
+Point(1) = {-20, 0, 0, coarse};
+Point(2) = {20, 0, 0, coarse};
+Point(3) = {20, 30, 0, coarse};
+Point(4) = {top + r, 30, 0, fine};
+Point(5) = {top, 30 - r, 0, fine};
+Point(6) = {foot, 12.5, 0, fine};
+Point(7) = {0, 12, 0, 2 * fine};
+Point(8) = {-foot, 12.5, 0, fine};
+Point(9) = {-top, 30 - r, 0, fine};
+Point(10) = {-top - r, 30, 0, fine};
+Point(11) = {-20, 30, 0, coarse};
+Point(20) = {top + r, 30 - r, 0};
+Point(21) = {-top - r, 30 - r, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Circle(4) = {4, 20, 5};
+Line(5) = {5, 6};
+Line(6) = {6, 7};
+Line(7) = {7, 8};
+Line(8) = {8, 9};
+Circle(9) = {9, 21, 10};
+Line(10) = {10, 11};
+Line(11) = {11, 1};
+Curve Loop(1) = {1 : 11};
+Plane Surface(1) = {1};
+
+// the wedge starts with 0.02 of clearance on each side
+y0 = 16;             // its tip
+L = 20;
+s = 0.6;             // rounding of the tip
+slope = (top - foot) / 17;
+w0 = foot + (y0 - 12.5) * slope - 0.02;
+w1 = w0 + L * slope;
+Point(31) = {-w0 + s, y0, 0, fine};
+Point(32) = {w0 - s, y0, 0, fine};
+Point(33) = {w0 - s, y0 + s, 0, fine};
+Point(34) = {w0, y0 + s, 0, fine};
+Point(35) = {w1, y0 + L, 0, middle};
+Point(36) = {-w1, y0 + L, 0, middle};
+Point(37) = {-w0, y0 + s, 0, fine};
+Point(38) = {-w0 + s, y0 + s, 0, fine};
+Line(31) = {31, 32};
+Circle(32) = {32, 33, 34};
+Line(33) = {34, 35};
+Line(34) = {35, 36};
+Line(35) = {36, 37};
+Circle(36) = {37, 38, 31};
+Curve Loop(2) = {31 : 36};
+Plane Surface(2) = {2};
+
+Physical Surface("block") = {1};
+Physical Surface("wedge") = {2};
+Physical Curve("bottom") = {1};
+Physical Curve("slot") = {4 : 9};
+Physical Curve("flanks") = {32, 33, 35, 36};
+Physical Curve("head") = {34};
