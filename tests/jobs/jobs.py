@@ -75,12 +75,6 @@ JOBS = [
     Job("x_ring", "X-ring in a groove under a lid", [
         Answer("force", 239.11, 0.1, "limit"),
     ], steps=10, pairs=2),
-    Job("u_cup", "U-cup between rod and bore, pressed by a fluid", [
-        Answer("on_floor", 20.498, 0.02, "limit"),
-    ], steps=15, pairs=3),
-    Job("ring_quarter", "quarter of an O-ring between plates", [
-        Answer("force", 38.7, 1, "limit"),
-    ], steps=10, pairs=2, levels=(1, 4 / 3, 5 / 3)),
     # Balls
     Job("ball_in_cone", "ball in a cone by force", [
         Answer("peak_pressure", 83.00, 0.1, "limit"),  # Hertz, for a ring of infinite radius: 84.42
