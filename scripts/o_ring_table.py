@@ -1,9 +1,9 @@
-"""The rubber O-ring of runs/o_ring.yaml at default settings: squeezed by 20 % and 30 % of its cord, and by 20 % in one
-single step, for elements of both orders and Poisson's ratios from 0.49 to 0.5. Forces are compared with those of a
-finer mesh of second-order quadrilaterals of the same ratio. Then the ring of runs/o_ring_pressure.yaml, squeezed and
-pressed on by a fluid; tight_to is the pressure that its contact would hold. After 20 % a gap is left beside the groove's
-edge; `gap` is the size of the triangles there. Writes runs/records/o_ring.csv, one row for
-each run; t is where a run has ended that is not done.
+"""The rubber O-ring of runs/o_ring.yaml at default settings: squeezed by 20 % and 30 % of its cord, and by 20 % in
+one single step, for elements of both orders and Poisson's ratios from 0.49 to 0.5. Forces are compared with those of
+a finer mesh of second-order quadrilaterals of the same ratio. Then the ring of runs/o_ring_pressure.yaml, squeezed
+and pressed on by a fluid; tight_to is the pressure that its contact would hold. After 20 % a gap is left beside the
+groove's edge; `gap` is the size of the triangles there. Writes runs/records/o_ring.csv, one row for each run; t is
+where a run has ended that is not done.
 
     build/venv/bin/python scripts/o_ring_table.py --burnish build/burnish
 """
