@@ -3,7 +3,8 @@ DefineConstant[
   cord = {3.53, Name "diameter of the cord"}, mean = {53.53, Name "mean diameter of the ring"},
   depth = {2.8, Name "of the groove: depth"}, width = {4.7, Name "of the groove: width"},
   foot = {0.4, Name "radius at the groove's floor"}, edge = {0.2, Name "radius at the groove's edges"},
-  n = {12, Name "elements along a quarter of the cord"}, triangles = {0, Name "1: triangles instead of quadrangles"}
+  n = {12, Name "elements along a quarter of the cord"}, triangles = {0, Name "1: triangles instead of quadrangles"},
+  gap = {0, Name "size of triangles at the outer gap between groove and lid; 0: as elsewhere"}
 ];
 R = cord / 2; rm = mean / 2; c = Sqrt(0.5); // the cord rests on the floor at y = 0, in the middle of the groove
 q = 0.45 * R; // half the diagonal of the square in the cord's middle, whose sides are next to those of the skin
@@ -25,10 +26,27 @@ Curve Loop(5) = {5 : 8};
 Plane Surface(5) = {5};
 Transfinite Curve{1 : 8} = n + 1;
 Transfinite Curve{9 : 12} = Ceil(0.6 * n) + 1;
+skin[] = {1 : 4};
 If (triangles)
   Mesh.MeshSizeMin = R * Pi / 2 / n; Mesh.MeshSizeMax = R * Pi / 2 / n;
   Delete { Surface{1 : 5}; Curve{5 : 12}; }
-  Curve Loop(6) = {1 : 4};
+  If (gap > 0) // grows from there by a fifth of the distance; the skin has a node halfway up on either side
+    Delete { Curve{1, 4}; }
+    Point(10) = {rm + R, R, 0};
+    Circle(1) = {2, 1, 3}; Circle(4) = {5, 1, 10}; Circle(13) = {10, 1, 2};
+    skin[] = {1 : 4, 13};
+    Mesh.MeshSizeMin = gap; Mesh.MeshSizeFromPoints = 0; Mesh.MeshSizeExtendFromBoundary = 0;
+    near[] = {};
+    For i In {0 : 40}
+      angle = (25 + 50 * i / 40) * Pi / 180;
+      near[] += {100 + i};
+      Point(100 + i) = {rm + R * Cos(angle), R + R * Sin(angle), 0};
+    EndFor
+    Field[1] = Distance; Field[1].PointsList = {near[]};
+    Field[2] = MathEval; Field[2].F = Sprintf("%g + 0.2 * F1", gap);
+    Background Field = 2;
+  EndIf
+  Curve Loop(6) = {skin[]};
   Plane Surface(1) = {6};
   ring[] = {1};
 Else
@@ -49,6 +67,6 @@ Transfinite Curve{24, 26} = 7; Transfinite Curve{22, 28} = 5;
 Transfinite Curve{23, 27} = 21; Transfinite Curve{25, 41} = 41;
 Transfinite Curve{21, 29} = 9;
 Physical Surface("ring") = {ring[]};
-Physical Curve("skin") = {1 : 4};
+Physical Curve("skin") = {skin[]};
 Physical Curve("groove") = {21 : 29};
 Physical Curve("lid") = {41};

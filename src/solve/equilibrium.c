@@ -128,7 +128,7 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
 }
 
 /* Moves bodies that no contact holds yet along the loads at t until they touch. This changes the accepted state, which
-   has no force in these bodies, wherever they are. */
+   has no force along these motions, wherever the bodies are. */
 static PetscErrorCode ModelSettle(Model model, PetscReal t)
 {
   ModelWork   *work = model->work;
@@ -151,6 +151,7 @@ static PetscErrorCode ModelSettle(Model model, PetscReal t)
     PetscCall(MeshCollectFree(model->mesh, u, work->accepted_x));
     PetscCall(VecCopy(work->accepted_x, model->x));
     if (work->extrapolation) PetscCall(ExtrapolationReplace(work->extrapolation, u, work->accepted_t));
+    PetscCall(FluidBegin(model->problem->fluids, work->accepted_u, t));
   }
   PetscCall(PetscFree(u));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -166,6 +167,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscFunctionBeginUser;
   PetscCall(ElasticityRestore(model->problem->elasticity));
   if (model->contact) PetscCall(ContactRestore(model->contact));
+  PetscCall(FluidBegin(model->problem->fluids, work->accepted_u, t));
   PetscCall(ModelSettle(model, t));
   PetscCall(ContactSpringsRelax(model->problem->springs, work->accepted_x));
   model->t                 = t;
@@ -177,7 +179,6 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->cycle[0]           = '\0';
   work->energy             = 0;
   ModelForgetPenaltyError(model);
-  PetscCall(FluidBegin(model->problem->fluids, work->accepted_u, t));
   PetscCall(ModelStepFromSolved(model, work->accepted_u));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));

@@ -5,6 +5,25 @@
 #include "matrix/sumoperator.h"
 #include "mesh/pressurenodes.h"
 
+/* Length of the shortest edge between the first two nodes of a cell, over all cells. */
+static PetscErrorCode ShortestEdge(Mesh mesh, PetscReal *length)
+{
+  PetscReal least = PETSC_MAX_REAL;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const PetscInt *nodes  = &mesh->cell_nodes[mesh->cell_ptr[c]];
+    PetscReal       square = 0;
+
+    for (int d = 0; d < mesh->dim; d++)
+      square += PetscSqr(mesh->coords[nodes[1] * mesh->dim + d] - mesh->coords[nodes[0] * mesh->dim + d]);
+    least = PetscMin(least, square);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, mesh->comm));
+  *length = PetscSqrtReal(least);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ProblemCreate - creates loads, elements and contact of a scene, and the matrix of their tangent.
 
@@ -32,6 +51,7 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   problem->mesh     = mesh;
   problem->form     = TANGENT_JOINED;
   problem->inverted = -1;
+  if (scene->kinematics == KINEMATICS_FINITE) PetscCall(ShortestEdge(mesh, &problem->edge));
   PetscCall(LoadsCreate(mesh, scene, &problem->loads));
   PetscCall(ElasticityCreate(mesh, scene, &problem->elasticity));
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, problem->elasticity, problem->loads, &problem->contact));
@@ -351,10 +371,14 @@ PetscReal ProblemForceScale(Problem problem)
 
   Output Parameter:
 . force - a residual norm below this one cannot be told from zero
+
+  Note:
+  Finite strains come from deformation gradients near 1. Their rounding is that of displacements as large as an element,
+  however small the displacements are.
 @*/
 PetscErrorCode ProblemRoundOff(Problem problem, PetscReal *force)
 {
-  PetscReal most = 0;
+  PetscReal most = problem->edge;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < problem->mesh->n_nodes * problem->mesh->dim; i++)

@@ -63,6 +63,7 @@ typedef struct _n_Problem {
   PetscReal      force;        /* norm of the forces in the last residual, before assembly */
   PetscReal      force_so_far; /* largest such norm of all accepted states */
   PetscReal      stiffness;    /* 2-norm of the diagonal of the elastic tangent */
+  PetscReal      edge;         /* shortest edge of a cell (length) with finite strains, else 0 */
   PetscReal      expected;     /* motion (length) that ProblemGatherLists() made the contact lists for */
   PetscInt       inverted;     /* gmsh's tag of a cell of this rank that a residual found inverted, or -1 */
   int            fault;        /* of the routine of the user in that cell, for UmatTell() */

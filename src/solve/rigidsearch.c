@@ -111,7 +111,7 @@ static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscR
 }
 
 /* The contact terms that the bodies at (u, t) may reach by a move, as bounds to it. In: *overlap is the deepest overlap
-   that is left as it is; first: it is measured here. */
+   that is left as it is; first: it is measured here. NULL: terms that press stay as deep as they are. */
 static PetscErrorCode Bounds(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal move, PetscBool first, Pass *pass,
                              PetscReal *overlap)
 {
@@ -137,16 +137,17 @@ static PetscErrorCode Bounds(FreeBodies b, const PetscReal *u, PetscReal t, Pets
     PetscCall(ContactStepTravel(step, du, t, t, travel, NULL));
     for (PetscInt i = 0; i < pass->n_terms; i++) pass->normal[i * n + k] = travel[i];
   }
-  if (first) *overlap = 0;
+  if (first && overlap) *overlap = 0;
   for (PetscInt i = 0; i < pass->n_terms; i++) {
     PetscReal moves = 0;
 
     for (int k = 0; k < n; k++) moves = PetscMax(moves, PetscAbsReal(pass->normal[i * n + k]));
-    if (first && moves > 0 && terms[i].opening < -SEARCH_OVERLAP * b->face)
+    if (first && overlap && moves > 0 && terms[i].opening < -SEARCH_OVERLAP * b->face)
       *overlap = PetscMax(*overlap, -terms[i].opening);
     pass->bound[i] = moves > 0 ? -terms[i].opening : -PETSC_MAX_REAL;
   }
-  for (PetscInt i = 0; i < pass->n_terms; i++) pass->bound[i] -= *overlap;
+  for (PetscInt i = 0; i < pass->n_terms; i++)
+    pass->bound[i] = overlap ? pass->bound[i] - *overlap : PetscMin(pass->bound[i], 0);
   PetscCall(ContactStepDestroy(&step));
   PetscCall(PetscFree(travel));
   PetscCall(PetscFree(a));
@@ -200,6 +201,19 @@ static PetscErrorCode Untouched(FreeBodies b, PetscBool *any)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether the loads at t_loads drive a body that was tied in the accepted state (u, t), as nothing moved it then,
+   where no contact holds it. */
+static PetscErrorCode ComesToFall(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool *falls)
+{
+  PetscFunctionBeginUser;
+  *falls = PETSC_FALSE;
+  for (int k = 0; k < b->n; k++) *falls = (PetscBool)(*falls || b->state[k] == MOTION_TIED);
+  if (!*falls) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactGather(b->contact, u, t, t, b->face));
+  PetscCall(FreeBodiesFall(b, u, t, t_loads, SEARCH_FALL, falls));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds to the text how far each body came. */
 static void NoteMoved(FreeBodies b, PetscReal t, const PetscReal *travel)
 {
@@ -222,7 +236,8 @@ static void NoteMoved(FreeBodies b, PetscReal t, const PetscReal *travel)
 + b       - the bodies
 . t       - load parameter of the state
 . t_loads - load parameter at which the loads are taken
-- first   - bodies that touch already may move too; otherwise only where some body has no contact at all
+- first   - bodies that touch already may move too; otherwise only where some body has no contact at all, or loads come
+            to drive one along a motion that was tied
 
   Input/Output Parameter:
 . u - local displacements u[n_nodes*dim] of the state (length)
@@ -241,7 +256,7 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
                                 SettleResult *result)
 {
   PetscReal move = SEARCH_FIRST * b->face, overlap = 0, way = 0, *longest, *travel;
-  PetscBool any = PETSC_FALSE, heavy = PETSC_TRUE;
+  PetscBool any = PETSC_FALSE, presses = PETSC_FALSE, heavy = PETSC_TRUE;
   PetscInt  rests = 0, touched = 0;
   Pass      pass;
 
@@ -250,7 +265,8 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
   if (!b->n) PetscFunctionReturn(PETSC_SUCCESS);
   if (!first) {
     PetscCall(Untouched(b, &any));
-    if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+    if (!any) PetscCall(ComesToFall(b, u, t, t_loads, &presses));
+    if (!any && !presses) PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PassCreate(b, &pass));
   PetscCall(PetscMalloc1(b->n_pieces, &longest));
@@ -263,7 +279,7 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
     PetscCall(Wish(b, u, t, t_loads, move, heavy, &pass, &any));
     if (!any) break;
     PetscCall(ContactGather(b->contact, u, t, t, move));
-    PetscCall(Bounds(b, u, t, move, (PetscBool)!it, &pass, &overlap));
+    PetscCall(Bounds(b, u, t, move, (PetscBool)!it, &pass, presses ? NULL : &overlap));
     for (int k = 0; k < b->n; k++) wished += pass.force[k] * pass.wish[k];
     PetscCall(Bound(b, &pass));
     for (int k = 0; k < b->n; k++) work += pass.force[k] * pass.wish[k];

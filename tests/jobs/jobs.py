@@ -72,6 +72,9 @@ JOBS = [
     Job("ball_squashed", "rubber ball squashed by 30 %", [
         Answer("force", 83.935, 0.05, "limit"),
     ], steps=12, picture=["--mirror", "x"]),
+    Job("x_ring", "X-ring in a groove under a lid", [
+        Answer("force", 239.11, 0.1, "limit"),
+    ], steps=10, pairs=2),
     # Balls
     Job("ball_in_cone", "ball in a cone by force", [
         Answer("peak_pressure", 83.00, 0.1, "limit"),  # Hertz, for a ring of infinite radius: 84.42
