@@ -41,7 +41,7 @@ typedef struct {
   PetscReal growth; /* of the equivalent plastic strain of a point, the largest */
   PetscReal work;   /* plastic work */
   PetscReal lag;    /* the same, each point's times the part by which its stress lags behind the flow */
-  PetscReal begun;  /* the same, of points that begin to flow, each times the growth of its strain over its elastic one */
+  PetscReal begun;  /* the same of points that begin to flow, times the growth of strain over the elastic one */
 } PlasticPath;
 
 void           ElasticitySetTime(Elasticity, PetscReal t);

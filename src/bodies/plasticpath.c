@@ -51,11 +51,11 @@ static PetscReal Product(const PetscReal a[6], const PetscReal b[6])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
 }
 
-/* Adds a point that flows. before, now: growth of its plastic strain tensor in the step before and in this one; part: of
-   the way between the middles of both steps that lies in this one, 0: that before does not count; growth: of the
+/* Adds a point that flows. before, now: growth of its plastic strain tensor in the step before and in this one; part:
+   of the way between the middles of both steps that lies in this one, 0: that before does not count; growth: of the
    equivalent strain; work: plastic; elastic: strain */
-static void AddPoint(const PetscReal before[6], const PetscReal now[6], PetscReal part, PetscReal growth, PetscReal work,
-                     PetscReal elastic, PlasticPath *path)
+static void AddPoint(const PetscReal before[6], const PetscReal now[6], PetscReal part, PetscReal growth,
+                     PetscReal work, PetscReal elastic, PlasticPath *path)
 {
   const PetscReal lengths = PetscSqrtReal(Product(before, before) * Product(now, now));
 

@@ -275,8 +275,8 @@ static double FlowLags(const RunFigures *figures, char *text)
   const double        lag    = energy.plastic > 0 ? (double)(energy.lag / energy.plastic) : 0;
 
   if (!(lag > ADVICE_LAG)) return 0;
-  snprintf(text, ADVICE_TEXT, "stresses lag behind the turns of plastic flow by %.2g %%, and forces may be off by as much",
-           100 * lag);
+  snprintf(text, ADVICE_TEXT,
+           "stresses lag behind the turns of plastic flow by %.2g %%, and forces may be off by as much", 100 * lag);
   return lag / ADVICE_LAG_WANTED;
 }
 

@@ -378,8 +378,8 @@ static PetscReal FlowUsed(LoadStepper stepper, const PlasticPath *path, PetscRea
 }
 
 /* Says whether the bodies flow by no more than the scene allows in the step to the present solution, or dt is the
-   smallest one. A step that is taken back is followed by a shorter one, one that stays bounds the next dt. A step stays,
-   too, that is shorter than the attempt before and uses as much: it does not come from the length. */
+   smallest one. A step that is taken back is followed by a shorter one, one that stays bounds the next dt. A step
+   stays, too, that is shorter than the attempt before and uses as much: it does not come from the length. */
 static PetscErrorCode LoadStepperBoundFlow(LoadStepper stepper, PetscReal dt, PetscReal *most, PetscBool *within)
 {
   const Model     model  = stepper->model;

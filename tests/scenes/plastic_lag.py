@@ -1,5 +1,6 @@
-"""A pin is pressed into a bore that yields. Contact travels along the bore, and the flow below it turns: long steps lose
-most of the force. The bound on the lag of the stresses shortens them by itself, and the last screen tells what is left."""
+"""A pin is pressed into a bore that yields. Contact travels along the bore, and the flow below it turns: long steps
+lose most of the force. The bound on the lag of the stresses shortens them by itself, and the last screen tells what is
+left."""
 from harness import SCENES, Check, arguments, run
 
 # Force at the end and plastic work: limits of 100, 200 and 400 steps of one length (2225.6, 2266.2, 2285.5 N and 20650,

@@ -29,7 +29,7 @@ typedef struct {
   PetscInt     multipliers; /* where those of the first batch are in VolumeState; -1: the group has none */
   PetscInt     yielding;    /* the same in Elasticity.yielding */
   PetscReal   *state;       /* of a plastic law, accepted [points][states][lanes]; else NULL */
-  PetscReal   *flow;        /* growth of the plastic strains in the last step [cells][points][PLASTIC_FLOW]; else NULL */
+  PetscReal   *flow;        /* growth of plastic strains in the last step [cells][points][PLASTIC_FLOW]; else NULL */
   PetscReal   *length;      /* of the cells, for routines of users [lanes]; else NULL */
   PlasticBatch plastic;     /* what kernel.plastic points to, for the batch at hand */
   int          fault[KERNEL_LANES]; /* of routines of users, in the batch at hand */
