@@ -106,6 +106,8 @@ static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
                          lanes * g->nodes * g->nodes + PREFETCH_PAIRS * KERNEL_LANES, &g->block));
   PetscCall(PetscMalloc2(lanes * g->nodes * dim, &g->X, lanes * g->kernel.n_constants, &g->constants));
   if (g->kernel.plastic) PetscCall(PetscCalloc1(lanes * ElasticityCellStates(g), &g->state));
+  if (g->kernel.plastic && !g->plastic.umat)
+    PetscCall(PetscCalloc1(g->n_cells * ElementStatePoints(&g->kernel) * PLASTIC_FLOW, &g->flow));
   if (g->plastic.umat) PetscCall(PetscMalloc1(lanes, &g->length));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -394,6 +396,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
     PetscCall(PetscFree3(e->groups[g].cell, e->groups[g].node, e->groups[g].block));
     PetscCall(PetscFree2(e->groups[g].X, e->groups[g].constants));
     PetscCall(PetscFree(e->groups[g].state));
+    PetscCall(PetscFree(e->groups[g].flow));
     PetscCall(PetscFree(e->groups[g].length));
   }
   PetscCall(PetscFree(e->groups));

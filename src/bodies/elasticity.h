@@ -37,10 +37,19 @@ PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *
 /* Columns of the plastic strain at the nodes: equivalent, tensor */
 enum { PLASTIC_FIELDS = 7 };
 
+/* What a step makes of plastic flow */
+typedef struct {
+  PetscReal growth; /* of the equivalent plastic strain of a point, the largest */
+  PetscReal work;   /* plastic work */
+  PetscReal lag;    /* the same, each point's times the part by which its stress lags behind the flow */
+  PetscReal begun;  /* the same of points that begin to flow, times the growth of strain over the elastic one */
+} PlasticPath;
+
 void           ElasticitySetTime(Elasticity, PetscReal t);
-PetscErrorCode ElasticityAcceptPlastic(Elasticity, const PetscReal *u, PetscReal t, PetscReal *growth);
+PetscErrorCode ElasticityAcceptPlastic(Elasticity, const PetscReal *u, PetscReal t, PlasticPath *);
+void           ElasticityForgetFlow(Elasticity);
 PetscErrorCode ElasticityArchivePlastic(Elasticity, Archive);
-PetscErrorCode ElasticityPlasticGrowth(Elasticity, const PetscReal *u, PetscReal t, PetscReal *growth);
+PetscErrorCode ElasticityPlasticPath(Elasticity, const PetscReal *u, PetscReal t, PlasticPath *);
 PetscErrorCode ElasticityNodalPlasticStrain(Elasticity, PetscReal *strain, PetscReal *weight);
 PetscInt64     ElasticityPlasticPoints(Elasticity, PetscInt64 *bytes);
 PetscErrorCode ElasticityPlasticWork(Elasticity, PetscReal *work, PetscReal *strain);

@@ -1,122 +1,5 @@
-/* The plastic states of an elasticity: acceptance, archive, and what reports need of them. */
+/* The plastic states of an elasticity: their archive, and what reports need of them. */
 #include "elasticityimpl.h"
-
-/* Copies the equivalent plastic strains of all points of a batch. A user's routine has none. */
-static void BatchStrains(const CellGroup *g, PetscInt batch, double *strains)
-{
-  const int     points = g->plastic.umat ? 0 : ElementStatePoints(&g->kernel), states = ElementStates(&g->plastic);
-  const double *state = &g->state[(size_t)batch * KERNEL_LANES * ElasticityCellStates(g)];
-
-  for (int p = 0; p < points; p++)
-    for (int lane = 0; lane < KERNEL_LANES; lane++)
-      strains[p * KERNEL_LANES + lane] = state[(p * states + PLASTIC_STRAIN) * KERNEL_LANES + lane];
-}
-
-/* The largest growth of these strains since they were copied. */
-static PetscReal BatchGrowth(const CellGroup *g, PetscInt batch, const double *before)
-{
-  const int points = g->plastic.umat ? 0 : ElementStatePoints(&g->kernel);
-  double    now[ELEMENT_MAX_POINTS * KERNEL_LANES];
-  PetscReal most = 0;
-
-  BatchStrains(g, batch, now);
-  for (int k = 0; k < points * KERNEL_LANES; k++) most = PetscMax(most, now[k] - before[k]);
-  return most;
-}
-
-/* Makes the plastic state of a group's cells at u the accepted one; growth: raised to its largest growth. */
-static PetscErrorCode AcceptGroup(Elasticity e, CellGroup *g, const PetscReal *u, PetscReal *growth)
-{
-  const size_t dofs = (size_t)g->nodes * e->dim;
-  double       before[ELEMENT_MAX_POINTS * KERNEL_LANES];
-
-  PetscFunctionBeginUser;
-  for (PetscInt batch = 0; batch < g->n_batches && g->state; batch++) {
-    const size_t first = (size_t)batch * KERNEL_LANES;
-
-    BatchStrains(g, batch, before);
-    ElasticityGather(e, g, batch, u, e->u);
-    ElementAcceptState(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants],
-                       ElasticityMultipliers(e, g, batch));
-    *growth = PetscMax(*growth, BatchGrowth(g, batch, before));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ElasticityAcceptPlastic - makes the plastic state at given displacements the accepted one, from which all others
-start.
-
-  Not collective
-
-  Input Parameters:
-+ e - the elasticity
-. u - local displacements (length) [n_nodes*dim] of a state that is accepted
-- t - its time
-
-  Output Parameter:
-. growth - of the equivalent plastic strain of a quadrature point of this rank, the largest
-
-  Note:
-  Residual, tangent and energy at u and t stay the same, up to round-off. Nothing happens where no body is plastic.
-@*/
-PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u, PetscReal t, PetscReal *growth)
-{
-  PetscFunctionBeginUser;
-  *growth = 0;
-  ElasticitySetTime(e, t);
-  for (int k = 0; k < e->n_groups; k++) PetscCall(AcceptGroup(e, &e->groups[k], u, growth));
-  e->accepted_t = t;
-  ElasticitySetTime(e, t);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ElasticityPlasticGrowth - computes the largest growth of the equivalent plastic strain from the accepted state.
-
-  Collective
-
-  Input Parameters:
-+ e - the elasticity
-. u - local displacements (length) [n_nodes*dim]
-- t - load parameter at u
-
-  Output Parameter:
-. growth - over all quadrature points of all ranks
-
-  Note:
-  The accepted state stays what it is.
-@*/
-PetscErrorCode ElasticityPlasticGrowth(Elasticity e, const PetscReal *u, PetscReal t, PetscReal *growth)
-{
-  const PetscReal accepted_t = e->accepted_t;
-  PetscReal     **before;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(e->n_groups, &before));
-  for (int k = 0; k < e->n_groups; k++) {
-    const CellGroup *g = &e->groups[k];
-    const size_t     n = (size_t)g->n_batches * KERNEL_LANES * ElasticityCellStates(g);
-
-    if (!g->state) continue;
-    PetscCall(PetscMalloc1(n, &before[k]));
-    PetscCall(PetscArraycpy(before[k], g->state, n));
-  }
-  PetscCall(ElasticityAcceptPlastic(e, u, t, growth));
-  for (int k = 0; k < e->n_groups; k++) {
-    CellGroup   *g = &e->groups[k];
-    const size_t n = (size_t)g->n_batches * KERNEL_LANES * ElasticityCellStates(g);
-
-    if (!g->state) continue;
-    PetscCall(PetscArraycpy(g->state, before[k], n));
-    PetscCall(PetscFree(before[k]));
-  }
-  e->accepted_t = accepted_t;
-  ElasticitySetTime(e, t);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, growth, 1, MPIU_REAL, MPI_MAX, e->mesh->comm));
-  PetscCall(PetscFree(before));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Copies the plastic state of a cell out of its group or into it. */
 static void CopyState(CellGroup *g, PetscInt slot, PetscBool out, PetscReal *values)
@@ -134,6 +17,36 @@ static void CopyState(CellGroup *g, PetscInt slot, PetscBool out, PetscReal *val
         state[k * KERNEL_LANES] = values[k];
     }
   }
+}
+
+/* Saves or loads the directions of the last step's flow. */
+static PetscErrorCode ArchiveFlow(Elasticity e, Archive archive, const Hdf5Table *cells)
+{
+  PetscInt   width = 0;
+  PetscReal *values;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < e->n_groups; k++)
+    if (e->groups[k].flow) width = PetscMax(width, ElementStatePoints(&e->groups[k].kernel) * PLASTIC_FLOW);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &width, 1, MPIU_INT, MPI_MAX, e->mesh->comm));
+  if (!width) PetscFunctionReturn(PETSC_SUCCESS); /* routines of users alone */
+  PetscCall(PetscCalloc1(e->mesh->n_cells * width, &values));
+  for (int pass = 0; pass < 2; pass++) {
+    for (PetscInt c = 0; c < e->mesh->n_cells; c++) {
+      const CellGroup *g = &e->groups[e->cell_group[c]];
+      const PetscInt   n = ElementStatePoints(&g->kernel) * PLASTIC_FLOW;
+
+      if (!g->flow) continue;
+      if (pass)
+        PetscCall(PetscArraycpy(&g->flow[e->cell_slot[c] * n], &values[c * width], n));
+      else
+        PetscCall(PetscArraycpy(&values[c * width], &g->flow[e->cell_slot[c] * n], n));
+    }
+    if (!pass) PetscCall(ArchiveRows(archive, "model/plastic_flow", cells, (int)width, values));
+  }
+  PetscCall(PetscFree(values));
+  PetscCall(ArchiveReals(archive, "model/plastic_flow_dt", 1, &e->flow_dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -166,6 +79,7 @@ PetscErrorCode ElasticityArchivePlastic(Elasticity e, Archive archive)
   PetscCall(ArchiveRows(archive, "model/plastic_state", &cells, (int)width, values));
   for (PetscInt c = 0; c < mesh->n_cells && ArchiveLoads(archive); c++)
     CopyState(&e->groups[e->cell_group[c]], e->cell_slot[c], PETSC_FALSE, &values[c * width]);
+  PetscCall(ArchiveFlow(e, archive, &cells));
   PetscCall(Hdf5TableDestroy(&cells));
   PetscCall(PetscFree(values));
   PetscCall(ArchiveReals(archive, "model/plastic_time", 1, &e->accepted_t));
@@ -173,50 +87,84 @@ PetscErrorCode ElasticityArchivePlastic(Elasticity e, Archive archive)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the coordinates of the nodes of a cell. */
-static void CellCoordinates(Elasticity e, const CellGroup *g, PetscInt slot, PetscReal X[MAX_DOFS])
-{
-  const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
-
-  for (int a = 0; a < ElementGet(g->kernel.type)->nodes; a++)
-    for (int i = 0; i < e->dim; i++) X[a * e->dim + i] = e->mesh->coords[nodes[a] * e->dim + i];
-}
-
-/* Gives number k of the state of point p of a cell, 0 in elastic cells. */
-static PetscReal CellState(const CellGroup *g, PetscInt slot, int p, int k)
+/* Gives number k of the state of point p of a cell, 0 in elastic cells. state: those of the group. */
+static PetscReal CellState(const CellGroup *g, const PetscReal *state, PetscInt slot, int p, int k)
 {
   const size_t first = (size_t)(slot / KERNEL_LANES) * KERNEL_LANES * ElasticityCellStates(g) + slot % KERNEL_LANES;
 
-  return g->state ? g->state[first + ((size_t)p * ElementStates(&g->plastic) + k) * KERNEL_LANES] : 0;
+  return state ? state[first + ((size_t)p * ElementStates(&g->plastic) + k) * KERNEL_LANES] : 0;
 }
 
-/* Gives the equivalent plastic strain of a point; of a user's routine none is known. */
-static PetscReal CellPlasticStrain(const CellGroup *g, PetscInt slot, int p)
+/*@
+  ElasticityPointStrain - returns the equivalent plastic strain of a point.
+
+  Not collective
+
+  Input Parameters:
++ g     - the group of its cell
+. state - states of the group, the accepted ones or a copy of others
+. slot  - number of the cell there
+- p     - number of the point
+
+  Note:
+  Of a user's routine none is known.
+@*/
+PetscReal ElasticityPointStrain(const CellGroup *g, const PetscReal *state, PetscInt slot, int p)
 {
-  return g->plastic.umat ? 0 : CellState(g, slot, p, PLASTIC_STRAIN);
+  return g->plastic.umat ? 0 : CellState(g, state, slot, p, PLASTIC_STRAIN);
 }
 
-/* Gives the plastic work of a point per volume, of a user's routine SPD + SCD. */
-static PetscReal CellPlasticWork(const CellGroup *g, PetscInt slot, int p)
+/*@
+  ElasticityPointWork - returns the plastic work of a point per volume, of a user's routine SPD + SCD.
+
+  Not collective
+
+  Input Parameters:
++ g     - the group of its cell
+. state - states of the group, the accepted ones or a copy of others
+. slot  - number of the cell there
+- p     - number of the point
+@*/
+PetscReal ElasticityPointWork(const CellGroup *g, const PetscReal *state, PetscInt slot, int p)
 {
   PetscReal slope, density;
 
-  if (g->plastic.umat) return CellState(g, slot, p, UMAT_ENERGY + 1) + CellState(g, slot, p, UMAT_ENERGY + 2);
-  (void)HardeningStress(g->plastic.hardening, CellState(g, slot, p, PLASTIC_STRAIN), &slope, &density);
-  if (ElementStates(&g->plastic) > PLASTIC_WORK) density += CellState(g, slot, p, PLASTIC_WORK);
+  if (g->plastic.umat)
+    return CellState(g, state, slot, p, UMAT_ENERGY + 1) + CellState(g, state, slot, p, UMAT_ENERGY + 2);
+  (void)HardeningStress(g->plastic.hardening, CellState(g, state, slot, p, PLASTIC_STRAIN), &slope, &density);
+  if (ElementStates(&g->plastic) > PLASTIC_WORK) density += CellState(g, state, slot, p, PLASTIC_WORK);
   return density;
+}
+
+/*@
+  ElasticityPointTensor - computes the plastic strain tensor of a point, see PlasticStrainTensor().
+
+  Not collective
+
+  Input Parameters:
++ g     - the group of its cell
+. state - states of the group, the accepted ones or a copy of others
+. slot  - number of the cell there
+- p     - number of the point
+
+  Output Parameter:
+. strain - xx yy zz xy yz xz; 0 of a user's routine
+@*/
+void ElasticityPointTensor(const CellGroup *g, const PetscReal *state, PetscInt slot, int p, PetscReal strain[6])
+{
+  PetscReal six[6];
+
+  for (int k = 0; k < 6; k++) strain[k] = 0;
+  if (!state || g->plastic.umat) return;
+  for (int k = 0; k < 6; k++) six[k] = CellState(g, state, slot, p, k);
+  PlasticStrainTensor(g->kernel.kinematics == KINEMATICS_FINITE, six, strain);
 }
 
 /* Gives the plastic strain of a point: the equivalent one, then the tensor. */
 static void CellPlasticStrains(const CellGroup *g, PetscInt slot, int p, PetscReal strain[PLASTIC_FIELDS])
 {
-  PetscReal state[6];
-
-  for (int k = 0; k < PLASTIC_FIELDS; k++) strain[k] = 0;
-  if (!g->state || g->plastic.umat) return;
-  for (int k = 0; k < 6; k++) state[k] = CellState(g, slot, p, k);
-  strain[0] = CellPlasticStrain(g, slot, p);
-  PlasticStrainTensor(g->kernel.kinematics == KINEMATICS_FINITE, state, &strain[1]);
+  strain[0] = ElasticityPointStrain(g, g->state, slot, p);
+  ElasticityPointTensor(g, g->state, slot, p, &strain[1]);
 }
 
 /* Adds the share of one cell to its nodes. */
@@ -228,7 +176,7 @@ static void AddCellStrain(Elasticity e, PetscInt c, PetscReal *strain, PetscReal
   const int        first   = ElementStatePoints(&g->kernel) - element->points;
   PetscReal        X[MAX_DOFS], volumes[ELEMENT_MAX_POINTS], points[ELEMENT_MAX_POINTS][PLASTIC_FIELDS], volume = 0;
 
-  CellCoordinates(e, g, e->cell_slot[c], X);
+  ElasticitySlotCoordinates(e, g, e->cell_slot[c], X);
   ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, X, volumes);
   for (int p = 0; p < element->points; p++) {
     volume += volumes[p];
@@ -280,7 +228,7 @@ PetscErrorCode ElasticityNodalPlasticStrain(Elasticity e, PetscReal *strain, Pet
 . e - the elasticity
 
   Output Parameter:
-. bytes - memory of their states
+. bytes - memory of their states and of the last step's growth
 @*/
 PetscInt64 ElasticityPlasticPoints(Elasticity e, PetscInt64 *bytes)
 {
@@ -293,6 +241,7 @@ PetscInt64 ElasticityPlasticPoints(Elasticity e, PetscInt64 *bytes)
     if (!g->kernel.plastic) continue;
     points += (PetscInt64)g->n_cells * ElementStatePoints(&g->kernel);
     *bytes += (PetscInt64)(g->n_cells * ElasticityCellStates(g) * sizeof(PetscReal));
+    if (g->flow) *bytes += (PetscInt64)(g->n_cells * ElementStatePoints(&g->kernel) * PLASTIC_FLOW * sizeof(PetscReal));
   }
   return points;
 }
@@ -319,11 +268,11 @@ PetscErrorCode ElasticityPlasticWork(Elasticity e, PetscReal *work, PetscReal *s
     PetscReal        X[MAX_DOFS], volume[ELEMENT_MAX_POINTS];
 
     if (!g->state) continue;
-    CellCoordinates(e, g, slot, X);
+    ElasticitySlotCoordinates(e, g, slot, X);
     ElementStateVolumes(&g->kernel, X, volume);
     for (int p = 0; p < ElementStatePoints(&g->kernel); p++) {
-      *work += volume[p] * CellPlasticWork(g, slot, p);
-      *strain = PetscMax(*strain, CellPlasticStrain(g, slot, p));
+      *work += volume[p] * ElasticityPointWork(g, g->state, slot, p);
+      *strain = PetscMax(*strain, ElasticityPointStrain(g, g->state, slot, p));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

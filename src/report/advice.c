@@ -42,6 +42,10 @@
 /* Part of the shear stress of a plastic flow that a step may lose, and the one that smaller steps are to leave. */
 #define ADVICE_FLOW        0.01
 #define ADVICE_FLOW_WANTED 0.003
+/* Part by which stresses may lag behind plastic flow in the mean over the plastic work, and the one that smaller steps
+   are to leave. On a pin that is pressed into a bore forces are off by 0.6 of it. */
+#define ADVICE_LAG        0.05
+#define ADVICE_LAG_WANTED 0.025
 /* Distance of the work on plastic bodies from what they store and dissipate, over the plastic work, above which steps
    are too long. Over a straight path the trapezoidal rule over ten steps is off by a few per cent; a point that yields
    and unloads within a step, or the other way round, takes part of the plastic work out of the balance at any length.
@@ -263,6 +267,19 @@ static double FlowTurns(const RunFigures *figures, char *text)
   return growth / (2 / sqrt(3) * acosh(1 / (1 - ADVICE_FLOW_WANTED)));
 }
 
+/* Steps take one direction for their whole flow; where it turns, as below contact that travels, stresses lag behind it.
+ */
+static double FlowLags(const RunFigures *figures, char *text)
+{
+  const EnergyFigures energy = figures->last ? figures->last->energy : (EnergyFigures){0};
+  const double        lag    = energy.plastic > 0 ? (double)(energy.lag / energy.plastic) : 0;
+
+  if (!(lag > ADVICE_LAG)) return 0;
+  snprintf(text, ADVICE_TEXT,
+           "stresses lag behind the turns of plastic flow by %.2g %%, and forces may be off by as much", 100 * lag);
+  return lag / ADVICE_LAG_WANTED;
+}
+
 /* Plastic work depends on the path. A step knows nothing of what loads and unloads within it, as where contact travels
    along a body that flows. Then the work of the forces at the ends of the steps is not what the body took. */
 static double PathIsCoarse(const RunFigures *figures, char *text)
@@ -339,6 +356,7 @@ static const Situation situations[] = {
   {.run = StepsAreLong, .changes = {CHANGE_SHORTER}},
   {.run = LineSearchCuts, .changes = {CHANGE_SHORTER}},
   {.run = FlowTurns, .changes = {CHANGE_FLOW}},
+  {.run = FlowLags, .changes = {CHANGE_LAG}},
   {.run = PathIsCoarse, .changes = {CHANGE_PATH}},
   {.run = OutputIsSlow, .changes = {CHANGE_OUTPUT}},
   {.run = StepsAreMany, .changes = {CHANGE_LONGER}},

@@ -15,6 +15,8 @@
 #define CHANGE_PENALTY 10.0
 /* By how much bounds are widened. */
 #define CHANGE_WIDER 10.0
+/* The preset of stepping.plastic_lag, from which a scene without a bound is counted. */
+#define CHANGE_LAG_BOUND 0.2
 
 /* What a change moves. Changes of one axis add up or oppose each other. */
 typedef enum {
@@ -377,6 +379,14 @@ static void WriteFlow(const ChangePlace *at, char *text, size_t size)
   WriteNumber("stepping", "plastic_strain", (double)at->figures->last->energy.growth / at->factor, text, size);
 }
 
+/* The present bound over what the lag is to fall by; without a bound, that of the scenes that name none. */
+static void WriteLag(const ChangePlace *at, char *text, size_t size)
+{
+  const double bound = at->figures->scene->stepping.plastic_lag;
+
+  WriteNumber("stepping", "plastic_lag", (bound > 0 ? bound : CHANGE_LAG_BOUND) / at->factor, text, size);
+}
+
 static int StopsEarly(const ChangePlace *at)
 {
   return at->figures->scene->stepping.dt_min > CHANGE_DT_MIN_NEAR;
@@ -503,6 +513,7 @@ static const Change changes[CHANGES] = {
   [CHANGE_SHORTER]        = {"stepping", AXIS_STEP, -1, MayBeShorter, WriteShorter},
   [CHANGE_SHORTER_MIN]    = {"stepping.dt_min", AXIS_STEP, -1, StopsEarly, WriteShorterMin},
   [CHANGE_FLOW]           = {"stepping.plastic_strain", AXIS_STEP, -1, MayBeShorter, WriteFlow},
+  [CHANGE_LAG]            = {"stepping.plastic_lag", AXIS_STEP, -1, MayBeShorter, WriteLag},
   [CHANGE_PATH]           = {"stepping", AXIS_STEP, -1, PathMayBeFiner, WritePath},
   [CHANGE_MORE_NODES]     = {"stepping.N_c", AXIS_STEP, 1, CountsNodes, WriteMoreNodes},
   [CHANGE_LONGER]         = {"stepping", AXIS_STEP, 1, Always, WriteNothing},

@@ -214,6 +214,10 @@ static void PrintEnergy(const EnergyFigures *energy, FILE *stream)
   if (sum > 0) fprintf(stream, ", %.2g %% apart by the trapezoidal rule over the steps", 100 * fabs(work - sum) / sum);
   fprintf(stream, "; largest plastic strain %.4g, growth in a step up to %.2g\n", (double)energy->strain,
           (double)energy->growth);
+  if (energy->lag > 0) /* of routines of users alone none is known */
+    fprintf(stream,
+            "         stresses lag behind the turns of plastic flow by %.2g %% in the mean, forces by that or less\n",
+            100 * (double)(energy->lag / energy->plastic));
 }
 
 /* The stream, and how many changes to try have been printed */

@@ -205,6 +205,7 @@ static void AddEnergy(cJSON *json, Scene scene, const StepRecord *last)
   AddReal(map, "work", energy.work);
   AddReal(map, "apart",
           energy.plastic > 0 ? PetscAbsReal(energy.work - energy.elastic - energy.plastic) / energy.plastic : NAN);
+  AddReal(map, "lag", energy.plastic > 0 ? energy.lag / energy.plastic : NAN);
   AddReal(json, "max_plastic_strain", energy.strain);
   AddReal(json, "max_plastic_growth", energy.growth);
 }

@@ -181,11 +181,16 @@ static PetscErrorCode SceneReadStepping(Scene scene)
   scene->stepping.growth           = SchemaReal(document, "stepping.growth");
   if (SchemaHas(document, "stepping.plastic_strain"))
     scene->stepping.plastic_strain = SchemaReal(document, "stepping.plastic_strain");
+  if (SchemaHas(document, "stepping.plastic_lag") || scene->stepping.control != STEP_FIXED)
+    scene->stepping.plastic_lag = SchemaReal(document, "stepping.plastic_lag");
   for (int b = 0; b < scene->n_bodies; b++)
     flows = (PetscBool)(flows || (!scene->bodies[b].rigid && scene->bodies[b].material.law == MATERIAL_VON_MISES));
   if (scene->stepping.plastic_strain > 0 && !flows)
     PetscCall(SceneRefuse(scene, "stepping", "plastic_strain",
                           "bounds plastic strains, which no body has; allowed: with law: von_mises", NULL));
+  if (SchemaHas(document, "stepping.plastic_lag") && !flows)
+    PetscCall(SceneRefuse(scene, "stepping", "plastic_lag",
+                          "bounds plastic flow, which no body has; allowed: with law: von_mises", NULL));
   if (scene->stepping.dt_min > scene->stepping.dt_max)
     PetscCall(SceneRefuse(scene, "stepping", "dt_min", "is above dt_max; allowed: dt_min <= initial <= dt_max", NULL));
   if (SchemaHas(document, "stepping.initial") &&

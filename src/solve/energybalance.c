@@ -72,13 +72,14 @@ static PetscErrorCode Evaluate(EnergyBalance balance, const PetscReal *u, PetscR
 + balance - the balance
 . u_0     - local displacements (length) of the accepted state before
 . u       - those of the accepted state, after ElasticityAcceptPlastic()
-- growth  - what that gave on this rank
+- path    - what that gave on this rank
 @*/
-PetscErrorCode EnergyBalanceAdd(EnergyBalance balance, const PetscReal *u_0, const PetscReal *u, PetscReal growth)
+PetscErrorCode EnergyBalanceAdd(EnergyBalance balance, const PetscReal *u_0, const PetscReal *u,
+                                const PlasticPath *path)
 {
   EnergyFigures *figures = &balance->figures;
-  PetscReal     *before = balance->f, sum[3] = {0, 0, 0}; /* energy, plastic work, work of the step */
-  PetscReal      most[2] = {0, growth};                   /* strain, growth */
+  PetscReal     *before = balance->f, sum[4] = {0, 0, 0, path->lag}; /* energy, plastic work, work of the step, lag */
+  PetscReal      most[2] = {0, path->growth};                        /* strain, growth */
 
   PetscFunctionBeginUser;
   balance->f   = balance->f_0;
@@ -87,11 +88,12 @@ PetscErrorCode EnergyBalanceAdd(EnergyBalance balance, const PetscReal *u_0, con
   PetscCall(ElasticityPlasticWork(balance->elasticity, &sum[1], &most[0]));
   for (PetscInt k = 0; k < balance->mesh->n_nodes * balance->mesh->dim; k++)
     sum[2] += (balance->f[k] + balance->f_0[k]) * (u[k] - u_0[k]) / 2;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, balance->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, balance->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, balance->mesh->comm));
   figures->elastic = sum[0] - sum[1];
   figures->plastic = sum[1];
   figures->work += sum[2];
+  figures->lag += sum[3];
   figures->strain = most[0];
   figures->growth = PetscMax(figures->growth, most[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -123,7 +125,8 @@ EnergyFigures EnergyBalanceGet(EnergyBalance balance)
 PetscErrorCode EnergyBalanceArchive(EnergyBalance balance, Archive archive, const PetscReal *u)
 {
   EnergyFigures *figures = &balance->figures;
-  PetscReal     *value[] = {&figures->elastic, &figures->plastic, &figures->work, &figures->strain, &figures->growth},
+  PetscReal     *value[] = {&figures->elastic, &figures->plastic, &figures->work,
+                            &figures->strain,  &figures->growth,  &figures->lag},
             energy;
 
   PetscFunctionBeginUser;

@@ -12,12 +12,13 @@ typedef struct {
   PetscReal work;    /* done on all bodies by loads, supports and contact */
   PetscReal strain;  /* largest equivalent plastic strain of a quadrature point */
   PetscReal growth;  /* largest growth of it in a step so far */
+  PetscReal lag;     /* plastic work times the part by which stresses lag behind the flow, over all steps */
 } EnergyFigures;
 
 typedef struct _n_EnergyBalance *EnergyBalance;
 
 PetscErrorCode EnergyBalanceCreate(Mesh, Elasticity, EnergyBalance *);
 PetscErrorCode EnergyBalanceDestroy(EnergyBalance *);
-PetscErrorCode EnergyBalanceAdd(EnergyBalance, const PetscReal *u_0, const PetscReal *u, PetscReal growth);
+PetscErrorCode EnergyBalanceAdd(EnergyBalance, const PetscReal *u_0, const PetscReal *u, const PlasticPath *);
 EnergyFigures  EnergyBalanceGet(EnergyBalance);
 PetscErrorCode EnergyBalanceArchive(EnergyBalance, Archive, const PetscReal *u);

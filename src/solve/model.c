@@ -226,13 +226,15 @@ PetscErrorCode ModelAccept(Model model)
 {
   ModelWork      *work    = model->work;
   const PetscBool stepped = model->t > work->accepted_t ? PETSC_TRUE : PETSC_FALSE;
-  PetscReal       motion, growth;
+  PetscReal       motion;
+  PlasticPath     path;
   PetscBool       ok;
 
   PetscFunctionBeginUser;
   ToolsAccept(model->mesh, model->u, model->t);
-  PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t, &growth));
-  if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u, growth));
+  PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t, &path));
+  if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u, &path));
+  if (SceneBreaks(model->scene, model->t)) ElasticityForgetFlow(model->problem->elasticity);
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);

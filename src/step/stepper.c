@@ -4,8 +4,15 @@
 
 /* Load parameters that are closer than this are the same one; t runs from 0 to 1. */
 #define STEPPER_SAME_T 1e-12
-/* Steps aim at this part of the bound on the growth of plastic strains, so that few are taken back. */
+/* Steps aim at this part of the bounds on plastic flow, so that few are taken back. */
 #define STEPPER_STRAIN 0.8
+/* Points that begin to flow in a step have no direction to compare with, so that the lag of their stresses is not
+   known. In the mean over the step's plastic work they flow by at most so many times their elastic strain. An elastic
+   strain that turns no longer matters then, and the next step can tell how the flow turns. */
+#define STEPPER_BEGUN 20
+/* A step that was shortened for such a bound is to use at most this part of what the attempt before used, which had
+   twice the length or more. Else its length is not the cause, and shorter steps would not help. */
+#define STEPPER_GAIN 0.9
 /* A failed step is tried again with this part of its dt. */
 #define STEPPER_CUT 0.5
 /* A step stretches to the next landing point if that is at most this many dt away. At sqrt(2) the one longer step
@@ -30,6 +37,7 @@ struct _n_LoadStepper {
   PetscReal           *landings; /* load parameters that steps must end on, ascending; the last one is 1 */
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
+  PetscReal            used;   /* by the last attempt of this step, of what the bounds on plastic flow allow; 0: none */
   PetscInt             damped; /* 1: the last accepted step was damped */
   PetscBool            view;
 };
@@ -356,21 +364,42 @@ static PetscErrorCode ReportFailure(StepperReport *report, PetscReal t, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says whether plastic strains grow by no more than the scene allows in the step to the present solution, or dt is the
-   smallest one. A step that is taken back is followed by a shorter one, one that stays bounds the next dt. */
-static PetscErrorCode LoadStepperBoundStrain(LoadStepper stepper, PetscReal dt, PetscReal *most, PetscBool *within)
+/* What the flow of plastic bodies in a step uses of what the scene allows: 1 is all of it. The lag is measured against
+   the plastic work of the step, or against what the mean step of that length has where this one has less. */
+static PetscReal FlowUsed(LoadStepper stepper, const PlasticPath *path, PetscReal dt)
 {
-  const Model     model = stepper->model;
-  const PetscReal bound = model->scene->stepping.plastic_strain;
-  PetscReal       growth;
+  const Model     model  = stepper->model;
+  const PetscReal strain = model->scene->stepping.plastic_strain, lag = model->scene->stepping.plastic_lag,
+                  work = PetscMax(path->work, EnergyBalanceGet(model->balance).plastic * dt / model->t);
+  PetscReal       used = strain > 0 ? path->growth / strain : 0;
+
+  if (!(lag > 0 && work > 0)) return used;
+  return PetscMax(used, PetscMax(path->lag / lag, path->begun / STEPPER_BEGUN) / work);
+}
+
+/* Says whether the bodies flow by no more than the scene allows in the step to the present solution, or dt is the
+   smallest one. A step that is taken back is followed by a shorter one, one that stays bounds the next dt. A step
+   stays, too, that is shorter than the attempt before and uses as much: it does not come from the length. */
+static PetscErrorCode LoadStepperBoundFlow(LoadStepper stepper, PetscReal dt, PetscReal *most, PetscBool *within)
+{
+  const Model     model  = stepper->model;
+  const PetscReal before = stepper->used;
+  PlasticPath     path;
 
   PetscFunctionBeginUser;
   *most = stepper->size.dt_max;
-  if (!(bound > 0)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ElasticityPlasticGrowth(model->problem->elasticity, model->u, model->t, &growth));
-  if (growth > 0) *most = PetscMax(stepper->size.dt_min, STEPPER_STRAIN * bound / growth * dt);
-  *within = (PetscBool)(growth <= bound || dt <= stepper->size.dt_min);
-  if (!*within) stepper->size.dt = PetscMin(STEPPER_CUT * dt, *most); /* a landing may stretch it by STEPPER_STRETCH */
+  if (!model->balance) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!(model->scene->stepping.plastic_strain > 0 || model->scene->stepping.plastic_lag > 0))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ElasticityPlasticPath(model->problem->elasticity, model->u, model->t, &path));
+  stepper->used = FlowUsed(stepper, &path, dt);
+  *within       = (PetscBool)(stepper->used <= 1 || dt <= stepper->size.dt_min ||
+                        (before > 0 && stepper->used > STEPPER_GAIN * before));
+  if (stepper->used > 0) *most = PetscMax(stepper->size.dt_min, STEPPER_STRAIN / stepper->used * dt);
+  if (*within)
+    *most = PetscMax(*most, STEPPER_CUT * dt);
+  else
+    stepper->size.dt = PetscMin(STEPPER_CUT * dt, *most); /* a landing may stretch it by STEPPER_STRETCH */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -416,7 +445,7 @@ static PetscErrorCode LoadStepperJudge(LoadStepper stepper, PetscReal dt, PetscR
   *most  = 0;
   *taken = PETSC_TRUE;
   if (stepper->control->judge) PetscCall(stepper->control->judge(stepper->model, dt, &stepper->size, taken));
-  if (*taken) PetscCall(LoadStepperBoundStrain(stepper, dt, most, taken));
+  if (*taken) PetscCall(LoadStepperBoundFlow(stepper, dt, most, taken));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -434,8 +463,9 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   PetscInt        failures = 0;
 
   PetscFunctionBeginUser;
-  *advanced = PETSC_FALSE;
-  *record   = (StepRecord){.step = report->steps + 1};
+  *advanced     = PETSC_FALSE;
+  stepper->used = 0;
+  *record       = (StepRecord){.step = report->steps + 1};
   PetscCall(LoadStepperPredict(stepper, record));
   while (PETSC_TRUE) {
     const PetscReal end = StepEnd(stepper, t, stepper->size.dt, &clipped), dt = end - t;

@@ -191,7 +191,10 @@ JOBS = [
     ], steps=10, pairs=0, picture=["--mirror", "x"]),
     Job("ball_dent", "ball pressed into steel by force and lifted", [
         Answer("dent", -0.1560, 0.6, "limit"),
-    ], steps=15, picture=["--mirror", "x"]),
+    ], steps=20, picture=["--mirror", "x"]),
+    Job("bulge", "sheet blown against a die and released", [
+        Answer("height", 7.719, 0.1, "limit"),
+    ], steps=25, picture=["--mirror", "x"]),
     Job("ferrule", "ferrule crimped onto a rod and released", [
         Answer("crimp", -0.25909, 0.02, "limit"),
         Answer("pressure", 34.376, 0.3, "limit"),

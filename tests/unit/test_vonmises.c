@@ -287,6 +287,27 @@ static void InvertedPointsStayFinite(void **unused)
   }
 }
 
+/* Bodies without load have displacements of round-off, which each step makes smaller, down to the smallest numbers. */
+static void TinyStrainsAreElastic(void **unused)
+{
+  const double zero[9] = {0}, virgin[PLASTIC_MAX_STATE] = {0};
+  double       A_0[MATERIAL_TANGENT_SIZE];
+
+  (void)unused;
+  for (int finite = 0; finite < 2; finite++) {
+    double P[9], W;
+
+    Point(finite, &voce, zero, virgin, &W, P, A_0, NULL);
+    for (double size = 1e-20; size > 0; size /= 1e20) {
+      double H[9], A[MATERIAL_TANGENT_SIZE];
+
+      for (int r = 0; r < 9; r++) H[r] = size * first[r];
+      Point(finite, &voce, H, virgin, &W, P, A, NULL);
+      for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) assert_near(A[k], A_0[k], 1e-12 * E);
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -299,6 +320,7 @@ int main(void)
     cmocka_unit_test(LargeShearDoesNotOscillate),
     cmocka_unit_test(InvertedPointsStayFinite),
     cmocka_unit_test(LongStepsOfShearLag),
+    cmocka_unit_test(TinyStrainsAreElastic),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

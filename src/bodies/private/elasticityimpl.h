@@ -1,5 +1,5 @@
-/* What elasticity.c, enclosed.c, volumes.c and plasticstates.c share: the cells of an elasticity in batches.
-   elasticity.c is below the others. */
+/* What elasticity.c, enclosed.c, volumes.c, plasticstates.c and plasticpath.c share: the cells of an elasticity in
+   batches. elasticity.c is below the others. */
 #pragma once
 #include "bodies/elasticity.h"
 #include "kernels/elementkernel.h"
@@ -10,7 +10,8 @@ enum {
   BYTES_OF_CACHE_LINE = 64,                    /* of the usual processors; arrays of a batch are aligned to it */
   /* Blocks are fetched this many pairs of nodes ahead. They are scattered in main memory, and 4 hides most of the wait.
    */
-  PREFETCH_PAIRS = 4
+  PREFETCH_PAIRS = 4,
+  PLASTIC_FLOW   = 6 /* components of the growth of a plastic strain */
 };
 
 /* Cells of one type and law, KERNEL_LANES to a batch. The last batch repeats its last cell. The arrays have one batch
@@ -28,6 +29,7 @@ typedef struct {
   PetscInt     multipliers; /* where those of the first batch are in VolumeState; -1: the group has none */
   PetscInt     yielding;    /* the same in Elasticity.yielding */
   PetscReal   *state;       /* of a plastic law, accepted [points][states][lanes]; else NULL */
+  PetscReal   *flow;        /* growth of plastic strains in the last step [cells][points][PLASTIC_FLOW]; else NULL */
   PetscReal   *length;      /* of the cells, for routines of users [lanes]; else NULL */
   PlasticBatch plastic;     /* what kernel.plastic points to, for the batch at hand */
   int          fault[KERNEL_LANES]; /* of routines of users, in the batch at hand */
@@ -64,6 +66,7 @@ struct _n_Elasticity {
   PetscBool   symmetric;
   NodeMatrix  matrix;
   PetscReal   accepted_t; /* time of the accepted plastic state */
+  PetscReal   flow_dt;    /* length of the step that led there; 0: the growth in it says nothing of the next one */
   PetscBool   augments;   /* a body has multipliers, perhaps on other ranks only */
   VolumeState state, accepted, kept;
   PetscReal  *yielding; /* multipliers of mixed elements while energies are compared, see ElasticityYield() */
@@ -78,4 +81,7 @@ PetscReal *ElasticityYieldingOf(Elasticity, const CellGroup *, PetscInt batch);
 PetscReal *ElasticityMultipliers(Elasticity, const CellGroup *, PetscInt batch);
 PetscReal *ElasticityMultipliersOf(const CellGroup *, PetscInt batch, PetscReal *multipliers);
 void       ElasticitySlotCoordinates(Elasticity, const CellGroup *, PetscInt slot, PetscReal *X);
+PetscReal  ElasticityPointStrain(const CellGroup *, const PetscReal *state, PetscInt slot, int p);
+PetscReal  ElasticityPointWork(const CellGroup *, const PetscReal *state, PetscInt slot, int p);
+void       ElasticityPointTensor(const CellGroup *, const PetscReal *state, PetscInt slot, int p, PetscReal strain[6]);
 PetscReal  ElasticitySlotVolume(Elasticity, const CellGroup *, PetscInt slot);

@@ -111,10 +111,12 @@ LANES_INLINE void FiniteTangent(const Lanes *bulk, const Lanes *shear, const Lan
                                 const Trial *x, Lanes A[MATERIAL_TANGENT_SIZE])
 {
   const Lanes zero = {0}, along = 2 * *shear * r->theta;
-  Lanes       T[3][3][9], inverse;
+  Lanes       T[3][3][9], fall;
 
   for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) A[k] = zero;
-  for (int lane = 0; lane < LANES; lane++) inverse[lane] = (*square)[lane] > 0 ? 1 / (*square)[lane] : 0;
+  /* Not by the inverse of the square: it overflows at strains of 1e-160, which bodies without load have. */
+  for (int lane = 0; lane < LANES; lane++)
+    fall[lane] = (*square)[lane] > 0 ? 2 * (*shear)[lane] * r->fall[lane] / (*square)[lane] : 0;
   for (int a = 0; a < 3; a++) {
     for (int b = 0; b < 3; b++) {
       for (int k = 0; k < 9; k++) T[a][b][k] = x->axis[a][k / 3] * x->pulled[b][k % 3];
@@ -122,7 +124,7 @@ LANES_INLINE void FiniteTangent(const Lanes *bulk, const Lanes *shear, const Lan
   }
   for (int a = 0; a < 3; a++) {
     for (int b = a; b < 3; b++) { /* change of stress a with strain b, then the shear of both axes */
-      Lanes normal = *bulk - along / 3 - 2 * *shear * r->fall * inverse * x->deviator[a] * x->deviator[b];
+      Lanes normal = *bulk - along / 3 - fall * x->deviator[a] * x->deviator[b];
       Lanes factor, other, shear_ab;
 
       if (a == b) {
