@@ -202,15 +202,15 @@ static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t,
 
   Note:
   Each piece is a part of the way, from which the next linear step continues with the tangent there. None of the states
-  on the way is in equilibrium, and their stresses must not get into the tangent. At the end of the first piece it has
-  those to which the linear step leads from the accepted state, later those of the accepted state.
+  on the way is in equilibrium, and their stresses must not get into the tangent. It has those of the accepted
+  state, as after a shortened step of Newton's method.
 @*/
 PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 {
-  const PetscInt  n         = model->mesh->n_nodes * model->mesh->dim;
-  StressReference reference = {model->work->from, 1, 0};
-  PetscReal       t         = model->work->accepted_t, turn, part, *u, *v;
-  Vec             from;
+  const StressReference reference = {model->work->solved, 0, 0};
+  const PetscInt        n         = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal             t         = model->work->accepted_t, turn, part, *u, *v;
+  Vec                   from;
 
   PetscFunctionBeginUser;
   if (model->scene->kinematics == KINEMATICS_SMALL || model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
@@ -230,7 +230,6 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
     PetscCall(ProblemDisplacements(model->problem, from, t, u));
     if (model->contact) PetscCall(ModelReachOn(model, u, t, report));
     PetscCall(ModelStepLoads(model, u, reference.u ? &reference : NULL, t, PETSC_FALSE, PETSC_FALSE, report));
-    reference = (StressReference){model->work->solved, 0, 0};
   }
   if (model->contact) PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL));
   PetscCall(PetscFree2(u, v));
