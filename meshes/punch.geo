@@ -1,13 +1,14 @@
-// Half of a block, 1 long and 1 high, under a flat punch that covers half of its top. As a solid it is a slice.
+// Half of a block, 1 long and 1 high, under a flat punch that covers its top as far as `edge`; as a solid a slice.
 DefineConstant[
   n = {4, Name "elements under the punch"}, simplex = {0, Name "1: triangles or tetrahedra"},
-  layers = {0, Name "elements across the slice; 0: plane"}, thick = {0.125, Name "thickness of the slice"}
+  layers = {0, Name "elements across the slice; 0: plane"}, thick = {0.125, Name "thickness of the slice"},
+  edge = {0.5, Name "half of the punch's width"}
 ];
 Point(1) = {0, 0, 0};
-Point(2) = {0.5, 0, 0};
+Point(2) = {edge, 0, 0};
 Point(3) = {1, 0, 0};
 Point(4) = {1, 1, 0};
-Point(5) = {0.5, 1, 0};
+Point(5) = {edge, 1, 0};
 Point(6) = {0, 1, 0};
 For i In {1 : 6}
   Line(i) = {i, (i % 6) + 1};

@@ -1,6 +1,7 @@
 """Cook's membrane and a punch on a block with mixed elements of every kind, at nu = 0.3, 0.4999 and 0.5: the tip's
-displacement and the punch's force against a fine mesh of second-order quadrilaterals of the same nu. Solids are slices
-in plane strain. Writes runs/records/incompressible.csv.
+displacement and the punch's force against the limit of second-order quadrilaterals of the same nu, which is
+extrapolated from three meshes by their own order. Solids are slices in plane strain. Punches that are narrower and
+wider tell how strongly the force depends on the place of the edge. Writes runs/records/incompressible.csv.
 
     build/venv/bin/python scripts/incompressible_table.py --burnish build/burnish
 """
@@ -25,10 +26,13 @@ ELEMENTS = {  # name -> (order, simplex, solid)
     "tet10": (2, 1, 1)
 }
 # case -> (probe, length of a side, elements of second order along it; of first order there are twice as many)
-CASES = {"cook": ("tip_uy", 48, (8, 16)), "punch": ("force", 0.5, (4, 8, 16))}
-FINE = {"cook": 64, "punch": 48}
+CASES = {"cook": ("tip_uy", 48, (4, 8, 16)), "punch": ("force", 0.5, (4, 8, 16))}
+FINE = {"cook": (16, 32, 64), "punch": (12, 24, 48)}
+EDGES = (0.48, 0.52)  # half of the punch's width, instead of 0.5
+EDGES_N = 16
 NUS = (0.3, 0.4999, 0.5)
 COLUMNS = ("case", "element", "nu", "n", "value", "error", "steps", "failed", "iterations", "cpu_s")
+EMPTY = ("", ) * 5  # of rows without an error
 
 
 def settings(case, element, nu, n):
@@ -50,12 +54,12 @@ def settings(case, element, nu, n):
     return values
 
 
-def run(burnish, case, element, nu, n):
+def run(burnish, case, element, nu, n, *overrides):
     """Value, steps, failed steps, iterations and CPU time; the force of a slice is that of thickness 1."""
     probe, side, _ = CASES[case]
     with tempfile.TemporaryDirectory() as directory:
         command = [burnish, str(ROOT / f"runs/{case}.yaml"), "-o", directory + "/run"]
-        for value in settings(case, element, nu, n):
+        for value in (*settings(case, element, nu, n), *overrides):
             command += ["-set", value]
         finished = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
         if finished.returncode:
@@ -68,17 +72,26 @@ def run(burnish, case, element, nu, n):
     return value, summary["steps"], summary["steps_failed"], summary["newton_iterations"], summary["cpu_s"]
 
 
+def limit_of(values):
+    """The limit of values on three meshes, each twice as fine as the one before, by their own order."""
+    first, second, third = values
+    return third + (third - second) / ((second - first) / (third - second) - 1)
+
+
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("--burnish", default="build/burnish")
 parser.add_argument("--record", default=str(ROOT / "runs/records/incompressible.csv"))
 args = parser.parse_args()
 with open(args.record, "w", newline="") as file:
-    table = csv.writer(file)
+    table = csv.writer(file, lineterminator="\n")
     table.writerow(COLUMNS)
     for case, (_, _, sizes) in CASES.items():
         for nu in NUS:
-            limit = run(args.burnish, case, "quad9", nu, FINE[case])[0]
-            table.writerow((case, "limit: quad9", nu, FINE[case], f"{limit:.7g}", "", "", "", "", ""))
+            limit = limit_of([run(args.burnish, case, "quad9", nu, n)[0] for n in FINE[case]])
+            table.writerow((case, "limit: quad9", nu, FINE[case][-1], f"{limit:.7g}", *EMPTY))
+            for edge in EDGES if case == "punch" else ():
+                force = run(args.burnish, case, "quad9", nu, EDGES_N, f"mesh.parameters.edge={edge}")[0]
+                table.writerow((case, f"edge {edge}: quad9", nu, EDGES_N, f"{force:.7g}", *EMPTY))
             for element, (order, _, _) in ELEMENTS.items():
                 for n in (size * (3 - order) for size in sizes):
                     figures = run(args.burnish, case, element, nu, n)
@@ -89,4 +102,4 @@ with open(args.record, "w", newline="") as file:
                     table.writerow((case, element, nu, n, f"{figures[0]:.7g}", f"{error:.5f}", *figures[1:4],
                                     f"{figures[4]:.2f}"))
                     print(f"{case:6} {element:6} nu {nu:<7} n {n:3} {figures[0]:.6g} {100 * error:+.2f} %, steps "
-                          f"{figures[1]} + {figures[2]} failed, {figures[3]} iterations, {figures[4]:.1f} s", flush=True)
+                         f"{figures[1]} + {figures[2]} failed, {figures[3]} iterations, {figures[4]:.1f} s", flush=True)

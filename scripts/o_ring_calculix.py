@@ -1,12 +1,16 @@
 """The O-ring of runs/o_ring.yaml in Burnish and in CalculiX (ccx, Debian's package calculix-ccx) side by side, on one
-mesh of second-order quadrilaterals: mixed quad9, which has an inner node more, and CAX8R, reduced integration; also
-C3D20R, a sector of 2 degrees of the same mesh with one element across, without motion around the axis. CalculiX has no
-mixed elements. Both laws are neo-Hooke's of the shape, with K/2 (ln J)^2 in Burnish and K/2 (J - 1)^2 in
-CalculiX. Its contact is surface to surface, penalty, on a row of fixed elements along the groove and one that comes
-down as the lid. Prints a table and writes runs/records/o_ring_calculix.csv. CPU seconds are of the process that solves.
+mesh of second-order quadrilaterals: mixed quad9, which has an inner node more, and CAX8R, reduced integration.
+CalculiX has no mixed elements. Both laws are neo-Hooke's of the shape, with K/2 (ln J)^2 in Burnish (in space the law
+of the scene) and K/2 (J - 1)^2 in CalculiX. Its contact is surface to surface, penalty, on a row of fixed elements
+along the groove and one that comes down as the lid. Prints a table and writes runs/records/o_ring_calculix.csv. CPU
+seconds are of the process that solves.
     build/venv/bin/python scripts/o_ring_calculix.py [--burnish build/burnish] [--ccx ccx] [--stiffness 200]
 The stiffness of CalculiX's contact is that many times Young's modulus over 1 mm. With 20 the force is some per cent
-lower. A run of CalculiX is stopped after --limit CPU seconds."""
+lower. A run of CalculiX is stopped after --limit CPU seconds.
+    build/venv/bin/python scripts/o_ring_calculix.py --solid
+does the same for a quarter of the ring in space (runs/rubber/o_ring_3d.yaml): mixed hex27, tet10 and tet4, and C3D20R
+on the mesh of hex27, without the inner nodes. `axisymmetric` is the force over that of the axisymmetric ring, whose
+mesh is the cross-section. It writes runs/records/o_ring_3d.csv. All forces are over 360 degrees."""
 import argparse
 import csv
 import math
@@ -25,7 +29,13 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 YOUNG, CORD, MEAN, WAY = 5.5, 3.53, 53.53, 0.706
 DEPTH, WIDTH, FOOT, EDGE = 2.8, 4.7, 0.4, 0.2  # of the groove, as in meshes/o_ring.geo
 NUS = (0.45, 0.49, 0.499, 0.4999, 0.5)
-COLUMNS = ("code", "element", "nu", "increment", "status", "steps", "failed", "iterations", "cpu_s", "force")
+COLUMNS = ("code", "element", "n", "arc", "nu", "increment", "status", "steps", "failed", "iterations", "cpu_s",
+           "force", "axisymmetric")
+# Quarters in space: element, order, tetrahedra, elements along a quarter of the cord, elements around
+SOLIDS = (("hex27", 2, 0, 4, 6), ("tet10", 2, 1, 4, 12), ("tet4", 1, 1, 6, 12), ("tet4", 1, 1, 8, 24))
+SOLID_NUS = (0.499, 0.5)
+TOOLS = 4  # elements of groove and lid around the axis for one of the ring, which follow the circle closely enough
+TOOL = 100000  # from this number on nodes and elements are those of groove, lid and spring
 WEDGE = 180  # CalculiX expands axisymmetric elements to wedges of 2 degrees
 
 
@@ -98,39 +108,63 @@ def deck(results, nu, increment, stiffness):
     return lines
 
 
-def swept(lines):
-    """The deck of axisymmetric elements as a sector of 2 degrees: C3D20R and C3D8 on planes of -1, 0 and 1 degree."""
-    angle, planes = math.pi / WEDGE, (0, 1000000, 2000000)
-    out, kind, ring = [], "", []
+class Numbers(dict):
+    """Numbers without holes, in the order of their first use; CalculiX takes memory for each number up to the last."""
+
+    def __missing__(self, key):
+        self[key] = len(self) + 1
+        return self[key]
+
+
+def brick(nodes, k):
+    """The k-th C3D20R around the axis that an element CAX8R sweeps, nodes by number and plane."""
+    corner, middle = nodes[:4], nodes[4:]
+    outer = [(node, plane) for part in (corner, middle) for plane in (2 * k, 2 * k + 2) for node in part]
+    return outer + [(node, 2 * k + 1) for node in corner]
+
+
+def swept(lines, arc):
+    """The deck of axisymmetric elements as a quarter of the ring between two planes of symmetry: `arc` C3D20R around
+    the axis, and TOOLS times as many C3D8 for groove and lid."""
+    out, kind, ends, known = [], "", ([], []), False
+    node, element = Numbers(), Numbers()
     for line in lines:
         words = [word.strip() for word in line.split(",")]
+        numbers = [int(word) for word in words if word.isdigit()]
         if line.startswith("*"):
             kind = words[0]
-            if kind == "*BOUNDARY" and ring:
-                out += ["*NSET, NSET=ring_nodes", *(str(node) for node in ring), "*TRANSFORM, NSET=ring_nodes, TYPE=C",
-                        "0, 0, 0, 0, 1, 0", "*BOUNDARY", "ring_nodes, 2, 2"]
-                ring = []
-            solid = line.replace("CAX8R", "C3D20R").replace("CAX4", "C3D8")
-            out.append(solid.replace(", GENERATE", ""))
+            if kind == "*BOUNDARY" and not known:
+                for name, nodes in zip(("start", "end"), ends):
+                    out += [f"*NSET, NSET={name}", *(str(number) for number in sorted(set(nodes)))]
+                out += ["*BOUNDARY", "start, 3, 3", "end, 1, 1"]
+                known = True
+            out.append(line.replace("CAX8R", "C3D20R").replace("CAX4", "C3D8").replace(", GENERATE", ""))
             generated = "GENERATE" in line
         elif kind == "*NODE":
-            number, x, y = int(words[0]), float(words[1]), float(words[2])
-            out += [f"{number + plane}, {x * math.cos(turn):.12g}, {y:.12g}, {x * math.sin(turn):.12g}"
-                    for plane, turn in zip(planes, (-angle, 0, angle))]
+            planes = TOOLS * arc if numbers[0] > TOOL else 2 * arc
+            x, y = float(words[1]), float(words[2])
+            for plane in range(planes + 1):
+                angle = math.pi / 2 * plane / planes
+                out.append(f"{node[numbers[0], plane]}, {x * math.cos(angle):.12g}, {y:.12g}, "
+                           f"{x * math.sin(angle):.12g}")
         elif kind == "*ELEMENT" and len(words) == 9:
-            corner, middle = words[1:5], words[5:9]
-            nodes = [int(word) + plane for plane in (0, planes[2]) for word in corner]
-            nodes += [int(word) + plane for plane in (0, planes[2]) for word in middle]
-            nodes += [int(word) + planes[1] for word in corner]
-            ring += sorted(set(nodes) - set(ring))
-            out += [f"{words[0]}, {', '.join(map(str, nodes[:10]))},", ", ".join(map(str, nodes[10:]))]
+            for k in range(arc):
+                nodes = [str(node[pair]) for pair in brick(numbers[1:], k)]
+                out += [f"{element[numbers[0], k]}, {', '.join(nodes[:10])},", ", ".join(nodes[10:])]
+            for end, plane in zip(ends, (0, 2 * arc)):
+                end += [node[number, plane] for number in numbers[1:]]
         elif kind == "*ELEMENT" and len(words) == 5:
-            nodes = [str(int(word) + plane) for plane in (0, planes[2]) for word in words[1:]]
-            out.append(f"{words[0]}, {', '.join(nodes)}")
+            for k in range(TOOLS * arc):
+                nodes = [str(node[number, plane]) for plane in (k, k + 1) for number in numbers[1:]]
+                out.append(f"{element[numbers[0], k]}, {', '.join(nodes)}")
+        elif kind == "*ELEMENT":
+            out.append(f"{element[numbers[0], 0]}, {node[numbers[1], 0]}")
         elif kind == "*SURFACE" and words[1].startswith("S"):
-            out.append(f"{words[0]}, S{int(words[1][1:]) + 2}")
+            count = TOOLS * arc if numbers[0] > TOOL else arc
+            out += [f"{element[numbers[0], k]}, S{int(words[1][1:]) + 2}" for k in range(count)]
         elif kind == "*NSET" and generated:
-            out += [str(node + plane) for plane in (0, planes[2]) for node in range(int(words[0]), int(words[1]) + 1)]
+            out += [str(node[number, plane]) for plane in range(TOOLS * arc + 1)
+                    for number in range(numbers[0], numbers[1] + 1)]
         elif kind == "*BOUNDARY" and words[0] in ("groove_nodes", "lid_nodes") and words[1] == "1":
             out += [line, f"{words[0]}, 3, 3"]
         else:
@@ -156,25 +190,26 @@ def timed(command, directory, log, limit=resource.RLIM_INFINITY):
     return process.returncode, usage.ru_utime + usage.ru_stime
 
 
-def burnish(nu, directory):
-    results = directory / f"burnish_{nu}"
-    material = f"{{law: isochoric_neo_hookean, E: {YOUNG}, nu: {nu}}}"
-    command = [args.burnish, ROOT / "runs/o_ring.yaml", "-o", results]
-    for override in ("mesh.order=2", f"mesh.parameters.n={args.n}", f"bodies.0.material={material}"):
+def burnish(element, scene, overrides, law, nu, directory):
+    """Directory and row of a run; the force is None where it has not ended."""
+    results = pathlib.Path(tempfile.mkdtemp(dir=directory)) / "run"
+    material = f"{{law: {law}, E: {YOUNG}, nu: {nu}}}"
+    command = [args.burnish, ROOT / scene, "-o", results]
+    for override in (*overrides, f"bodies.0.material={material}"):
         command += ["-set", override]
     code, cpu = timed(command, directory, directory / "burnish.log")
     summary = read_summary(results)
-    return results, {"code": "Burnish", "element": "quad9 mixed", "nu": nu, "increment": "", "steps": summary["steps"],
+    return results, {"code": "Burnish", "element": f"{element} mixed", "nu": nu, "steps": summary["steps"],
                      "status": "done" if code == 0 else "not converged", "failed": summary["steps_failed"],
                      "iterations": summary["newton_iterations"], "cpu_s": f"{cpu:.2f}",
-                     "force": f"{summary['probes']['force']:.2f}" if code == 0 else ""}
+                     "force": summary["probes"]["force"] if code == 0 else None}
 
 
-def calculix(element, nu, increment, results, directory):
+def calculix(lines, element, nu, increment, parts, directory):
+    """Row of a run of a deck for one of `parts` of the ring."""
     for old in directory.glob("ring.*"):
         old.unlink()
-    lines = deck(results, nu, increment, args.stiffness)
-    (directory / "ring.inp").write_text("\n".join(swept(lines) if element == "C3D20R" else lines) + "\n")
+    (directory / "ring.inp").write_text("\n".join(lines) + "\n")
     _, cpu = timed([args.ccx, "-i", "ring"], directory, directory / "ccx.log", args.limit)
     accepted, iterations = rows_of(directory / "ring.sta"), rows_of(directory / "ring.cvg")
     done = bool(accepted) and abs(float(accepted[-1][4]) - 1) < 1e-9
@@ -183,7 +218,39 @@ def calculix(element, nu, increment, results, directory):
     return {"code": "CalculiX", "element": element, "nu": nu, "increment": increment, "steps": steps,
             "status": "done" if done else f"stops at {float(accepted[-1][4]) if accepted else 0:.3g} of the way",
             "failed": len({tuple(line[:3]) for line in iterations}) - steps, "iterations": len(iterations),
-            "cpu_s": f"{cpu:.2f}", "force": f"{WEDGE * abs(float(totals[-1][1])):.2f}" if done else ""}
+            "cpu_s": f"{cpu:.2f}", "force": parts * abs(float(totals[-1][1])) if done else None}
+
+
+def plane(order, triangles, n):
+    return f"mesh.order={order}", f"mesh.parameters.n={n}", f"mesh.parameters.triangles={triangles}"
+
+
+def rings(directory):
+    """Rows of the axisymmetric ring."""
+    for nu in NUS:
+        mesh, row = burnish("quad9", "runs/o_ring.yaml", plane(2, 0, args.n), "isochoric_neo_hookean", nu, directory)
+        yield {**row, "n": args.n}
+        for step in args.increments if nu <= 0.499 else ():
+            lines = deck(mesh, nu, step, args.stiffness)
+            yield {**calculix(lines, "CAX8R", nu, step, WEDGE, directory), "n": args.n}
+
+
+def solids(directory):
+    """Rows of the quarter in space."""
+    for nu in SOLID_NUS:
+        for element, order, simplex, n, arc in SOLIDS:
+            flat = {"hex27": "quad9", "tet10": "tri6", "tet4": "tri3"}[element]
+            mesh, row = burnish(flat, "runs/o_ring.yaml", plane(order, simplex, n), "neo_hookean", nu, directory)
+            force = row["force"]
+            overrides = (*plane(order, simplex, n), f"mesh.parameters.arc={arc}", "output.every=0")
+            found = [burnish(element, "runs/rubber/o_ring_3d.yaml", overrides, "neo_hookean", nu, directory)[1]]
+            found[0]["force"] = found[0]["force"] and 4 * found[0]["force"]
+            for step in args.increments if element == "hex27" and nu <= 0.499 else ():
+                lines = swept(deck(mesh, nu, step, args.stiffness), arc)
+                found.append(calculix(lines, "C3D20R", nu, step, 4, directory))
+            for row in found:
+                yield {**row, "n": n, "arc": arc,
+                       "axisymmetric": f"{row['force'] / force:.5f}" if row["force"] and force else ""}
 
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -191,21 +258,20 @@ parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build/burnis
 parser.add_argument("--ccx", default="ccx")
 parser.add_argument("--stiffness", type=float, default=200)
 parser.add_argument("--increments", type=float, nargs="+", default=(0.1,))
-parser.add_argument("--n", type=int, default=8, help="elements along a quarter of the cord")
-parser.add_argument("--limit", type=int, default=40)
-parser.add_argument("--record", type=pathlib.Path, default=ROOT / "runs/records/o_ring_calculix.csv")
+parser.add_argument("--n", type=int, default=8, help="elements along a quarter of the axisymmetric ring's cord")
+parser.add_argument("--solid", action="store_true", help="a quarter of the ring in space")
+parser.add_argument("--limit", type=int, help="default 40, and 1000 in space")
+parser.add_argument("--record", type=pathlib.Path)
 args = parser.parse_args()
 args.burnish = args.burnish.resolve()
+args.limit = args.limit or (1000 if args.solid else 40)
+args.record = args.record or ROOT / f"runs/records/{'o_ring_3d' if args.solid else 'o_ring_calculix'}.csv"
 with open(args.record, "w", newline="") as record, tempfile.TemporaryDirectory() as temporary:
-    table = csv.DictWriter(record, COLUMNS)
+    table = csv.DictWriter(record, COLUMNS, restval="", lineterminator="\n")
     table.writeheader()
     print(f"| {' | '.join(COLUMNS)} |\n|{' --- |' * len(COLUMNS)}")
-    for ratio in NUS:
-        mesh, figures = burnish(ratio, pathlib.Path(temporary))
-        lines = [figures]
-        if ratio <= 0.499:
-            lines += [calculix(element, ratio, step, mesh, pathlib.Path(temporary))
-                      for element in ("CAX8R", "C3D20R") for step in args.increments]
-        for line in lines:
-            table.writerow(line)
-            print("| " + " | ".join(str(line[name]) for name in COLUMNS) + " |", flush=True)
+    for line in (solids if args.solid else rings)(pathlib.Path(temporary)):
+        line["force"] = f"{line['force']:.2f}" if line["force"] else ""
+        table.writerow(line)
+        record.flush()
+        print("| " + " | ".join(str(line.get(name, "")) for name in COLUMNS) + " |", flush=True)

@@ -42,10 +42,11 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
 
 /* Moves model->x from the state (u, t) by one linear solve with the tangent of that state. The loads, imposed
    displacements and tool motions are those at model->t. The step is a Newton iteration in which the whole body follows
-   the prescribed displacements. With holding, terms in contact stay in contact, and with touching terms that touch are
-   in contact, as contact alone may hold a body. */
-static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal t, PetscBool holding,
-                                     PetscBool touching, SolveReport *report)
+   the prescribed displacements. The tangent extrapolates stresses from `reference`, unless that is NULL. With
+   holding, terms in contact stay in contact, and with touching terms that touch are in contact, as contact alone may
+   hold a body. */
+static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, const StressReference *reference, PetscReal t,
+                                     PetscBool holding, PetscBool touching, SolveReport *report)
 {
   ModelWork     *work = model->work;
   const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
@@ -61,7 +62,7 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscCall(LinearSolverRenew(work->solver));
   PetscCall(LinearSolverSetStart(work->solver, work->accepted_start));
   if (model->contact) PetscCall(ContactMultiplyBegin(model->contact, step, t, model->t));
-  PetscCall(ModelTangent(model, u, NULL, t));
+  PetscCall(ModelTangent(model, u, reference, t));
   PetscCall(ProblemResidual(model->problem, u, model->t, t, &ok));
   if (holding) PetscCall(ContactMarkPredicted(model->contact));
   PetscCall(ElasticityMultiplyLocal(model->problem->elasticity, step, model->problem->f));
@@ -111,7 +112,7 @@ static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *re
   if (work->extrapolated)
     PetscCall(ProblemInOrder(model->problem, work->accepted_u, work->accepted_t, u, model->t, &work->extrapolated));
   if (work->extrapolated) {
-    PetscCall(ModelStepLoads(model, u, model->t, (PetscBool)(model->contact != NULL), PETSC_FALSE, report));
+    PetscCall(ModelStepLoads(model, u, NULL, model->t, (PetscBool)(model->contact != NULL), PETSC_FALSE, report));
     PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
     PetscCall(ModelLargestTurn(model, u, v, &turn));
     work->extrapolated = (PetscBool)(report->result == SOLVE_CONVERGED && turn <= MODEL_FARTHEST);
@@ -136,7 +137,7 @@ static PetscErrorCode ModelStepToTouch(Model model, SolveReport *report)
     PetscCall(ProblemResidual(model->problem, u, model->t, model->t, &ok));
     PetscCall(ContactPredictionMissed(model->contact, &missed));
     missed = (PetscBool)(missed && ok);
-    if (missed) PetscCall(ModelStepLoads(model, u, model->t, PETSC_TRUE, PETSC_TRUE, report));
+    if (missed) PetscCall(ModelStepLoads(model, u, NULL, model->t, PETSC_TRUE, PETSC_TRUE, report));
   }
   PetscCall(PetscFree(u));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -166,8 +167,8 @@ PetscErrorCode ModelPredict(Model model, SolveReport *report)
   if (model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
   *report = before;
   PetscCall(VecCopy(model->work->accepted_x, model->x));
-  PetscCall(ModelStepLoads(model, model->work->accepted_u, model->work->accepted_t, (PetscBool)(model->contact != NULL),
-                           touching, report));
+  PetscCall(ModelStepLoads(model, model->work->accepted_u, NULL, model->work->accepted_t,
+                           (PetscBool)(model->contact != NULL), touching, report));
   if (touching && report->result == SOLVE_CONVERGED) PetscCall(ModelStepToTouch(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -201,13 +202,15 @@ static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t,
 
   Note:
   Each piece is a part of the way, from which the next linear step continues with the tangent there. None of the states
-  on the way is in equilibrium.
+  on the way is in equilibrium, and their stresses must not get into the tangent. It has those of the accepted
+  state, as after a shortened step of Newton's method.
 @*/
 PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 {
-  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
-  PetscReal      t = model->work->accepted_t, turn, part, *u, *v;
-  Vec            from;
+  const StressReference reference = {model->work->solved, 0, 0};
+  const PetscInt        n         = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal             t         = model->work->accepted_t, turn, part, *u, *v;
+  Vec                   from;
 
   PetscFunctionBeginUser;
   if (model->scene->kinematics == KINEMATICS_SMALL || model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
@@ -226,7 +229,7 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
     PetscCall(VecCopy(model->x, from));
     PetscCall(ProblemDisplacements(model->problem, from, t, u));
     if (model->contact) PetscCall(ModelReachOn(model, u, t, report));
-    PetscCall(ModelStepLoads(model, u, t, PETSC_FALSE, PETSC_FALSE, report));
+    PetscCall(ModelStepLoads(model, u, reference.u ? &reference : NULL, t, PETSC_FALSE, PETSC_FALSE, report));
   }
   if (model->contact) PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL));
   PetscCall(PetscFree2(u, v));
