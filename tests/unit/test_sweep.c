@@ -31,6 +31,7 @@ static void AddPiece(Plate *plate, const double X[3][3], const double start[3], 
       piece->x[1][a][d] = X[a][d] + end[d];
     }
   }
+  PiecePlace(piece, plate->dim);
 }
 
 /* A plate in the plane whose top is y = 0 and whose bottom is y = -thickness; four faces of length 1 on each side. */
@@ -82,11 +83,11 @@ static Point MakePoint(const double from[3], const double to[3], const double no
 
 static Finding JudgePoint(Plate *plate, const Point *point, int walls)
 {
-  const PieceList list  = {plate->n, plate->pieces};
+  const PieceList list  = {plate->n, plate->n, plate->pieces};
   Look            look  = {.penetration = 0.1, .walls = walls};
   Finding         worst = {.kind = FINDING_NONE};
 
-  assert_true(LookCreate(plate->dim, &list, &look));
+  assert_true(LookBegin(plate->dim, &list, &look));
   PointFinding(&look, point, &worst);
   LookDestroy(&look);
   return worst;
@@ -246,7 +247,10 @@ static void PlantedPointsAreFound(void **context)
   assert_int_equal(MovePoint(&plate, AT(0.3, 0.1, 1), AT(0.4, 0.2, -1)).kind, FINDING_PASSED);
   PlaneWall(&plate, 1, still, AT(0, -0.9, 0)); /* 8: a body's own other side, crushed to a tenth */
   for (int k = 0; k < plate.n; k++)
-    if (plate.pieces[k].x[0][0][1] < -0.5) memcpy(plate.pieces[k].x[1], plate.pieces[k].x[0], sizeof(Place[3]));
+    if (plate.pieces[k].x[0][0][1] < -0.5) {
+      memcpy(plate.pieces[k].x[1], plate.pieces[k].x[0], sizeof(Place[3]));
+      PiecePlace(&plate.pieces[k], 2);
+    }
   point      = MakePoint(AT(0.25, 0.5, 0), AT(0.25, -1.2, 0), AT(0, -1, 0));
   point.body = 1;
   assert_int_equal(JudgePoint(&plate, &point, 1).kind, FINDING_PASSED);
@@ -255,12 +259,11 @@ static void PlantedPointsAreFound(void **context)
 /* Judges the edges of a piece of another body. */
 static Finding JudgePiece(Plate *plate, const double from[3][3], const double to[3][3], int closed)
 {
-  const PieceList list      = {plate->n, plate->pieces};
+  const PieceList list      = {plate->n, plate->n, plate->pieces};
   Look            look      = {.penetration = 0.1};
   Finding         worst     = {.kind = FINDING_NONE};
   Piece           piece     = {.size = 1, .height = 1, .body = 2, .closed = closed, .seen = closed};
   Point           points[3] = {{.tag = 0}};
-  const Point    *corner[3] = {&points[0], &points[1], &points[2]};
   double          normal[3];
 
   PieceNormal(plate->dim, to, normal);
@@ -271,8 +274,10 @@ static Finding JudgePiece(Plate *plate, const double from[3][3], const double to
     memcpy(piece.x[0][a], from[a], sizeof(Place));
     memcpy(piece.x[1][a], to[a], sizeof(Place));
   }
-  assert_true(LookCreate(plate->dim, &list, &look));
-  PieceFindings(&look, &piece, corner, &worst);
+  PiecePlace(&piece, plate->dim);
+  assert_true(LookBegin(plate->dim, &list, &look));
+  for (int e = 0; e < (plate->dim == 2 ? 1 : 3); e++)
+    EdgeFinding(&look, &(Edge){{&points[e], &points[(e + 1) % plate->dim]}, {&piece}}, 1, &worst);
   LookDestroy(&look);
   return worst;
 }
