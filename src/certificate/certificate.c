@@ -109,6 +109,11 @@ static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, in
   look->penetration = certificate->scene->certificate.penetration;
   look->overlap     = overlap;
   look->walls       = pair->of.scene->listed;
+  for (int k = 0; k < 2; k++) {
+    const int side = k ? 1 - s : s;
+
+    look->slave[k] = !pair->side[side]->surface->rigid && (side == 0 || pair->of.scene->listed);
+  }
   PetscCheck(LookBegin(own->dim, list, look), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for %" PetscInt_FMT " faces",
              list->n);
   for (PetscInt i = 0; i < own->n_points; i++) PointFinding(look, &own->points[i], worst);

@@ -29,7 +29,8 @@ static Point EdgePoint(const Edge *edge, const Piece *piece, double s)
                  .marks  = edge->end[0]->marks & edge->end[1]->marks,
                  .body   = piece->body,
                  .closed = piece->closed,
-                 .seen   = piece->seen};
+                 .side   = piece->side,
+                 .tip    = fmin(edge->end[0]->tip, edge->end[1]->tip)};
 
   Between(edge->end[0]->X, edge->end[1]->X, s, point.X);
   for (int state = 0; state < 2; state++) {
@@ -112,10 +113,12 @@ static double EdgeAllowed(const Look *look, const Edge *edge, const Piece *piece
 {
   double allowed = INFINITY;
 
-  for (int k = 0; k < 2 && edge->of[k]; k++)
-    allowed = fmin(allowed,
-                   AllowedDepth(look, edge->of[k]->size, edge->of[k]->height, edge->of[k]->seen, piece));
-  return allowed + piece->sagitta + look->overlap;
+  for (int k = 0; k < 2 && edge->of[k]; k++) {
+    const Point point = EdgePoint(edge, edge->of[k], 0.5);
+
+    allowed = fmin(allowed, AllowedDepth(look, &point, piece) + ExplainedDepth(look, &point, piece));
+  }
+  return allowed;
 }
 
 /* Judges an edge, with the box that it sweeps, that crosses the edges of a piece. a: its ends at both states. */

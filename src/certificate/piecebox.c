@@ -1,5 +1,6 @@
 /* Boxes around places and pieces, see pieces.h. */
 #include "pieces.h"
+#include <math.h>
 
 /*@
   BoxAround - computes the box around some places.
@@ -58,7 +59,7 @@ PetscBool BoxesMeet(const Box a, const Box b, PetscReal distance)
 }
 
 /*@
-  PiecePlace - finds the box that a piece sweeps and its normals from its vertices.
+  PiecePlace - finds the box that a piece sweeps, its normals and its longest side from its vertices.
 
   Not collective
 
@@ -79,4 +80,10 @@ void PiecePlace(Piece *piece, int dim)
     piece->box[3 + d] = PetscMax(piece->box[3 + d], end[3 + d]);
   }
   for (int state = 0; state < 2; state++) PieceNormal(dim, (const Place *)piece->x[state], piece->normal[state]);
+  piece->side = 0;
+  for (int a = 0; a < dim; a++) {
+    const double *p = piece->x[1][a], *q = piece->x[1][(a + 1) % dim];
+
+    piece->side = fmax(piece->side, sqrt(PetscSqr(p[0] - q[0]) + PetscSqr(p[1] - q[1]) + PetscSqr(p[2] - q[2])));
+  }
 }

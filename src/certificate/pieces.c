@@ -5,6 +5,8 @@
 
 /* Normals that turn from a piece's by more than this belong to a sharp edge. A ring of eight pieces is round. */
 #define PIECE_COSINE 0.92
+/* Largest tip that explains a depth: a right angle. What is sharper is a needle, which the points around it miss. */
+#define PIECE_TIP 1.0
 
 /* Faces of this rank, a tool's in equal parts. */
 static void OwnFaces(ContactSurface surface, PetscInt *first, PetscInt *end)
@@ -124,7 +126,7 @@ static void MeasureTool(Side side, const PetscInt *number, PetscReal *sum)
         if (i < 0) continue;
         sum[3 * i] += surface->face_size[f];
         sum[3 * i + 2] += 1;
-        for (int d = 0; d < 3; d++) side->points[i].turns[d] += normal[d] * surface->face_size[f];
+        for (int d = 0; d < 3; d++) side->points[i].turns[d] += normal[d];
       }
     }
   }
@@ -143,7 +145,7 @@ static PetscErrorCode MeasurePoints(Side side, const PetscInt *number)
     PetscCall(MeasureBody(side, sum));
   for (PetscInt i = 0; i < side->n_points; i++) {
     side->points[i].size   = sum[3 * i] / sum[3 * i + 2];
-    side->points[i].weight = sum[3 * i];
+    side->points[i].number = sum[3 * i + 2];
     side->points[i].height = sum[3 * i + 1] / sum[3 * i + 2];
   }
   PetscCall(PetscFree(sum));
@@ -259,37 +261,52 @@ static void PlacePoints(Side side, int state, const PetscReal *u, PetscReal t)
   }
 }
 
-/* Finds the directions of a deformable surface at the points, of both states: normals of the pieces around, by size.
- */
-static PetscErrorCode PointNormals(Side side)
+/* Sums over the pieces around each point of a deformable body: normals of both states, longest sides. */
+enum { AROUND_NORMALS = 6, AROUND };
+
+/* Finds the directions of a deformable surface at the points, of both states, and the mean side around them. */
+static PetscErrorCode PointsAround(Side side)
 {
-  PetscReal *normal;
+  PetscReal *sum;
 
   PetscFunctionBeginUser;
   if (side->surface->rigid) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(6 * side->n_points, &normal));
-  for (PetscInt k = 0; k < side->n_pieces; k++)
-    for (int a = 0; a < side->dim; a++)
-      for (int i = 0; i < 6; i++)
-        normal[6 * side->corner[3 * k + a] + i] += side->pieces[k].normal[i / 3][i % 3] * side->pieces[k].size;
-  PetscCall(SumPoints(side, 6, normal));
-  for (PetscInt i = 0; i < side->n_points; i++) memcpy(side->points[i].normal, &normal[6 * i], 6 * sizeof(PetscReal));
-  PetscCall(PetscFree(normal));
+  PetscCall(PetscCalloc1(AROUND * side->n_points, &sum));
+  for (PetscInt k = 0; k < side->n_pieces; k++) {
+    const Piece *piece = &side->pieces[k];
+
+    for (int a = 0; a < side->dim; a++) {
+      PetscReal *at = &sum[AROUND * side->corner[3 * k + a]];
+
+      for (int i = 0; i < AROUND_NORMALS; i++) at[i] += piece->normal[i / 3][i % 3];
+      at[AROUND_NORMALS] += piece->side;
+    }
+  }
+  PetscCall(SumPoints(side, AROUND, sum));
+  for (PetscInt i = 0; i < side->n_points; i++) {
+    memcpy(side->points[i].normal, &sum[AROUND * i], AROUND_NORMALS * sizeof(PetscReal));
+    side->points[i].side = sum[AROUND * i + AROUND_NORMALS] / side->points[i].number;
+  }
+  PetscCall(PetscFree(sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks points and pieces where contact presses or an edge is sharp: there the normals around cancel. */
-static void MarkSeen(Side side)
+/* Finds how sharp the surface is at the points at the end. The normals of two flanks with the turn phi add up to
+   2 cos(phi/2). */
+static void FindTips(Side side)
 {
   for (PetscInt i = 0; i < side->n_points; i++) {
-    Point        *point = &side->points[i];
-    const double *n     = point->normal[1];
+    Point        *point  = &side->points[i];
+    const double *n      = point->normal[1];
+    const double  cosine = fmin(1, sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / point->number);
 
-    point->seen = point->closed || sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) < PIECE_COSINE * point->weight;
+    point->tip = fmin(PIECE_TIP, sqrt(1 - cosine * cosine) / fmax(cosine, 0.5));
   }
   for (PetscInt k = 0; k < side->n_pieces; k++) {
-    side->pieces[k].seen = 0;
-    for (int a = 0; a < side->dim; a++) side->pieces[k].seen |= side->points[side->corner[3 * k + a]].seen;
+    Piece *piece = &side->pieces[k];
+
+    piece->tip = 0;
+    for (int a = 0; a < side->dim; a++) piece->tip = fmax(piece->tip, side->points[side->corner[3 * k + a]].tip);
   }
 }
 
@@ -341,10 +358,10 @@ PetscErrorCode SideMove(Side side, const PetscReal *const u[2], const PetscReal 
 PetscErrorCode SideMeasure(Side side, const PetscReal *closed)
 {
   PetscFunctionBeginUser;
-  PetscCall(PointNormals(side));
+  PetscCall(PointsAround(side));
   for (PetscInt i = 0; i < side->n_points; i++)
     side->points[i].closed = !side->surface->rigid && closed[side->node[i]] > 0;
-  MarkSeen(side);
+  FindTips(side);
   for (PetscInt k = 0; k < side->n_pieces; k++) {
     Piece *piece = &side->pieces[k];
     Place  normal[3];

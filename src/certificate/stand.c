@@ -259,21 +259,43 @@ Stand PointStand(const Look *look, const Point *point, int state)
   Not collective
 
   Input Parameters:
-+ look   - the search
-. size   - of the faces around the point
-. height - of the elements around it
-. seen   - contact presses at the point, or an edge is sharp there
-- piece  - the piece
++ look  - the search
+. point - the point
+- piece - the piece
 @*/
-double AllowedDepth(const Look *look, double size, double height, int seen, const Piece *piece)
+double AllowedDepth(const Look *look, const Point *point, const Piece *piece)
 {
-  double allowed = look->penetration * fmin(size, piece->size);
+  double allowed = look->penetration * fmin(point->size, piece->size);
 
-  if (seen || piece->seen) allowed *= STAND_SEEN;
   if (!look->walls) return allowed;
-  if (height > 0) allowed = fmin(allowed, STAND_WALL * height);
+  if (point->height > 0) allowed = fmin(allowed, STAND_WALL * point->height);
   if (piece->height > 0) allowed = fmin(allowed, STAND_WALL * piece->height);
   return allowed;
+}
+
+/*@
+  ExplainedDepth - returns the depth of a point in a piece that the shape of the faces and the scene explain.
+
+  Not collective
+
+  Input Parameters:
++ look  - the search
+. point - the point
+- piece - the piece
+
+  Note:
+  Contact holds the slave at its points. An edge whose flanks rest on two of them stands between them in their chord by
+  half the chord times the tip. Where no term presses, nothing holds the flanks, and this explains nothing.
+@*/
+double ExplainedDepth(const Look *look, const Point *point, const Piece *piece)
+{
+  const double explained = piece->sagitta + look->overlap;
+  double       chord     = 0;
+
+  if (!point->closed && !piece->closed) return explained;
+  if (look->slave[0]) chord = point->side;
+  if (look->slave[1]) chord = fmax(chord, piece->side);
+  return explained + 0.5 * chord * fmax(point->tip, piece->tip);
 }
 
 /*@
@@ -333,8 +355,8 @@ void JudgeDepth(const Look *look, const Point *point, const Stand *stand, const 
   Finding finding;
 
   if (!stand->inside || stand->depth <= STAND_ROUND_OFF * stand->piece->size) return;
-  own       = AllowedDepth(look, point->size, point->height, point->seen, stand->piece);
-  explained = stand->piece->sagitta + look->overlap;
+  own       = AllowedDepth(look, point, stand->piece);
+  explained = ExplainedDepth(look, point, stand->piece);
   finding   = (Finding){.ratio   = stand->depth / (own + explained),
                         .depth   = stand->depth,
                         .allowed = own + explained,

@@ -72,7 +72,7 @@ static const double still[3] = {0, 0, 0};
 /* A point of another body that looks along `normal`. */
 static Point MakePoint(const double from[3], const double to[3], const double normal[3])
 {
-  Point point = {.tag = 7, .size = 1, .height = 1, .body = 2, .weight = 1};
+  Point point = {.tag = 7, .size = 1, .height = 1, .body = 2, .number = 1};
 
   memcpy(point.X, from, sizeof(Place));
   memcpy(point.x[0], from, sizeof(Place));
@@ -84,7 +84,7 @@ static Point MakePoint(const double from[3], const double to[3], const double no
 static Finding JudgePoint(Plate *plate, const Point *point, int walls)
 {
   const PieceList list  = {plate->n, plate->n, plate->pieces};
-  Look            look  = {.penetration = 0.1, .walls = walls};
+  Look            look  = {.penetration = 0.1, .walls = walls, .slave = {0, 1}};
   Finding         worst = {.kind = FINDING_NONE};
 
   assert_true(LookBegin(plate->dim, &list, &look));
@@ -207,7 +207,8 @@ static void HonestStatesHold(void **context)
   assert_int_equal(MovePoint(&plate, AT(0.3, -0.05, 0), AT(0.6, 0.1, 0)).kind, FINDING_NONE);
   assert_int_equal(MovePoint(&plate, AT(3, 1, 0), AT(3, -1, 0)).kind, FINDING_NONE); /* beside the wall */
   point        = MakePoint(AT(0.3, 0.1, 0), AT(0.3, -0.3, 0), AT(0, -1, 0));
-  point.closed = point.seen = 1; /* contact presses and holds the point by a soft penalty */
+  point.closed = 1; /* a right-angled edge whose flanks rest on the points around */
+  point.tip    = 1;
   PlaneWall(&plate, 0, still, still);
   assert_int_equal(JudgePoint(&plate, &point, 0).kind, FINDING_NONE);
   SolidWall(&plate, 0.2, still, still);
@@ -260,9 +261,9 @@ static void PlantedPointsAreFound(void **context)
 static Finding JudgePiece(Plate *plate, const double from[3][3], const double to[3][3], int closed)
 {
   const PieceList list      = {plate->n, plate->n, plate->pieces};
-  Look            look      = {.penetration = 0.1};
+  Look            look      = {.penetration = 0.1, .slave = {1, 0}};
   Finding         worst     = {.kind = FINDING_NONE};
-  Piece           piece     = {.size = 1, .height = 1, .body = 2, .closed = closed, .seen = closed};
+  Piece           piece     = {.size = 1, .height = 1, .body = 2, .closed = closed};
   Point           points[3] = {{.tag = 0}};
   double          normal[3];
 

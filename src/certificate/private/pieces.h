@@ -19,10 +19,11 @@ typedef struct {
   Box       box;                      /* that it sweeps */
   long      tag[3], face;             /* gmsh's tags of nodes and face */
   double    size, height, sagitta; /* of its face, of the element below it (0: none), PieceHeight() at the end (length) */
+  double    side;                  /* its longest side at the end (length) */
+  double    tip;                   /* the largest of its vertices */
   FaceMarks marks;                 /* pairs by name that treat its face, see facemarks.h */
   int       body;                  /* in the scene; bodies of tools have no cells */
   int       closed;                /* contact pressed at one of its vertices */
-  int       seen;                  /* besides, an edge there is sharp, which a smooth surface rounds */
 } Piece;
 
 /* A vertex of pieces */
@@ -34,8 +35,9 @@ typedef struct {
   FaceMarks marks;        /* of all faces around */
   int       body;
   int       closed; /* contact pressed there at one of the states */
-  int       seen;   /* besides, an edge there is sharp, which a smooth surface rounds */
-  double    weight; /* sizes of the pieces around together (length) */
+  double    number; /* of the pieces around */
+  double    side;   /* mean of their longest sides at the end (length); not of tools */
+  double    tip;    /* height of the edge there over a chord between its flanks, over half the chord: tan(turn/2) */
 } Point;
 
 /* An edge of pieces. In the plane it is the piece itself. */

@@ -19,11 +19,6 @@
 /* Part of the height of an element up to which faces may cross where any side of a body may meet any other one: deeper,
    the other side of a wall would be nearer (ownbody.h). */
 #define STAND_WALL 0.25
-/* Where contact presses at the point or on the face, or an edge is sharp there, faces may cross deeper by this factor:
-   to half a face with the default. Contact holds slave points on a smooth surface, which rounds the edges of the faces
-   that are shown, and it holds no point of the master. Sharp edges so dig in by up to half a face, and this is seen:
-   slave points around the edge press. */
-#define STAND_SEEN 5
 /* Part of a face around a point in which its closest piece is looked for. What goes deeper has crossed a piece. */
 #define STAND_REACH 0.5
 /* Normals whose cosine is below this belong to the two sides of a wall, not of a corner. */
@@ -70,6 +65,7 @@ typedef struct {
   double           penetration; /* allowed depth in parts of the smaller face */
   double           overlap;     /* depth that the scene leaves (length) */
   int              walls;       /* any side of a body may meet any other one */
+  int              slave[2];    /* contact holds the points and edges that are judged; the vertices of the pieces */
   int              failed;      /* memory was short: what was found does not count */
 } Look;
 
@@ -81,7 +77,8 @@ void   LookAdd(Look *, const Piece *, Crossing);
 void   LookSort(Look *);
 Stand  PointStand(const Look *, const Point *, int state);
 int    HasTag(const Piece *, int dim, long tag);
-double AllowedDepth(const Look *, double size, double height, int seen, const Piece *);
+double AllowedDepth(const Look *, const Point *, const Piece *);
+double ExplainedDepth(const Look *, const Point *, const Piece *);
 void   JudgeDepth(const Look *, const Point *, const Stand *, const long tag[2], Finding *worst);
 void   FindingKeep(const Finding *, Finding *worst);
 int    FindingWorse(const Finding *, const Finding *than);
