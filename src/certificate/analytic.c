@@ -64,7 +64,7 @@ static void Note(FindingKind kind, double depth, double allowed, double over_h, 
 @*/
 void AnalyticPointFinding(const AnalyticTool *tool, const Point *point, Finding *worst)
 {
-  const double tip     = point->closed ? 0.5 * point->side * point->tip : 0;
+  const double tip     = point->closed ? 0.5 * point->order * point->side * point->tip : 0;
   const double allowed = tool->penetration * point->size + tool->overlap + tip;
   Place        r[2], closest, at;
   double       end, least;

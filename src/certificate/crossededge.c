@@ -30,6 +30,7 @@ static Point EdgePoint(const Edge *edge, const Piece *piece, double s)
                  .body   = piece->body,
                  .closed = piece->closed,
                  .side   = piece->side,
+                 .order  = piece->order,
                  .tip    = fmin(edge->end[0]->tip, edge->end[1]->tip)};
 
   Between(edge->end[0]->X, edge->end[1]->X, s, point.X);
@@ -109,14 +110,14 @@ static int LooksAt(const Edge *edge, const Piece *piece)
 }
 
 /* Least depth that the faces around an edge allow in a piece. */
-static double EdgeAllowed(const Look *look, const Edge *edge, const Piece *piece)
+static double EdgeAllowed(const Look *look, const Edge *edge, const Piece *piece, double depth)
 {
   double allowed = INFINITY;
 
   for (int k = 0; k < 2 && edge->of[k]; k++) {
     const Point point = EdgePoint(edge, edge->of[k], 0.5);
 
-    allowed = fmin(allowed, AllowedDepth(look, &point, piece) + ExplainedDepth(look, &point, piece));
+    allowed = fmin(allowed, AllowedDepth(look, &point, piece) + ExplainedDepth(look, &point, piece, depth));
   }
   return allowed;
 }
@@ -138,8 +139,9 @@ static void JudgeCrossings(const Look *look, const Edge *edge, Place a[2][2], co
     if (!BoxesMeet(box, other, 0)) continue;
     if (!SweepEdges((const Place *)a[0], (const Place *)a[1], (const Place *)b[0], (const Place *)b[1], &last))
       continue;
-    allowed = EdgeAllowed(look, edge, piece);
-    if (!last.over || !(-last.distance > allowed)) continue;
+    if (!last.over || last.distance >= 0) continue;
+    allowed = EdgeAllowed(look, edge, piece, -last.distance);
+    if (!(-last.distance > allowed)) continue;
     finding = (Finding){.kind    = FINDING_EDGES,
                         .ratio   = -last.distance / allowed,
                         .depth   = -last.distance,

@@ -69,7 +69,7 @@ static void JudgePassage(const Look *look, const Point *point, const Event *in, 
 static void JudgeGone(const Look *look, const Point *point, const Event *in, const Stand *end, Finding *worst)
 {
   const double depth = BehindAt(look->dim, in->piece, point, 1);
-  const double allowed = AllowedDepth(look, point, in->piece) + ExplainedDepth(look, point, in->piece);
+  const double allowed = AllowedDepth(look, point, in->piece) + ExplainedDepth(look, point, in->piece, depth);
   double foot[3];
 
   if (!(depth > allowed) || (end->piece && end->front)) return;

@@ -5,8 +5,6 @@
 
 /* Normals that turn from a piece's by more than this belong to a sharp edge. A ring of eight pieces is round. */
 #define PIECE_COSINE 0.92
-/* Largest tip that explains a depth: a right angle. What is sharper is a needle, which the points around it miss. */
-#define PIECE_TIP 1.0
 
 /* Faces of this rank, a tool's in equal parts. */
 static void OwnFaces(ContactSurface surface, PetscInt *first, PetscInt *end)
@@ -73,6 +71,7 @@ static void DivideFace(Side side, PetscInt f, PetscInt *number)
     *piece = (Piece){.face   = group ? group->face_tag[f] : surface->rigid->face_tag[f],
                      .size   = surface->face_size[f],
                      .height = surface->face_height[f],
+                     .order  = surface->order,
                      .marks  = surface->face_marks ? surface->face_marks[f] : 0,
                      .body   = group ? surface->mesh->cell_body[group->face_cell[f]] : surface->body};
     for (int a = 0; a < side->dim; a++) {
@@ -146,6 +145,8 @@ static PetscErrorCode MeasurePoints(Side side, const PetscInt *number)
   for (PetscInt i = 0; i < side->n_points; i++) {
     side->points[i].size   = sum[3 * i] / sum[3 * i + 2];
     side->points[i].number = sum[3 * i + 2];
+    side->points[i].order  = side->surface->order;
+    side->points[i].side   = side->points[i].size / side->surface->order; /* a tool keeps this */
     side->points[i].height = sum[3 * i + 1] / sum[3 * i + 2];
   }
   PetscCall(PetscFree(sum));
@@ -303,10 +304,8 @@ static void FindTips(Side side)
     point->tip = fmin(PIECE_TIP, sqrt(1 - cosine * cosine) / fmax(cosine, 0.5));
   }
   for (PetscInt k = 0; k < side->n_pieces; k++) {
-    Piece *piece = &side->pieces[k];
-
-    piece->tip = 0;
-    for (int a = 0; a < side->dim; a++) piece->tip = fmax(piece->tip, side->points[side->corner[3 * k + a]].tip);
+    for (int a = 0; a < side->dim; a++)
+      side->pieces[k].tip[a] = side->points[side->corner[3 * k + a]].tip;
   }
 }
 

@@ -10,6 +10,7 @@ static Piece ImageOf(const Piece *piece, const SurfaceImage *image, int dim)
     const int b = image->reverses && a < 2 ? 1 - a : a;
 
     out.tag[a] = piece->tag[b];
+    out.tip[a] = piece->tip[b];
     SurfaceReflect(image, dim, piece->X[b], out.X[a]);
     for (int state = 0; state < 2; state++) SurfaceReflect(image, dim, piece->x[state][b], out.x[state][a]);
   }

@@ -42,8 +42,9 @@ int LookBegin(int dim, const PieceList *list, Look *look)
   look->failed = 0;
   if (look->room < list->n || !look->found) {
     free(look->found);
-    look->room  = (int)list->n + 1;
-    look->found = malloc(sizeof(int) * (size_t)look->room);
+    look->room   = (int)list->n + 1;
+    look->found  = malloc(2 * sizeof(int) * (size_t)look->room);
+    look->around = look->found + look->room;
   }
   for (int k = 0; made && k < list->n; k++) {
     memcpy(&lower[k * dim], list->pieces[k].box, sizeof(double) * (size_t)dim);
@@ -273,6 +274,34 @@ double AllowedDepth(const Look *look, const Point *point, const Piece *piece)
   return allowed;
 }
 
+/* Height of a surface over a chord, over half the chord. Where it turns by an edge, that is the tip there. Where it is
+   round, and each of its pieces turns by as much, it goes on turning over the chord. */
+static double TipOver(double chord, double tip, double side)
+{
+  return fmin(PIECE_TIP, tip * fmax(1, 0.5 * chord / side));
+}
+
+/* The highest of the point and of the vertices of pieces that are within a chord of it at the end. */
+static double TipNear(const Look *look, const Point *point, double chord)
+{
+  double tip = TipOver(chord, point->tip, point->side), lower[3], upper[3];
+  int    n;
+
+  for (int d = 0; d < 3; d++) {
+    lower[d] = point->x[1][d] - chord;
+    upper[d] = point->x[1][d] + chord;
+  }
+  n = BoxTreeMeet(look->tree, lower, upper, look->room, look->around);
+  for (int i = 0; i < n; i++) {
+    const Piece *piece = &look->list->pieces[look->around[i]];
+
+    for (int a = 0; a < look->dim; a++)
+      if (Distance(piece->x[1][a], point->x[1]) <= chord)
+        tip = fmax(tip, TipOver(chord, piece->tip[a], piece->side));
+  }
+  return tip;
+}
+
 /*@
   ExplainedDepth - returns the depth of a point in a piece that the shape of the faces and the scene explain.
 
@@ -281,21 +310,24 @@ double AllowedDepth(const Look *look, const Point *point, const Piece *piece)
   Input Parameters:
 + look  - the search
 . point - the point
-- piece - the piece
+. piece - the piece
+- depth - of the point: shapes are looked for where it is not allowed without
 
   Note:
-  Contact holds the slave at its points. An edge whose flanks rest on two of them stands between them in their chord by
-  half the chord times the tip. Where no term presses, nothing holds the flanks, and this explains nothing.
+  Contact holds the slave at its points, in the mean over a face. An edge whose flanks rest on two points that are a
+  face apart stands in this chord by half of it times the tip. So far from an edge faces may cross. Where no term
+  presses, nothing holds the flanks, and this explains nothing.
 @*/
-double ExplainedDepth(const Look *look, const Point *point, const Piece *piece)
+double ExplainedDepth(const Look *look, const Point *point, const Piece *piece, double depth)
 {
   const double explained = piece->sagitta + look->overlap;
   double       chord     = 0;
 
   if (!point->closed && !piece->closed) return explained;
-  if (look->slave[0]) chord = point->side;
-  if (look->slave[1]) chord = fmax(chord, piece->side);
-  return explained + 0.5 * chord * fmax(point->tip, piece->tip);
+  if (depth <= explained + AllowedDepth(look, point, piece)) return explained;
+  if (look->slave[0]) chord = point->order * point->side;
+  if (look->slave[1]) chord = fmax(chord, piece->order * piece->side);
+  return explained + 0.5 * chord * TipNear(look, point, chord);
 }
 
 /*@
@@ -356,7 +388,7 @@ void JudgeDepth(const Look *look, const Point *point, const Stand *stand, const 
 
   if (!stand->inside || stand->depth <= STAND_ROUND_OFF * stand->piece->size) return;
   own       = AllowedDepth(look, point, stand->piece);
-  explained = ExplainedDepth(look, point, stand->piece);
+  explained = ExplainedDepth(look, point, stand->piece, stand->depth);
   finding   = (Finding){.ratio   = stand->depth / (own + explained),
                         .depth   = stand->depth,
                         .allowed = own + explained,

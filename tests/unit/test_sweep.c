@@ -22,7 +22,7 @@ static void AddPiece(Plate *plate, const double X[3][3], const double start[3], 
 {
   Piece *piece = &plate->pieces[plate->n++];
 
-  *piece = (Piece){.face = 100 + plate->n, .size = 1, .height = 1, .body = 1};
+  *piece = (Piece){.face = 100 + plate->n, .size = 1, .height = 1, .order = 1, .body = 1};
   for (int a = 0; a < plate->dim; a++) {
     piece->tag[a] = tag + a;
     for (int d = 0; d < 3; d++) {
@@ -72,7 +72,7 @@ static const double still[3] = {0, 0, 0};
 /* A point of another body that looks along `normal`. */
 static Point MakePoint(const double from[3], const double to[3], const double normal[3])
 {
-  Point point = {.tag = 7, .size = 1, .height = 1, .body = 2, .number = 1};
+  Point point = {.tag = 7, .size = 1, .height = 1, .body = 2, .number = 1, .side = 1, .order = 1};
 
   memcpy(point.X, from, sizeof(Place));
   memcpy(point.x[0], from, sizeof(Place));
@@ -263,7 +263,7 @@ static Finding JudgePiece(Plate *plate, const double from[3][3], const double to
   const PieceList list      = {plate->n, plate->n, plate->pieces};
   Look            look      = {.penetration = 0.1, .slave = {1, 0}};
   Finding         worst     = {.kind = FINDING_NONE};
-  Piece           piece     = {.size = 1, .height = 1, .body = 2, .closed = closed};
+  Piece           piece     = {.size = 1, .height = 1, .order = 1, .body = 2, .closed = closed};
   Point           points[3] = {{.tag = 0}};
   double          normal[3];
 

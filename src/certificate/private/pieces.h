@@ -10,6 +10,9 @@
 #include "search/facemarks.h"
 #include "search/surface.h"
 
+/* Largest tip that explains a depth: a right angle. What is sharper is a needle, which the points around it miss. */
+#define PIECE_TIP 1.0
+
 /* Lower, then upper corner */
 typedef PetscReal Box[6];
 
@@ -20,7 +23,8 @@ typedef struct {
   long      tag[3], face;             /* gmsh's tags of nodes and face */
   double    size, height, sagitta; /* of its face, of the element below it (0: none), PieceHeight() at the end (length) */
   double    side;                  /* its longest side at the end (length) */
-  double    tip;                   /* the largest of its vertices */
+  int       order;                 /* of its face, which is about as many pieces wide */
+  double    tip[3];                /* of its vertices */
   FaceMarks marks;                 /* pairs by name that treat its face, see facemarks.h */
   int       body;                  /* in the scene; bodies of tools have no cells */
   int       closed;                /* contact pressed at one of its vertices */
@@ -36,7 +40,8 @@ typedef struct {
   int       body;
   int       closed; /* contact pressed there at one of the states */
   double    number; /* of the pieces around */
-  double    side;   /* mean of their longest sides at the end (length); not of tools */
+  double    side;   /* mean of their longest sides at the end (length) */
+  int       order;  /* of their faces */
   double    tip;    /* height of the edge there over a chord between its flanks, over half the chord: tan(turn/2) */
 } Point;
 

@@ -60,6 +60,7 @@ typedef struct {
   const PieceList *list;
   BoxTree          tree;
   int             *found, n_found, room; /* pieces at hand */
+  int             *around;               /* work space of as much room */
   Event           *events;
   int              n_events, room_events;
   double           penetration; /* allowed depth in parts of the smaller face */
@@ -78,7 +79,7 @@ void   LookSort(Look *);
 Stand  PointStand(const Look *, const Point *, int state);
 int    HasTag(const Piece *, int dim, long tag);
 double AllowedDepth(const Look *, const Point *, const Piece *);
-double ExplainedDepth(const Look *, const Point *, const Piece *);
+double ExplainedDepth(const Look *, const Point *, const Piece *, double depth);
 void   JudgeDepth(const Look *, const Point *, const Stand *, const long tag[2], Finding *worst);
 void   FindingKeep(const Finding *, Finding *worst);
 int    FindingWorse(const Finding *, const Finding *than);
