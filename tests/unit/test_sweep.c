@@ -8,7 +8,7 @@
 #include <cmocka.h>
 #include "analytic.h"
 
-enum { MOST = 64 };
+enum { MOST = 512 };
 
 /* One side of a planted state: faces of a plate. */
 typedef struct {
@@ -257,6 +257,68 @@ static void PlantedPointsAreFound(void **context)
   assert_int_equal(JudgePoint(&plate, &point, 1).kind, FINDING_PASSED);
 }
 
+/* Points in space, and states that are rare: 15 to 19 of the planted violations. */
+static void PlantedSolidsAreFound(void **context)
+{
+  static Plate plate;
+  Finding      finding;
+  Point        point;
+
+  (void)context;
+  SolidWall(&plate, 0, still, still); /* 15: too deep in a face */
+  finding = MovePoint(&plate, AT(0.3, 0.1, 0.2), AT(0.4, 0.2, -0.14));
+  assert_int_equal(finding.kind, FINDING_DEPTH);
+  assert_true(fabs(finding.depth - 0.14) < 1e-12);
+  SolidWall(&plate, 0.05, still, AT(0.2, 0, 2)); /* 16: a wall is drawn over a point that rests */
+  assert_int_equal(MovePoint(&plate, AT(0.3, 0.1, 1), AT(0.3, 0.1, 1)).kind, FINDING_PASSED);
+  SolidWall(&plate, 0, still, still); /* 17: what stood behind a face goes deeper without crossing anything */
+  assert_int_not_equal(MovePoint(&plate, AT(0.3, 0.1, -0.3), AT(0.3, 0.1, -0.9)).kind, FINDING_NONE);
+  SolidWall(&plate, 0.05, still, still); /* 18: another pair treats these faces, and none is this one's */
+  point       = MakePoint(AT(0.3, 0.1, 1), AT(0.4, 0.2, -1), AT(0, 0, -1));
+  point.marks = 1;
+  for (int k = 0; k < plate.n; k++) plate.pieces[k].marks = 2;
+  assert_int_equal(JudgePoint(&plate, &point, 0).kind, FINDING_NONE);
+  for (int k = 0; k < plate.n; k++) plate.pieces[k].marks = 8; /* slave of the first, master of the second pair */
+  assert_int_equal(JudgePoint(&plate, &point, 0).kind, FINDING_PASSED);
+}
+
+/* A point crosses a hundred films that are thinner than round-off, and then a wall: 19. */
+static void ManyCrossingsAreFollowed(void **context)
+{
+  static Plate plate = {.dim = 2};
+
+  (void)context;
+  for (int k = 0; k <= 100; k++) {
+    const double y = -0.02 * k, thickness = k < 100 ? 1e-9 : 0.05;
+
+    AddPiece(&plate, (const double[3][3]){{1, y, 0}, {-1, y, 0}, {0}}, still, still, 1000 + 10 * k);
+    AddPiece(&plate, (const double[3][3]){{-1, y - thickness, 0}, {1, y - thickness, 0}, {0}}, still, still,
+             5000 + 10 * k);
+  }
+  plate.n -= 2;
+  assert_int_equal(MovePoint(&plate, AT(0, 1, 0), AT(0, -4, 0)).kind, FINDING_NONE);
+  plate.n += 2;
+  assert_int_equal(MovePoint(&plate, AT(0, 1, 0), AT(0, -4, 0)).kind, FINDING_PASSED);
+}
+
+/* An edge explains a depth by half a chord times its tip, and only where contact presses. */
+static void EdgesExplainTheirChords(void **context)
+{
+  Plate plate;
+  Point point;
+
+  (void)context;
+  PlaneWall(&plate, 0, still, still);
+  for (int turn = 0; turn < 2; turn++) {
+    for (int pressed = 0; pressed < 2; pressed++) {
+      point        = MakePoint(AT(0.3, 0.1, 0), AT(0.3, -0.35, 0), AT(0, -1, 0));
+      point.tip    = turn ? 0.6 : 0.4; /* 0.1 + 0.3 or 0.1 + 0.2 are allowed */
+      point.closed = pressed;
+      assert_int_equal(JudgePoint(&plate, &point, 0).kind, turn && pressed ? FINDING_NONE : FINDING_DEPTH);
+    }
+  }
+}
+
 /* Judges the edges of a piece of another body. */
 static Finding JudgePiece(Plate *plate, const double from[3][3], const double to[3][3], int closed)
 {
@@ -307,7 +369,7 @@ static void PlantedFacesAreFound(void **context)
   assert_int_equal(JudgePiece(&plate, up, up, 0).kind, FINDING_EDGES);
 }
 
-/* Analytic tools: 12 to 14. */
+/* Analytic tools: 12 to 14. The numbers go on with solids. */
 static void PlantedToolsAreFound(void **context)
 {
   AnalyticTool tool = {.dim = 2, .surface = {.shape = ANALYTIC_SPHERE, .radius = 0.1}, .penetration = 0.1};
@@ -347,6 +409,9 @@ int main(void)
     cmocka_unit_test(ChordsHaveTheirHeight),
     cmocka_unit_test(HonestStatesHold),
     cmocka_unit_test(PlantedPointsAreFound),
+    cmocka_unit_test(PlantedSolidsAreFound),
+    cmocka_unit_test(ManyCrossingsAreFollowed),
+    cmocka_unit_test(EdgesExplainTheirChords),
     cmocka_unit_test(PlantedFacesAreFound),
     cmocka_unit_test(PlantedToolsAreFound),
   };
