@@ -1,9 +1,9 @@
 /* A static tree of axis-aligned boxes for the local part of the contact search. Plain C.
 
    BoxTreeBuild() makes the tree and is the only function that allocates memory; BoxTreeDestroy() frees it.
-   BoxTreeNear() gives all boxes around a point, BoxTreeMeet() all that a box meets. BoxTreeClosest() is for a search in which each box that was seen may
-   make the rest superfluous, such as that for the closest facet. The tree keeps the queue of BoxTreeClosest(), so that
-   one such search runs in it at a time. */
+   BoxTreeNear() gives all boxes around a point, BoxTreeMeet() all that a box meets. BoxTreeClosest() is for a search
+   in which each box that was seen may make the rest superfluous, such as that for the closest facet. The tree keeps
+   the queue of BoxTreeClosest(), so that one such search runs in it at a time. */
 #pragma once
 
 typedef struct _n_Tree *BoxTree;

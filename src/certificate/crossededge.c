@@ -36,7 +36,8 @@ static Point EdgePoint(const Edge *edge, const Piece *piece, double s)
   Between(edge->end[0]->X, edge->end[1]->X, s, point.X);
   for (int state = 0; state < 2; state++) {
     Between(edge->end[0]->x[state], edge->end[1]->x[state], s, point.x[state]);
-    for (int d = 0; d < 3; d++) point.normal[state][d] = edge->end[0]->normal[state][d] + edge->end[1]->normal[state][d];
+    for (int d = 0; d < 3; d++)
+      point.normal[state][d] = edge->end[0]->normal[state][d] + edge->end[1]->normal[state][d];
   }
   return point;
 }

@@ -51,7 +51,8 @@ PetscErrorCode SideEdges(Side side)
   n = ListEdges(side, list);
   PetscCall(PetscMalloc1(n, &side->edges));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscBool shared = (PetscBool)(i + 1 < n && list[i].low == list[i + 1].low && list[i].high == list[i + 1].high);
+    const PetscBool shared =
+      (PetscBool)(i + 1 < n && list[i].low == list[i + 1].low && list[i].high == list[i + 1].high);
 
     side->edges[side->n_edges++] = (Edge){
       .end = {&side->points[list[i].low], &side->points[list[i].high]},

@@ -21,7 +21,8 @@ typedef struct {
   Place     X[3], x[2][3], normal[2]; /* vertices: reference, and at the two states; unit normals */
   Box       box;                      /* that it sweeps */
   long      tag[3], face;             /* gmsh's tags of nodes and face */
-  double    size, height, sagitta; /* of its face, of the element below it (0: none), PieceHeight() at the end (length) */
+  double    size, height;          /* of its face, of the element below it (0: none) (length) */
+  double    sagitta;               /* PieceHeight() at the end (length) */
   double    side;                  /* its longest side at the end (length) */
   int       order;                 /* of its face, which is about as many pieces wide */
   double    tip[3];                /* of its vertices */

@@ -1,8 +1,8 @@
 /* Where a point stands to the pieces of the other side, and what has happened to it in a step. Plain C on pieces.
 
    LookAt() gathers the pieces that a point or an edge may meet, PointStand() finds the closest one at one of the two
-   states, JudgeDepth() judges that. PointFinding() follows a point along the step, EdgeFinding() judges an edge, against
-   the faces and, if asked, the edges of the other side. Each keeps the worst of what was found. */
+   states, JudgeDepth() judges that. PointFinding() follows a point along the step, EdgeFinding() judges an edge,
+   against the faces and, if asked, the edges of the other side. Each keeps the worst of what was found. */
 #pragma once
 #include "base/boxtree.h"
 #include "pieces.h"
