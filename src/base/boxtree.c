@@ -247,6 +247,55 @@ int BoxTreeNear(BoxTree tree, const double *point, double radius, int max, int *
   return count;
 }
 
+/* Does a node's box meet a box? They do where they touch. */
+static int Meets(BoxTree tree, int node, const double *low, const double *high)
+{
+  const double *lower = tree->box + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
+
+  for (int k = 0; k < tree->dim; ++k)
+    if (lower[k] > high[k] || low[k] > upper[k]) return 0;
+  return 1;
+}
+
+/*@
+  BoxTreeMeet - finds all boxes that meet or touch a box
+
+  Not collective, plain C
+
+  Input Parameters:
++ tree  - the tree
+. lower - [dim] lower corner of the box (length)
+. upper - [dim] upper corner (length)
+- max   - room in found
+
+  Output Parameter:
+. found - numbers of the boxes, max of them, in the same order for the same boxes
+
+  Note:
+  Returns how many boxes there are, which may be more than max.
+@*/
+int BoxTreeMeet(BoxTree tree, const double *lower, const double *upper, int max, int *found)
+{
+  Range stack[MAX_DEPTH];
+  int   depth = 0, count = 0;
+
+  if (!tree->n) return 0;
+  stack[depth++] = (Range){0, 0, 0, tree->n};
+  while (depth) {
+    const Range range = stack[--depth];
+
+    if (!Meets(tree, range.node, lower, upper)) continue;
+    if (range.count == 1) {
+      if (count < max) found[count] = tree->order[range.first];
+      ++count;
+    } else {
+      stack[depth++] = Right(&range);
+      stack[depth++] = Left(&range);
+    }
+  }
+  return count;
+}
+
 /* Order of the queue: by distance, then subtrees before boxes, because a subtree may hold a box that is as near, then
    by number. */
 static int Nearer(BoxTree tree, const Range *a, const Range *b)

@@ -751,6 +751,25 @@ void LoadsRigidMotion(Loads loads, int body, PetscReal t, const PetscReal X[3], 
 }
 
 /*@
+  LoadsRigidTurn - gives a direction that is fixed to a rigid body at a load parameter.
+
+  Not collective
+
+  Input Parameters:
++ loads - the loads
+. body  - index into the scene's bodies
+. t     - load parameter
+- V     - the direction at t = 0
+
+  Output Parameter:
+. v - the direction at t
+@*/
+void LoadsRigidTurn(Loads loads, int body, PetscReal t, const PetscReal V[3], PetscReal v[3])
+{
+  MotionTurn(&loads->scene->bodies[body].motion, t, V, v);
+}
+
+/*@
   LoadsRigidTravel - returns the largest distance between the positions of a rigid body's nodes at two load parameters.
 
   Not collective

@@ -25,4 +25,5 @@ PetscBool        LoadsPrescribed(Loads, PetscInt local_dof);
 PetscBool        LoadsHeld(Loads, PetscInt local_dof);
 const PetscReal *LoadsSpringForce(Loads);
 void             LoadsRigidMotion(Loads, int body, PetscReal t, const PetscReal X[3], PetscReal x[3]);
+void             LoadsRigidTurn(Loads, int body, PetscReal t, const PetscReal V[3], PetscReal v[3]);
 PetscReal        LoadsRigidTravel(Loads, int body, PetscReal t0, PetscReal t1);

@@ -34,12 +34,6 @@ static double GapOf(const AnalyticTool *tool, const Place r, int state)
   return (tool->surface.inside ? -1 : 1) * (sqrt(Dot(r, r)) - tool->surface.radius);
 }
 
-/* What a point may stand in the tool. */
-static double Allowed(const AnalyticTool *tool, double size, int seen)
-{
-  return (seen ? STAND_SEEN : 1) * tool->penetration * size;
-}
-
 static void Note(FindingKind kind, double depth, double allowed, double over_h, const Point *point, Finding *worst)
 {
   const double most = fmax(over_h, worst->over_h);
@@ -70,7 +64,8 @@ static void Note(FindingKind kind, double depth, double allowed, double over_h, 
 @*/
 void AnalyticPointFinding(const AnalyticTool *tool, const Point *point, Finding *worst)
 {
-  const double own = Allowed(tool, point->size, point->seen), allowed = own + tool->overlap;
+  const double tip     = point->closed ? 0.5 * point->order * point->side * point->tip : 0;
+  const double allowed = tool->penetration * point->size + tool->overlap + tip;
   Place        r[2], closest, at;
   double       end, least;
 
@@ -105,7 +100,7 @@ void AnalyticPointFinding(const AnalyticTool *tool, const Point *point, Finding 
 void AnalyticPieceFinding(const AnalyticTool *tool, const Piece *piece, Finding *worst)
 {
   static const Place centre = {0, 0, 0};
-  const double       radius = tool->surface.radius, own = Allowed(tool, piece->size, piece->seen);
+  const double       radius = tool->surface.radius, own = tool->penetration * piece->size;
   Place              x[2][3], foot;
   Point              point = {.tag = piece->tag[0]};
   Crossing           crossing[SWEEP_MAX];

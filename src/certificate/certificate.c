@@ -9,6 +9,7 @@ typedef struct {
   int          pair;
   ContactSides of;
   Side         side[2]; /* the second is NULL where the master is analytic */
+  PieceList    near[2]; /* pieces of each side that come near this rank's part of the other one */
 } CertifiedPair;
 
 struct _n_Certificate {
@@ -19,6 +20,7 @@ struct _n_Certificate {
   int                n;
   CertifiedPair     *pairs;
   PetscReal         *pressed; /* of each node of the mesh, of one pair */
+  Look               look;
   CertificateFigures figures;
 };
 
@@ -83,55 +85,67 @@ PetscErrorCode CertificateDestroy(Certificate *certificate)
 
     if (pair->side[1] != pair->side[0]) PetscCall(SideDestroy(&pair->side[1]));
     PetscCall(SideDestroy(&pair->side[0]));
+    for (int s = 0; s < 2; s++) PetscCall(PetscFree(pair->near[s].pieces));
   }
+  LookDestroy(&(*certificate)->look);
   PetscCall(PetscFree2((*certificate)->pairs, (*certificate)->pressed));
   PetscCall(PetscFree(*certificate));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Judges points and edges of one side against the pieces of the other one. */
-static PetscErrorCode JudgeSide(Certificate certificate, const CertifiedPair *pair, int s, PetscReal overlap,
-                                Finding *worst)
+/* Judges points and edges of one side against the pieces of the other one. Crossings of edges are seen from the
+   slave's side alone. */
+static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, int s, PetscReal overlap, Finding *worst)
 {
-  const Side own = pair->side[s], other = pair->side[1 - s];
-  PetscReal  near[6], box[6], *sweep = near;
-  PieceList  list;
-  Look       look = {.penetration = certificate->scene->certificate.penetration,
-                     .overlap     = overlap,
-                     .walls       = pair->of.scene->listed};
+  const Side own  = pair->side[s];
+  PieceList *list = &pair->near[1 - s];
+  Look      *look = &certificate->look;
+  Box        near;
 
   PetscFunctionBeginUser;
   SideBox(own, near);
-  PetscCall(SideShare(other, near, s == 0 ? pair->of.n_images : 1, pair->of.images, &list));
-  if (list.n) {
-    PetscCheck(LookCreate(own->dim, &list, &look), PETSC_COMM_SELF, PETSC_ERR_MEM,
-               "No memory for %" PetscInt_FMT " faces", list.n);
-    for (int k = 0; k < 3; k++) {
-      box[k]     = PETSC_MAX_REAL;
-      box[3 + k] = PETSC_MIN_REAL;
-    }
-    for (PetscInt i = 0; i < list.n; i++) {
-      PetscReal of[6];
+  PetscCall(SideShare(pair->side[1 - s], near, pair->of.n_images, pair->of.images, list));
+  if (!list->n) PetscFunctionReturn(PETSC_SUCCESS);
+  look->penetration = certificate->scene->certificate.penetration;
+  look->overlap     = overlap;
+  look->walls       = pair->of.scene->listed;
+  for (int k = 0; k < 2; k++) {
+    const int side = k ? 1 - s : s;
 
-      PieceBox(&list.pieces[i], own->dim, of);
-      for (int k = 0; k < 3; k++) {
-        box[k]     = PetscMin(box[k], of[k]);
-        box[3 + k] = PetscMax(box[3 + k], of[3 + k]);
-      }
-    }
-    for (PetscInt i = 0; i < own->n_points; i++) PointFinding(&look, &own->points[i], worst);
-    for (PetscInt k = 0; k < own->n_pieces; k++) {
-      const Point *corner[3] = {NULL, NULL, NULL};
-
-      PieceBox(&own->pieces[k], own->dim, sweep);
-      if (!BoxesMeet(sweep, box, 0)) continue;
-      for (int a = 0; a < own->dim; a++) corner[a] = &own->points[own->corner[3 * k + a]];
-      PieceFindings(&look, &own->pieces[k], corner, worst);
-    }
-    LookDestroy(&look);
+    look->slave[k] = !pair->side[side]->surface->rigid && (side == 0 || pair->of.scene->listed);
   }
-  PetscCall(PetscFree(list.pieces));
+  PetscCheck(LookBegin(own->dim, list, look), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for %" PetscInt_FMT " faces",
+             list->n);
+  for (PetscInt i = 0; i < own->n_points; i++) PointFinding(look, &own->points[i], worst);
+  for (PetscInt i = 0; i < own->n_edges; i++) EdgeFinding(look, &own->edges[i], s == 0, worst);
+  LookEnd(look);
+  PetscCheck(!look->failed, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the faces that a node crosses");
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Can the two sides have met in the step? The same on all ranks. */
+static PetscBool SidesMeet(const CertifiedPair *pair, PetscReal overlap)
+{
+  const MPI_Comm comm = pair->side[0]->surface->mesh->comm;
+  PetscReal      reach = overlap;
+  Box            box[2], image;
+
+  for (int s = 0; s < 2; s++) {
+    SideBox(pair->side[s], box[s]);
+    BoxJoin(comm, box[s]);
+    reach = PetscMax(reach, pair->side[s]->surface->max_extent);
+  }
+  if (BoxesMeet(box[0], box[1], reach)) return PETSC_TRUE;
+  for (int m = 1; m < pair->of.n_images; m++) {
+    Place corner[2], to[2] = {{0}};
+
+    for (int k = 0; k < 2; k++)
+      for (int d = 0; d < 3; d++) corner[k][d] = box[1][3 * k + d];
+    for (int k = 0; k < 2; k++) SurfaceReflect(&pair->of.images[m], pair->side[1]->dim, corner[k], to[k]);
+    BoxAround(2, (const Place *)to, image);
+    if (!pair->of.images[m].left_out && BoxesMeet(box[0], image, reach)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
 }
 
 /* Judges the slave against an analytic tool. Its free components are those of the second state at last. */
@@ -156,30 +170,38 @@ static void JudgeAnalytic(Certificate certificate, const CertifiedPair *pair, co
   for (PetscInt k = 0; k < slave->n_pieces; k++) AnalyticPieceFinding(&tool, &slave->pieces[k], worst);
 }
 
-/* Judges one pair on this rank. */
-static PetscErrorCode JudgePair(Certificate certificate, const CertifiedPair *pair, const PetscReal *const u[2],
-                                const PetscReal t[2], Finding *worst)
+/* Finds where terms of a pair pressed, and the overlap that the scene leaves in it. */
+static PetscErrorCode FindPressed(Certificate certificate, const CertifiedPair *pair, PetscReal t, PetscReal *overlap)
 {
-  const int       partner = ContactPairPartner(certificate->contact, pair->pair);
-  const PetscBool own     = (PetscBool)(pair->side[1] == pair->side[0]);
-  PetscReal       overlap, other = 0;
+  const int partner = ContactPairPartner(certificate->contact, pair->pair);
+  PetscReal other   = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(certificate->pressed, certificate->mesh->n_nodes));
   PetscCall(ContactPairPressed(certificate->contact, pair->pair, certificate->pressed));
-  PetscCall(ContactPairOverlap(certificate->contact, pair->pair, t[1], &overlap));
-  if (partner >= 0 && !own) {
+  PetscCall(ContactPairOverlap(certificate->contact, pair->pair, t, overlap));
+  if (partner >= 0 && pair->side[1] != pair->side[0]) {
     PetscCall(ContactPairPressed(certificate->contact, partner, certificate->pressed));
-    PetscCall(ContactPairOverlap(certificate->contact, partner, t[1], &other));
+    PetscCall(ContactPairOverlap(certificate->contact, partner, t, &other));
   }
-  overlap = PetscMax(overlap, other);
-  PetscCall(SideMove(pair->side[0], u, t, certificate->pressed));
-  if (!pair->side[1]) {
-    JudgeAnalytic(certificate, pair, u, t, overlap, worst);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (!own) PetscCall(SideMove(pair->side[1], u, t, certificate->pressed));
-  for (int s = 0; s < (own ? 1 : 2); s++) PetscCall(JudgeSide(certificate, pair, s, overlap, worst));
+  *overlap = PetscMax(*overlap, other);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Judges one pair on this rank. */
+static PetscErrorCode JudgePair(Certificate certificate, CertifiedPair *pair, const PetscReal *const u[2],
+                                const PetscReal t[2], Finding *worst)
+{
+  const int sides = pair->side[1] && pair->side[1] != pair->side[0] ? 2 : 1;
+  PetscReal overlap;
+
+  PetscFunctionBeginUser;
+  PetscCall(FindPressed(certificate, pair, t[1], &overlap));
+  for (int s = 0; s < sides; s++) PetscCall(SideMove(pair->side[s], u, t));
+  if (pair->side[1] && !SidesMeet(pair, overlap)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int s = 0; s < sides; s++) PetscCall(SideMeasure(pair->side[s], certificate->pressed));
+  if (!pair->side[1]) JudgeAnalytic(certificate, pair, u, t, overlap, worst);
+  for (int s = 0; s < sides && pair->side[1]; s++) PetscCall(JudgeSide(certificate, pair, s, overlap, worst));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

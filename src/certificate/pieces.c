@@ -39,11 +39,13 @@ static PetscInt PointOf(Side side, PetscInt *number, PetscInt node)
 /* Sums values of the points over the pieces of all ranks; n components for each. */
 static PetscErrorCode SumPoints(Side side, int n, PetscReal *values)
 {
-  const Mesh mesh = side->surface->mesh;
-  PetscReal *all;
+  const Mesh  mesh = side->surface->mesh;
+  PetscReal  *all;
+  PetscMPIInt ranks;
 
   PetscFunctionBeginUser;
-  if (side->surface->rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Comm_size(mesh->comm, &ranks));
+  if (ranks == 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(n * mesh->n_nodes, &all));
   for (PetscInt i = 0; i < side->n_points; i++)
     for (int k = 0; k < n; k++) all[n * side->node[i] + k] = values[n * i + k];
@@ -69,6 +71,8 @@ static void DivideFace(Side side, PetscInt f, PetscInt *number)
     *piece = (Piece){.face   = group ? group->face_tag[f] : surface->rigid->face_tag[f],
                      .size   = surface->face_size[f],
                      .height = surface->face_height[f],
+                     .order  = surface->order,
+                     .marks  = surface->face_marks ? surface->face_marks[f] : 0,
                      .body   = group ? surface->mesh->cell_body[group->face_cell[f]] : surface->body};
     for (int a = 0; a < side->dim; a++) {
       const PetscInt local = face->nodes[node[k][a]];
@@ -80,36 +84,109 @@ static void DivideFace(Side side, PetscInt f, PetscInt *number)
   }
 }
 
+/* Finds sums over the pieces around the points of a deformable body: sizes, heights, number. */
+static PetscErrorCode MeasureBody(Side side, PetscReal *sum)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < side->n_pieces; k++) {
+    for (int a = 0; a < side->dim; a++) {
+      PetscReal *at = &sum[3 * side->corner[3 * k + a]];
+
+      at[0] += side->pieces[k].size;
+      at[1] += side->pieces[k].height;
+      at[2] += 1;
+    }
+  }
+  PetscCall(SumPoints(side, 3, sum));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the same of a tool, and the directions of its surface. All its faces are on each rank, its pieces are not.
+   number: of the points of all nodes, -1 for nodes without one. */
+static void MeasureTool(Side side, const PetscInt *number, PetscReal *sum)
+{
+  const ContactSurface surface = side->surface;
+
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    const Facet *face = &surface->faces[f];
+    int          node[PIECE_MAX][3];
+    const int    n = PieceDivide(face->type, node);
+
+    for (int k = 0; k < n; k++) {
+      Place X[3] = {{0}}, normal;
+
+      for (int a = 0; a < side->dim; a++)
+        for (int d = 0; d < side->dim; d++)
+          X[a][d] = surface->rigid->coords[face->nodes[node[k][a]] * side->dim + d];
+      PieceNormal(side->dim, (const Place *)X, normal);
+      for (int a = 0; a < side->dim; a++) {
+        const PetscInt i = number[face->nodes[node[k][a]]];
+
+        if (i < 0) continue;
+        sum[3 * i] += surface->face_size[f];
+        sum[3 * i + 2] += 1;
+        for (int d = 0; d < 3; d++) side->points[i].turns[d] += normal[d];
+      }
+    }
+  }
+}
+
 /* Finds means of sizes and heights around the points, which do not change. */
-static PetscErrorCode MeasurePoints(Side side)
+static PetscErrorCode MeasurePoints(Side side, const PetscInt *number)
 {
   PetscReal *sum;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(3 * side->n_points, &sum));
-  for (PetscInt k = 0; k < side->n_pieces; k++) {
-    for (int a = 0; a < side->dim; a++) {
-      const PetscInt i = side->corner[3 * k + a];
-
-      sum[3 * i] += side->pieces[k].size;
-      sum[3 * i + 1] += side->pieces[k].height;
-      sum[3 * i + 2] += 1;
-      side->points[i].tag  = side->pieces[k].tag[a];
-      side->points[i].body = side->pieces[k].body;
-    }
-  }
-  PetscCall(SumPoints(side, 3, sum));
+  if (side->surface->rigid)
+    MeasureTool(side, number, sum);
+  else
+    PetscCall(MeasureBody(side, sum));
   for (PetscInt i = 0; i < side->n_points; i++) {
     side->points[i].size   = sum[3 * i] / sum[3 * i + 2];
-    side->points[i].weight = sum[3 * i];
+    side->points[i].number = sum[3 * i + 2];
+    side->points[i].order  = side->surface->order;
+    side->points[i].side   = side->points[i].size / side->surface->order; /* a tool keeps this */
     side->points[i].height = sum[3 * i + 1] / sum[3 * i + 2];
   }
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gives the points their tags and bodies, and the marks of the faces around them on all ranks. */
+static PetscErrorCode NamePoints(Side side)
+{
+  const MPI_Comm comm = side->surface->mesh->comm;
+  FaceMarks      used = 0;
+  PetscReal     *has;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < side->n_pieces; k++) {
+    for (int a = 0; a < side->dim; a++) {
+      Point *point = &side->points[side->corner[3 * k + a]];
+
+      point->tag  = side->pieces[k].tag[a];
+      point->body = side->pieces[k].body;
+      point->marks |= side->pieces[k].marks;
+    }
+    used |= side->pieces[k].marks;
+  }
+  if (side->surface->rigid) PetscFunctionReturn(PETSC_SUCCESS); /* all its faces have the same marks */
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &used, 1, MPI_UINT64_T, MPI_BOR, comm));
+  PetscCall(PetscMalloc1(side->n_points, &has));
+  for (FaceMarks mark = 1; mark && mark <= used; mark <<= 1) {
+    if (!(used & mark)) continue;
+    for (PetscInt i = 0; i < side->n_points; i++) has[i] = (side->points[i].marks & mark) != 0;
+    PetscCall(SumPoints(side, 1, has));
+    for (PetscInt i = 0; i < side->n_points; i++)
+      if (has[i] > 0) side->points[i].marks |= mark;
+  }
+  PetscCall(PetscFree(has));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  SideCreate - finds the pieces and points of a surface on this rank.
+  SideCreate - finds the pieces, points and edges of a surface on this rank.
 
   Collective
 
@@ -137,9 +214,11 @@ PetscErrorCode SideCreate(ContactSurface surface, Loads loads, Side *out)
   PetscCall(PetscMalloc1((end - first) * PIECE_MAX, &side->pieces));
   PetscCall(PetscCalloc1((end - first) * PIECE_MAX * 3, &side->corner));
   for (PetscInt f = first; f < end; f++) DivideFace(side, f, number);
-  PetscCall(PetscFree(number));
   PetscCall(PetscCalloc1(side->n_points, &side->points));
-  PetscCall(MeasurePoints(side));
+  PetscCall(MeasurePoints(side, number));
+  PetscCall(PetscFree(number));
+  PetscCall(NamePoints(side));
+  PetscCall(SideEdges(side));
   *out = side;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -159,6 +238,7 @@ PetscErrorCode SideDestroy(Side *side)
   PetscCall(PetscFree((*side)->node));
   PetscCall(PetscFree((*side)->points));
   PetscCall(PetscFree((*side)->corner));
+  PetscCall(PetscFree((*side)->edges));
   PetscCall(PetscFree((*side)->pieces));
   PetscCall(PetscFree(*side));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -182,41 +262,50 @@ static void PlacePoints(Side side, int state, const PetscReal *u, PetscReal t)
   }
 }
 
-/* Sums the normals of pieces at the points, with their areas, of both states. */
-static PetscErrorCode PointNormals(Side side)
+/* Sums over the pieces around each point of a deformable body: normals of both states, longest sides. */
+enum { AROUND_NORMALS = 6, AROUND };
+
+/* Finds the directions of a deformable surface at the points, of both states, and the mean side around them. */
+static PetscErrorCode PointsAround(Side side)
 {
-  PetscReal *normal;
+  PetscReal *sum;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(6 * side->n_points, &normal));
+  if (side->surface->rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(AROUND * side->n_points, &sum));
   for (PetscInt k = 0; k < side->n_pieces; k++) {
-    for (int state = 0; state < 2; state++) {
-      double own[3];
+    const Piece *piece = &side->pieces[k];
 
-      PieceNormal(side->dim, (const Place *)side->pieces[k].x[state], own);
-      for (int a = 0; a < side->dim; a++)
-        for (int d = 0; d < 3; d++)
-          normal[6 * side->corner[3 * k + a] + 3 * state + d] += own[d] * side->pieces[k].size;
+    for (int a = 0; a < side->dim; a++) {
+      PetscReal *at = &sum[AROUND * side->corner[3 * k + a]];
+
+      for (int i = 0; i < AROUND_NORMALS; i++) at[i] += piece->normal[i / 3][i % 3];
+      at[AROUND_NORMALS] += piece->side;
     }
   }
-  PetscCall(SumPoints(side, 6, normal));
-  for (PetscInt i = 0; i < side->n_points; i++) memcpy(side->points[i].normal, &normal[6 * i], 6 * sizeof(PetscReal));
-  PetscCall(PetscFree(normal));
+  PetscCall(SumPoints(side, AROUND, sum));
+  for (PetscInt i = 0; i < side->n_points; i++) {
+    memcpy(side->points[i].normal, &sum[AROUND * i], AROUND_NORMALS * sizeof(PetscReal));
+    side->points[i].side = sum[AROUND * i + AROUND_NORMALS] / side->points[i].number;
+  }
+  PetscCall(PetscFree(sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks points and pieces where contact presses or an edge is sharp: there the normals around cancel. */
-static void MarkSeen(Side side)
+/* Finds how sharp the surface is at the points at the end. The normals of two flanks with the turn phi add up to
+   2 cos(phi/2). */
+static void FindTips(Side side)
 {
   for (PetscInt i = 0; i < side->n_points; i++) {
-    Point        *point = &side->points[i];
-    const double *n     = point->normal[1];
+    Point        *point  = &side->points[i];
+    const double *n      = point->normal[1];
+    const double  cosine = fmin(1, sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / point->number);
 
-    point->seen = point->closed || sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) < PIECE_COSINE * point->weight;
+    point->tip = fmin(PIECE_TIP, sqrt(1 - cosine * cosine) / fmax(cosine, 0.5));
   }
   for (PetscInt k = 0; k < side->n_pieces; k++) {
-    side->pieces[k].seen = 0;
-    for (int a = 0; a < side->dim; a++) side->pieces[k].seen |= side->points[side->corner[3 * k + a]].seen;
+    for (int a = 0; a < side->dim; a++)
+      side->pieces[k].tip[a] = side->points[side->corner[3 * k + a]].tip;
   }
 }
 
@@ -226,81 +315,66 @@ static void MarkSeen(Side side)
   Collective
 
   Input Parameters:
-+ side   - the side
-. u      - local displacements at both ends, of all nodes of the mesh (length)
-. t      - load parameters of both ends
-- closed - of each node of the mesh: above 0 where a term pressed at one of the ends
++ side - the side
+. u    - local displacements at both ends, of all nodes of the mesh (length)
+- t    - load parameters of both ends
 
   Note:
   Tools are left where they are at the second end.
 @*/
-PetscErrorCode SideMove(Side side, const PetscReal *const u[2], const PetscReal t[2], const PetscReal *closed)
+PetscErrorCode SideMove(Side side, const PetscReal *const u[2], const PetscReal t[2])
 {
   PetscFunctionBeginUser;
   for (int state = 0; state < 2; state++) {
     if (side->surface->rigid) ToolsPlace(side->surface->mesh, u[state], t[state]);
     PlacePoints(side, state, u[state], t[state]);
+    for (PetscInt i = 0; i < side->n_points && side->surface->rigid; i++)
+      LoadsRigidTurn(side->loads, side->surface->body, t[state], side->points[i].turns, side->points[i].normal[state]);
   }
-  for (PetscInt i = 0; i < side->n_points; i++)
-    side->points[i].closed = !side->surface->rigid && closed[side->node[i]] > 0;
   for (PetscInt k = 0; k < side->n_pieces; k++) {
     Piece *piece = &side->pieces[k];
 
-    piece->closed = 0;
     for (int a = 0; a < side->dim; a++) {
       const Point *point = &side->points[side->corner[3 * k + a]];
 
       memcpy(piece->X[a], point->X, sizeof(Place));
       for (int state = 0; state < 2; state++) memcpy(piece->x[state][a], point->x[state], sizeof(Place));
-      piece->closed |= point->closed;
     }
-  }
-  PetscCall(PointNormals(side));
-  MarkSeen(side);
-  for (PetscInt k = 0; k < side->n_pieces; k++) {
-    Place normal[3];
-
-    for (int a = 0; a < side->dim; a++)
-      memcpy(normal[a], side->points[side->corner[3 * k + a]].normal[1], sizeof(Place));
-    side->pieces[k].sagitta =
-      PieceHeight(side->dim, (const Place *)side->pieces[k].x[1], (const Place *)normal, PIECE_COSINE);
+    PiecePlace(piece, side->dim);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void BoxEmpty(PetscReal box[6])
-{
-  for (int d = 0; d < 3; d++) {
-    box[d]     = PETSC_MAX_REAL;
-    box[3 + d] = PETSC_MIN_REAL;
-  }
-}
-
-static void BoxAdd(PetscReal box[6], const Place x)
-{
-  for (int d = 0; d < 3; d++) {
-    box[d]     = PetscMin(box[d], x[d]);
-    box[3 + d] = PetscMax(box[3 + d], x[d]);
-  }
-}
-
 /*@
-  PieceBox - computes the box that a piece sweeps.
+  SideMeasure - finds the directions of the surface, how far it is from a smooth one, and where contact pressed.
 
-  Not collective
+  Collective
 
   Input Parameters:
-+ piece - the piece
-- dim   - 2 or 3
-
-  Output Parameter:
-. box - lower, then upper corner
++ side   - after SideMove()
+- closed - of each node of the mesh: above 0 where a term pressed at one of the ends
 @*/
-void PieceBox(const Piece *piece, int dim, PetscReal box[6])
+PetscErrorCode SideMeasure(Side side, const PetscReal *closed)
 {
-  BoxEmpty(box);
-  for (int state = 0; state < 2; state++)
-    for (int a = 0; a < dim; a++) BoxAdd(box, piece->x[state][a]);
+  PetscFunctionBeginUser;
+  PetscCall(PointsAround(side));
+  for (PetscInt i = 0; i < side->n_points; i++)
+    side->points[i].closed = !side->surface->rigid && closed[side->node[i]] > 0;
+  FindTips(side);
+  for (PetscInt k = 0; k < side->n_pieces; k++) {
+    Piece *piece = &side->pieces[k];
+    Place  normal[3];
+
+    piece->closed = 0;
+    for (int a = 0; a < side->dim; a++) {
+      const Point *point = &side->points[side->corner[3 * k + a]];
+
+      piece->closed |= point->closed;
+      memcpy(normal[a], point->normal[1], sizeof(Place));
+    }
+    piece->sagitta = PieceHeight(side->dim, (const Place *)piece->x[1], (const Place *)normal, PIECE_COSINE);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -312,153 +386,17 @@ void PieceBox(const Piece *piece, int dim, PetscReal box[6])
 . side - after SideMove()
 
   Output Parameter:
-. box - lower, then upper corner; the lower one is above the upper one where there are no points
+. box - the lower corner is above the upper one where there are no points
 @*/
-void SideBox(Side side, PetscReal box[6])
+void SideBox(Side side, Box box)
 {
-  BoxEmpty(box);
-  for (PetscInt i = 0; i < side->n_points; i++)
-    for (int state = 0; state < 2; state++) BoxAdd(box, side->points[i].x[state]);
-}
+  BoxAround(0, NULL, box);
+  for (PetscInt k = 0; k < side->n_pieces; k++) {
+    const Piece *piece = &side->pieces[k];
 
-/*@
-  BoxJoin - joins the boxes of all ranks.
-
-  Collective
-
-  Input Parameters:
-+ comm - the ranks
-- box  - of this rank; the joined box on return
-@*/
-void BoxJoin(MPI_Comm comm, PetscReal box[6])
-{
-  (void)MPI_Allreduce(MPI_IN_PLACE, box, 3, MPIU_REAL, MPI_MIN, comm);
-  (void)MPI_Allreduce(MPI_IN_PLACE, &box[3], 3, MPIU_REAL, MPI_MAX, comm);
-}
-
-/*@
-  BoxesMeet - tells whether two boxes are within a distance of each other.
-
-  Not collective
-
-  Input Parameters:
-+ a        - a box
-. b        - another one
-- distance - the distance (length)
-@*/
-PetscBool BoxesMeet(const PetscReal a[6], const PetscReal b[6], PetscReal distance)
-{
-  for (int d = 0; d < 3; d++)
-    if (a[d] > b[3 + d] + distance || b[d] > a[3 + d] + distance) return PETSC_FALSE;
-  return PETSC_TRUE;
-}
-
-/* The mirror image of a piece. */
-static Piece ImageOf(const Piece *piece, const SurfaceImage *image, int dim)
-{
-  Piece out = *piece;
-
-  for (int a = 0; a < dim; a++) {
-    const int b = image->reverses && a < 2 ? 1 - a : a;
-
-    out.tag[a] = piece->tag[b];
-    SurfaceReflect(image, dim, piece->X[b], out.X[a]);
-    for (int state = 0; state < 2; state++) SurfaceReflect(image, dim, piece->x[state][b], out.x[state][a]);
-  }
-  return out;
-}
-
-/* Lists the pieces, with images, that come near a box. */
-static PetscErrorCode ListNear(Side side, const PetscReal near[6], int n_images, const SurfaceImage *images,
-                               PieceList *list)
-{
-  PetscFunctionBeginUser;
-  list->n = 0;
-  PetscCall(PetscMalloc1(side->n_pieces * PetscMax(n_images, 1), &list->pieces));
-  for (int m = 0; m < PetscMax(n_images, 1); m++) {
-    if (m && images[m].left_out) continue;
-    for (PetscInt k = 0; k < side->n_pieces; k++) {
-      PetscReal box[6];
-      Piece    *piece = &list->pieces[list->n];
-
-      *piece = m ? ImageOf(&side->pieces[k], &images[m], side->dim) : side->pieces[k];
-      PieceBox(piece, side->dim, box);
-      list->n += BoxesMeet(box, near, piece->size);
+    for (int d = 0; d < 3; d++) {
+      box[d]     = PetscMin(box[d], piece->box[d]);
+      box[3 + d] = PetscMax(box[3 + d], piece->box[3 + d]);
     }
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Sends pieces to the ranks whose boxes they meet. counts, starts: bytes. */
-static PetscErrorCode SendPieces(MPI_Comm comm, int ranks, const PetscReal *boxes, int dim, const PieceList *mine,
-                                 PieceList *list)
-{
-  PetscMPIInt *count, *start, *arrive, *from;
-  PetscInt     n = 0;
-  Piece       *send;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(ranks, &count, ranks + 1, &start, ranks, &arrive, ranks + 1, &from));
-  for (int pass = 0; pass < 2; pass++) {
-    if (pass) PetscCall(PetscMalloc1(n, &send));
-    n = 0;
-    for (int r = 0; r < ranks; r++) {
-      for (PetscInt k = 0; k < mine->n; k++) {
-        PetscReal box[6];
-
-        PieceBox(&mine->pieces[k], dim, box);
-        if (!BoxesMeet(box, &boxes[6 * r], mine->pieces[k].size)) continue;
-        if (pass) send[n] = mine->pieces[k];
-        n++;
-      }
-      start[r + 1] = (PetscMPIInt)(n * (PetscInt)sizeof(Piece));
-      count[r]     = start[r + 1] - start[r];
-    }
-  }
-  PetscCallMPI(MPI_Alltoall(count, 1, MPI_INT, arrive, 1, MPI_INT, comm));
-  for (int r = 0; r < ranks; r++) from[r + 1] = from[r] + arrive[r];
-  list->n = from[ranks] / (PetscInt)sizeof(Piece);
-  PetscCall(PetscMalloc1(list->n, &list->pieces));
-  PetscCallMPI(MPI_Alltoallv(send, count, start, MPI_BYTE, list->pieces, arrive, from, MPI_BYTE, comm));
-  PetscCall(PetscFree(send));
-  PetscCall(PetscFree4(count, start, arrive, from));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  SideShare - collects the pieces of a side that come near this rank's points of the other one.
-
-  Collective
-
-  Input Parameters:
-+ side     - after SideMove()
-. near     - box of the other side's points on this rank
-. n_images - mirror images that count, the identity included
-- images   - the images
-
-  Output Parameter:
-. list - free its pieces with PetscFree()
-@*/
-PetscErrorCode SideShare(Side side, const PetscReal near[6], int n_images, const SurfaceImage *images, PieceList *list)
-{
-  const MPI_Comm comm = side->surface->mesh->comm;
-  PetscReal     *boxes, all[6];
-  PieceList      mine;
-  PetscMPIInt    ranks;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  for (int k = 0; k < 6; k++) all[k] = near[k];
-  BoxJoin(comm, all);
-  PetscCall(ListNear(side, all, n_images, images, &mine));
-  if (ranks == 1) {
-    *list = mine;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetscMalloc1(6 * ranks, &boxes));
-  PetscCallMPI(MPI_Allgather(near, 6, MPIU_REAL, boxes, 6, MPIU_REAL, comm));
-  PetscCall(SendPieces(comm, ranks, boxes, side->dim, &mine, list));
-  PetscCall(PetscFree(boxes));
-  PetscCall(PetscFree(mine.pieces));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

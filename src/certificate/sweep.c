@@ -231,9 +231,10 @@ int PieceClosest(int dim, const Place x[], const Place p, Place closest)
   Not collective
 
   Input Parameters:
-+ dim  - 2 or 3
-. x    - vertices of the piece
-- edge - the ends of the edge
++ dim    - 2 or 3
+. x      - vertices of the piece
+. normal - its normal
+- edge   - the ends of the edge
 
   Output Parameters:
 + at     - place on the edge, 0 to 1
@@ -242,11 +243,13 @@ int PieceClosest(int dim, const Place x[], const Place p, Place closest)
   Note:
   It returns 0 where it does not.
 @*/
-int PiecePierce(int dim, const Place x[], const Place edge[2], double *at, int *inward)
+int PiecePierce(int dim, const Place x[], const double normal[3], const Place edge[2], double *at, int *inward)
 {
-  const double from = PieceFront(dim, x, edge[0]), to = PieceFront(dim, x, edge[1]);
-  double       p[3];
+  double p[3], r[2][3], from, to;
 
+  for (int i = 0; i < 2; i++) Minus(edge[i], x[0], r[i]);
+  from = Dot(normal, r[0]);
+  to   = Dot(normal, r[1]);
   if ((from >= 0) == (to >= 0)) return 0;
   *at     = from / (from - to);
   *inward = from >= 0;

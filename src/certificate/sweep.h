@@ -38,6 +38,6 @@ void   PieceNormal(int dim, const Place x[], double normal[3]);
 double PieceFront(int dim, const Place x[], const Place p);
 double PieceHeight(int dim, const Place x[], const Place normal[], double cosine);
 int    PieceClosest(int dim, const Place x[], const Place p, Place closest);
-int    PiecePierce(int dim, const Place x[], const Place edge[2], double *at, int *inward);
+int    PiecePierce(int dim, const Place x[], const double normal[3], const Place edge[2], double *at, int *inward);
 int    SweepPoint(int dim, const Place start[], const Place end[], const Place from, const Place to, Crossing[]);
 int    SweepEdges(const Place a0[2], const Place a1[2], const Place b0[2], const Place b1[2], EdgeEnd *);

@@ -24,8 +24,17 @@ void ContactPairSides(Contact contact, int p, ContactSides *sides)
                           .images   = pair->images};
 }
 
+/* Does a term see the master in a state? A gap at a node says nothing of the faces around it; a mean over these does,
+   where it is open as well. */
+static PetscBool SeesMaster(const ContactPair *pair, const ContactState *state, PetscInt c)
+{
+  if (state->status[c] == CONTACT_CLOSED) return PETSC_TRUE;
+  return (PetscBool)(pair->scene->formulation == CONTACT_SURFACE_TO_SURFACE && isfinite((double)state->gap[c]));
+}
+
 /*@
-  ContactPairPressed - marks the slave nodes of a pair that are closed, now or in the accepted state.
+  ContactPairPressed - marks the slave nodes of a pair that are closed, now or in the accepted state. In surface to
+  surface contact nodes with an open mean gap count, too.
 
   Collective
 
@@ -45,8 +54,7 @@ PetscErrorCode ContactPairPressed(Contact contact, int p, PetscReal *pressed)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_nodes, &mine));
   for (PetscInt c = 0; c < pair->n; c++) {
-    if (pair->now.status[c] != CONTACT_CLOSED && pair->accepted.status[c] != CONTACT_CLOSED) continue;
-    mine[pair->node[c]] = 1;
+    if (SeesMaster(pair, &pair->now, c) || SeesMaster(pair, &pair->accepted, c)) mine[pair->node[c]] = 1;
   }
   PetscCall(MeshSumNodes(mesh, 1, mine));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) pressed[n] += mine[n];

@@ -89,6 +89,10 @@ PINCHED = mesh(n_arc=6, n_len=2)
 STROKE = ("plate_force",)
 # A sheet that its ends hold.
 JUDGED = "output.certificate=true"
+NEEDLE = mesh(**{"from": 0.6, "to": 0.64}, n_lower=4, n_upper=2, bulge=0, gap=0.02) + \
+    ["loads.0.ux=0", "loads.0.uy=-0.2", "stepping.initial=1", JUDGED]
+SPIKE = mesh(**{"from": 0.44, "to": 0.56}, n_lower=3, n_upper=8, bulge=0, wedge=1) + \
+    ["loads.0.ux=0", "loads.0.uy=-0.1", "stepping.initial=0.5", JUDGED]
 HELD_SHEET = ["supports=[{surface: lower_x_low, ux: 0, uy: 0}, {surface: lower_x_high, ux: 0, uy: 0}]", "loads.0.ux=0"]
 PSI = 0.45359237 * 9.80665 / 0.0254**2 / 1e6  # MPa
 INCH = 25.4  # mm
@@ -268,11 +272,32 @@ CASES = [
          mesh(**{"from": 0.3, "to": 0.7}, wall=0.02, n_height=1, gap=0.2, n_upper=8) +
          [*HELD_SHEET, "loads.0.uy=-0.3", "stepping.initial=1", JUDGED], Certified()),
     Case("certificate", "needle", "a tool a sixth as wide as a face, in one step", PUNCH,
-         mesh(**{"from": 0.6, "to": 0.64}, n_lower=4, n_upper=2, bulge=0, gap=0.02) +
-         ["loads.0.ux=0", "loads.0.uy=-0.2", "stepping.initial=1", JUDGED], Certified()),
+         NEEDLE + ["contact.0.penalty.scale=100"], Certified()),
+    Case("certificate", "needle, soft penalty", "it goes into the face by more than a tenth of its own faces", PUNCH,
+         NEEDLE, Stops("cannot be certified", r"contact 'joint': node 1[123] \(0\.6.* stands .* deep")),
     Case("certificate", "spike", "a wedge between the nodes of coarse faces", PUNCH,
-         mesh(**{"from": 0.44, "to": 0.56}, n_lower=3, n_upper=8, bulge=0, wedge=1) +
-         ["loads.0.ux=0", "loads.0.uy=-0.1", "stepping.initial=0.5", JUDGED], Certified()),
+         SPIKE + ["contact.0.penalty.scale=100"], Certified()),
+    Case("certificate", "spike, soft penalty", "its tip goes into the face by more than half of its own faces", PUNCH,
+         SPIKE, Stops("cannot be certified", r"contact 'joint': .* \(0\.5, 0, 0\) stands .* deep")),
+    Case("certificate", "past a corner", "a tool slides half over the end of the other block, in one step", PUNCH,
+         mesh(**{"from": 0.6, "to": 0.9}, n_lower=12, n_upper=4, bulge=0, gap=0.01) +
+         ["loads.0.ux=0.25", "loads.0.uy=-0.02", "stepping.initial=1", JUDGED], Certified()),
+    Case("certificate", "coarse master", "faces twelve times as long as the slave's", PUNCH,
+         mesh(n_lower=2, n_upper=20) + ["loads.0.uy=-0.1", "stepping.initial=1", JUDGED],
+         (Certified(), Certified(), Stops("cannot be certified", r"node 2 \(0\.5, 0, 0\) stands"), Certified())),
+    Case("certificate", "coarse slave", "the master's nodes between the slave's go into it", PUNCH,
+         mesh(n_lower=24, n_upper=3, bulge=0) + ["loads.0.uy=-0.05", "stepping.initial=1", JUDGED],
+         (Certified(), Certified(), Stops("cannot be certified", r"node \d+ \(.* stands"), Certified())),
+    Case("certificate", "needle in space", "a rod a fifth as wide as a face, in one step", PUNCH,
+         FLAT_SOLID + mesh(**{"from": 0.6, "to": 0.65}, n_lower=4, n_upper=1, n_height=2, gap=0.02) +
+         ["loads.0.uy=-0.1", "stepping.initial=1", "contact.0.penalty.scale=100", JUDGED], Certified()),
+    Case("certificate", "edge over edge", "blocks overlap by a quarter: their edges cross, no corner is near", PUNCH,
+         FLAT_SOLID + mesh(**{"from": 0.52, "to": 1.5}, n_lower=4, n_upper=3, n_height=2, gap=0.02) +
+         ["loads.0.uy=-0.05", "stepping.initial=1", JUDGED], Certified()),
+    Case("certificate", "fast thin wall in space", "crossed by five times its thickness in one step", PUNCH,
+         FLAT_SOLID + mesh(**{"from": 0.3, "to": 0.7}, wall=0.04, n_lower=6, n_upper=3, n_height=1, gap=0.1) +
+         ["supports=[{surface: lower_x_low, ux: 0, uy: 0, uz: 0}, {surface: lower_x_high, ux: 0, uy: 0, uz: 0}]",
+          "loads.0.uy=-0.3", "stepping.initial=1", JUDGED], Certified()),
     Case("certificate", "two sheets", "a tenth of their thickness apart, pushed by three times that in one step", PUNCH,
          mesh(**{"from": 0.2, "to": 0.8}, wall=0.05, n_height=1, height=0.055, gap=0.005, bulge=0) +
          [*HELD_SHEET, "loads.0.uy=-0.15", "stepping.initial=1", JUDGED], Certified()),

@@ -53,6 +53,32 @@ static void CheckNear(int dim, int n, BoxTree tree, const double *point, double 
   assert_int_equal(there, count);
 }
 
+static void CheckMeet(int dim, int n, BoxTree tree)
+{
+  static int found[MAX_BOXES];
+  static char has[MAX_BOXES];
+  double      low[3], high[3];
+  int         count, few;
+
+  for (int k = 0; k < 3; ++k) {
+    low[k]  = Random(-0.5, 1.5);
+    high[k] = low[k] + Random(0, 0.5);
+  }
+  count = BoxTreeMeet(tree, low, high, MAX_BOXES, found);
+  for (int i = 0; i < n; ++i) has[i] = 0;
+  for (int i = 0; i < count; ++i) has[found[i]] = 1;
+  for (int i = 0; i < n; ++i) {
+    int meets = 1;
+
+    for (int k = 0; k < dim; ++k) meets &= lower[i * dim + k] <= high[k] && upper[i * dim + k] >= low[k];
+    assert_int_equal(has[i], meets);
+    count -= meets;
+  }
+  assert_int_equal(count, 0);
+  few = BoxTreeMeet(tree, low, high, 2, found);
+  assert_true(few <= n);
+}
+
 static void TestNear(void **state)
 {
   static const int sizes[] = {0, 1, 2, 3, 7, 100, 1000};
@@ -71,6 +97,7 @@ static void TestNear(void **state)
         CheckNear(dim, sizes[s], tree, point, Random(0, 0.5), 5);
         CheckNear(dim, sizes[s], tree, point, INFINITY, 3);
         CheckNear(dim, sizes[s], tree, point, 0, 3);
+        CheckMeet(dim, sizes[s], tree);
       }
       BoxTreeDestroy(&tree);
       assert_null(tree);

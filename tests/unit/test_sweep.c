@@ -8,7 +8,7 @@
 #include <cmocka.h>
 #include "analytic.h"
 
-enum { MOST = 64 };
+enum { MOST = 512 };
 
 /* One side of a planted state: faces of a plate. */
 typedef struct {
@@ -22,7 +22,7 @@ static void AddPiece(Plate *plate, const double X[3][3], const double start[3], 
 {
   Piece *piece = &plate->pieces[plate->n++];
 
-  *piece = (Piece){.face = 100 + plate->n, .size = 1, .height = 1, .body = 1};
+  *piece = (Piece){.face = 100 + plate->n, .size = 1, .height = 1, .order = 1, .body = 1};
   for (int a = 0; a < plate->dim; a++) {
     piece->tag[a] = tag + a;
     for (int d = 0; d < 3; d++) {
@@ -31,6 +31,7 @@ static void AddPiece(Plate *plate, const double X[3][3], const double start[3], 
       piece->x[1][a][d] = X[a][d] + end[d];
     }
   }
+  PiecePlace(piece, plate->dim);
 }
 
 /* A plate in the plane whose top is y = 0 and whose bottom is y = -thickness; four faces of length 1 on each side. */
@@ -71,7 +72,7 @@ static const double still[3] = {0, 0, 0};
 /* A point of another body that looks along `normal`. */
 static Point MakePoint(const double from[3], const double to[3], const double normal[3])
 {
-  Point point = {.tag = 7, .size = 1, .height = 1, .body = 2, .weight = 1};
+  Point point = {.tag = 7, .size = 1, .height = 1, .body = 2, .number = 1, .side = 1, .order = 1};
 
   memcpy(point.X, from, sizeof(Place));
   memcpy(point.x[0], from, sizeof(Place));
@@ -82,11 +83,11 @@ static Point MakePoint(const double from[3], const double to[3], const double no
 
 static Finding JudgePoint(Plate *plate, const Point *point, int walls)
 {
-  const PieceList list  = {plate->n, plate->pieces};
-  Look            look  = {.penetration = 0.1, .walls = walls};
+  const PieceList list  = {plate->n, plate->n, plate->pieces};
+  Look            look  = {.penetration = 0.1, .walls = walls, .slave = {0, 1}};
   Finding         worst = {.kind = FINDING_NONE};
 
-  assert_true(LookCreate(plate->dim, &list, &look));
+  assert_true(LookBegin(plate->dim, &list, &look));
   PointFinding(&look, point, &worst);
   LookDestroy(&look);
   return worst;
@@ -206,7 +207,8 @@ static void HonestStatesHold(void **context)
   assert_int_equal(MovePoint(&plate, AT(0.3, -0.05, 0), AT(0.6, 0.1, 0)).kind, FINDING_NONE);
   assert_int_equal(MovePoint(&plate, AT(3, 1, 0), AT(3, -1, 0)).kind, FINDING_NONE); /* beside the wall */
   point        = MakePoint(AT(0.3, 0.1, 0), AT(0.3, -0.3, 0), AT(0, -1, 0));
-  point.closed = point.seen = 1; /* contact presses and holds the point by a soft penalty */
+  point.closed = 1; /* a right-angled edge whose flanks rest on the points around */
+  point.tip    = 1;
   PlaneWall(&plate, 0, still, still);
   assert_int_equal(JudgePoint(&plate, &point, 0).kind, FINDING_NONE);
   SolidWall(&plate, 0.2, still, still);
@@ -246,21 +248,85 @@ static void PlantedPointsAreFound(void **context)
   assert_int_equal(MovePoint(&plate, AT(0.3, 0.1, 1), AT(0.4, 0.2, -1)).kind, FINDING_PASSED);
   PlaneWall(&plate, 1, still, AT(0, -0.9, 0)); /* 8: a body's own other side, crushed to a tenth */
   for (int k = 0; k < plate.n; k++)
-    if (plate.pieces[k].x[0][0][1] < -0.5) memcpy(plate.pieces[k].x[1], plate.pieces[k].x[0], sizeof(Place[3]));
+    if (plate.pieces[k].x[0][0][1] < -0.5) {
+      memcpy(plate.pieces[k].x[1], plate.pieces[k].x[0], sizeof(Place[3]));
+      PiecePlace(&plate.pieces[k], 2);
+    }
   point      = MakePoint(AT(0.25, 0.5, 0), AT(0.25, -1.2, 0), AT(0, -1, 0));
   point.body = 1;
   assert_int_equal(JudgePoint(&plate, &point, 1).kind, FINDING_PASSED);
 }
 
+/* Points in space, and states that are rare: 15 to 19 of the planted violations. */
+static void PlantedSolidsAreFound(void **context)
+{
+  static Plate plate;
+  Finding      finding;
+  Point        point;
+
+  (void)context;
+  SolidWall(&plate, 0, still, still); /* 15: too deep in a face */
+  finding = MovePoint(&plate, AT(0.3, 0.1, 0.2), AT(0.4, 0.2, -0.14));
+  assert_int_equal(finding.kind, FINDING_DEPTH);
+  assert_true(fabs(finding.depth - 0.14) < 1e-12);
+  SolidWall(&plate, 0.05, still, AT(0.2, 0, 2)); /* 16: a wall is drawn over a point that rests */
+  assert_int_equal(MovePoint(&plate, AT(0.3, 0.1, 1), AT(0.3, 0.1, 1)).kind, FINDING_PASSED);
+  SolidWall(&plate, 0, still, still); /* 17: what stood behind a face goes deeper without crossing anything */
+  assert_int_not_equal(MovePoint(&plate, AT(0.3, 0.1, -0.3), AT(0.3, 0.1, -0.9)).kind, FINDING_NONE);
+  SolidWall(&plate, 0.05, still, still); /* 18: another pair treats these faces, and none is this one's */
+  point       = MakePoint(AT(0.3, 0.1, 1), AT(0.4, 0.2, -1), AT(0, 0, -1));
+  point.marks = 1;
+  for (int k = 0; k < plate.n; k++) plate.pieces[k].marks = 2;
+  assert_int_equal(JudgePoint(&plate, &point, 0).kind, FINDING_NONE);
+  for (int k = 0; k < plate.n; k++) plate.pieces[k].marks = 8; /* slave of the first, master of the second pair */
+  assert_int_equal(JudgePoint(&plate, &point, 0).kind, FINDING_PASSED);
+}
+
+/* A point crosses a hundred films that are thinner than round-off, and then a wall: 19. */
+static void ManyCrossingsAreFollowed(void **context)
+{
+  static Plate plate = {.dim = 2};
+
+  (void)context;
+  for (int k = 0; k <= 100; k++) {
+    const double y = -0.02 * k, thickness = k < 100 ? 1e-9 : 0.05;
+
+    AddPiece(&plate, (const double[3][3]){{1, y, 0}, {-1, y, 0}, {0}}, still, still, 1000 + 10 * k);
+    AddPiece(&plate, (const double[3][3]){{-1, y - thickness, 0}, {1, y - thickness, 0}, {0}}, still, still,
+             5000 + 10 * k);
+  }
+  plate.n -= 2;
+  assert_int_equal(MovePoint(&plate, AT(0, 1, 0), AT(0, -4, 0)).kind, FINDING_NONE);
+  plate.n += 2;
+  assert_int_equal(MovePoint(&plate, AT(0, 1, 0), AT(0, -4, 0)).kind, FINDING_PASSED);
+}
+
+/* An edge explains a depth by half a chord times its tip, and only where contact presses. */
+static void EdgesExplainTheirChords(void **context)
+{
+  Plate plate;
+  Point point;
+
+  (void)context;
+  PlaneWall(&plate, 0, still, still);
+  for (int turn = 0; turn < 2; turn++) {
+    for (int pressed = 0; pressed < 2; pressed++) {
+      point        = MakePoint(AT(0.3, 0.1, 0), AT(0.3, -0.35, 0), AT(0, -1, 0));
+      point.tip    = turn ? 0.6 : 0.4; /* 0.1 + 0.3 or 0.1 + 0.2 are allowed */
+      point.closed = pressed;
+      assert_int_equal(JudgePoint(&plate, &point, 0).kind, turn && pressed ? FINDING_NONE : FINDING_DEPTH);
+    }
+  }
+}
+
 /* Judges the edges of a piece of another body. */
 static Finding JudgePiece(Plate *plate, const double from[3][3], const double to[3][3], int closed)
 {
-  const PieceList list      = {plate->n, plate->pieces};
-  Look            look      = {.penetration = 0.1};
+  const PieceList list      = {plate->n, plate->n, plate->pieces};
+  Look            look      = {.penetration = 0.1, .slave = {1, 0}};
   Finding         worst     = {.kind = FINDING_NONE};
-  Piece           piece     = {.size = 1, .height = 1, .body = 2, .closed = closed, .seen = closed};
+  Piece           piece     = {.size = 1, .height = 1, .order = 1, .body = 2, .closed = closed};
   Point           points[3] = {{.tag = 0}};
-  const Point    *corner[3] = {&points[0], &points[1], &points[2]};
   double          normal[3];
 
   PieceNormal(plate->dim, to, normal);
@@ -271,8 +337,10 @@ static Finding JudgePiece(Plate *plate, const double from[3][3], const double to
     memcpy(piece.x[0][a], from[a], sizeof(Place));
     memcpy(piece.x[1][a], to[a], sizeof(Place));
   }
-  assert_true(LookCreate(plate->dim, &list, &look));
-  PieceFindings(&look, &piece, corner, &worst);
+  PiecePlace(&piece, plate->dim);
+  assert_true(LookBegin(plate->dim, &list, &look));
+  for (int e = 0; e < (plate->dim == 2 ? 1 : 3); e++)
+    EdgeFinding(&look, &(Edge){{&points[e], &points[(e + 1) % plate->dim]}, {&piece}}, 1, &worst);
   LookDestroy(&look);
   return worst;
 }
@@ -301,7 +369,7 @@ static void PlantedFacesAreFound(void **context)
   assert_int_equal(JudgePiece(&plate, up, up, 0).kind, FINDING_EDGES);
 }
 
-/* Analytic tools: 12 to 14. */
+/* Analytic tools: 12 to 14. The numbers go on with solids. */
 static void PlantedToolsAreFound(void **context)
 {
   AnalyticTool tool = {.dim = 2, .surface = {.shape = ANALYTIC_SPHERE, .radius = 0.1}, .penetration = 0.1};
@@ -341,6 +409,9 @@ int main(void)
     cmocka_unit_test(ChordsHaveTheirHeight),
     cmocka_unit_test(HonestStatesHold),
     cmocka_unit_test(PlantedPointsAreFound),
+    cmocka_unit_test(PlantedSolidsAreFound),
+    cmocka_unit_test(ManyCrossingsAreFollowed),
+    cmocka_unit_test(EdgesExplainTheirChords),
     cmocka_unit_test(PlantedFacesAreFound),
     cmocka_unit_test(PlantedToolsAreFound),
   };

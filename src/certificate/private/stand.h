@@ -1,8 +1,8 @@
 /* Where a point stands to the pieces of the other side, and what has happened to it in a step. Plain C on pieces.
 
-   LookAt() gathers the pieces that a point may meet, PointStand() finds the closest one at one of the two states,
-   PointFinding() follows the point along the step, PieceFindings() the edges of a piece. Each returns the worst of what
-   was found. */
+   LookAt() gathers the pieces that a point or an edge may meet, PointStand() finds the closest one at one of the two
+   states, JudgeDepth() judges that. PointFinding() follows a point along the step, EdgeFinding() judges an edge,
+   against the faces and, if asked, the edges of the other side. Each keeps the worst of what was found. */
 #pragma once
 #include "base/boxtree.h"
 #include "pieces.h"
@@ -19,11 +19,8 @@
 /* Part of the height of an element up to which faces may cross where any side of a body may meet any other one: deeper,
    the other side of a wall would be nearer (ownbody.h). */
 #define STAND_WALL 0.25
-/* Where contact presses at the point or on the face, or an edge is sharp there, faces may cross deeper by this factor:
-   to half a face with the default. Contact holds slave points on a smooth surface, which rounds the edges of the faces
-   that are shown, and it holds no point of the master. Sharp edges so dig in by up to half a face, and this is seen:
-   slave points around the edge press. */
-#define STAND_SEEN 5
+/* Part of a face around a point in which its closest piece is looked for. What goes deeper has crossed a piece. */
+#define STAND_REACH 0.5
 /* Normals whose cosine is below this belong to the two sides of a wall, not of a corner. */
 #define STAND_OPPOSED (-0.5)
 /* Depths below this part of a face are round-off. */
@@ -43,19 +40,48 @@ typedef struct {
   Place       X;       /* reference place (length) */
 } Finding;
 
-/* The pieces of the other side */
+/* A point at one of the states. */
+typedef struct {
+  const Piece *piece;  /* the closest one; NULL: none near, or another pair treats it */
+  int          inside; /* the point is behind it, and they look at each other */
+  int          front;  /* the point is in front of it or beside its end */
+  double       depth;
+} Stand;
+
+/* A point crosses a piece, or an edge stands through it: at.s is the place on the edge then. */
+typedef struct {
+  const Piece *piece;
+  Crossing     at;
+} Event;
+
+/* The pieces of the other side. What is allocated serves again in the next step. */
 typedef struct {
   int              dim;
   const PieceList *list;
   BoxTree          tree;
-  int             *found, n_found; /* pieces at hand */
-  double           penetration;    /* allowed depth in parts of the smaller face */
-  double           overlap;        /* depth that the scene leaves (length) */
-  int              walls;          /* any side of a body may meet any other one */
+  int             *found, n_found, room; /* pieces at hand */
+  int             *around;               /* work space of as much room */
+  Event           *events;
+  int              n_events, room_events;
+  double           penetration; /* allowed depth in parts of the smaller face */
+  double           overlap;     /* depth that the scene leaves (length) */
+  int              walls;       /* any side of a body may meet any other one */
+  int              slave[2];    /* contact holds the points and edges that are judged; the vertices of the pieces */
+  int              failed;      /* memory was short: what was found does not count */
 } Look;
 
-int  LookCreate(int dim, const PieceList *, Look *);
-void LookDestroy(Look *);
-void PointFinding(Look *, const Point *, Finding *worst);
-void PieceFindings(Look *, const Piece *, const Point *const corner[3], Finding *worst);
-int  FindingWorse(const Finding *, const Finding *than);
+int    LookBegin(int dim, const PieceList *, Look *);
+void   LookEnd(Look *);
+void   LookDestroy(Look *);
+void   LookAt(Look *, const Box, double margin);
+void   LookAdd(Look *, const Piece *, Crossing);
+void   LookSort(Look *);
+Stand  PointStand(const Look *, const Point *, int state);
+int    HasTag(const Piece *, int dim, long tag);
+double AllowedDepth(const Look *, const Point *, const Piece *);
+double ExplainedDepth(const Look *, const Point *, const Piece *, double depth);
+void   JudgeDepth(const Look *, const Point *, const Stand *, const long tag[2], Finding *worst);
+void   FindingKeep(const Finding *, Finding *worst);
+int    FindingWorse(const Finding *, const Finding *than);
+void   PointFinding(Look *, const Point *, Finding *worst);
+void   EdgeFinding(Look *, const Edge *, int crossings, Finding *worst);

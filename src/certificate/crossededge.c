@@ -1,0 +1,186 @@
+/* Edges that stand in the other side or have crossed its edges, see stand.h. */
+#include "stand.h"
+#include <string.h>
+#include <math.h>
+
+static double Dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static double Distance(const double a[3], const double b[3])
+{
+  const double r[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+
+  return sqrt(Dot(r, r));
+}
+
+static void Between(const double a[3], const double b[3], double s, double c[3])
+{
+  for (int d = 0; d < 3; d++) c[d] = (1 - s) * a[d] + s * b[d];
+}
+
+/* A point on an edge, for its depth: between the ends, of the faces around. Of two faces the worse one counts. */
+static Point EdgePoint(const Edge *edge, const Piece *piece, double s)
+{
+  Point point = {.tag    = edge->end[0]->tag,
+                 .size   = piece->size,
+                 .height = piece->height,
+                 .marks  = edge->end[0]->marks & edge->end[1]->marks,
+                 .body   = piece->body,
+                 .closed = piece->closed,
+                 .side   = piece->side,
+                 .order  = piece->order,
+                 .tip    = fmin(edge->end[0]->tip, edge->end[1]->tip)};
+
+  Between(edge->end[0]->X, edge->end[1]->X, s, point.X);
+  for (int state = 0; state < 2; state++) {
+    Between(edge->end[0]->x[state], edge->end[1]->x[state], s, point.x[state]);
+    for (int d = 0; d < 3; d++)
+      point.normal[state][d] = edge->end[0]->normal[state][d] + edge->end[1]->normal[state][d];
+  }
+  return point;
+}
+
+/* Is a piece at one of the ends of an edge, or treated by another pair together with the edge? */
+static int IsLeftOut(const Look *look, const Edge *edge, const Piece *piece)
+{
+  return HasTag(piece, look->dim, edge->end[0]->tag) || HasTag(piece, look->dim, edge->end[1]->tag) ||
+         FaceMarksTreated(edge->end[0]->marks & edge->end[1]->marks, piece->marks);
+}
+
+/* Finds the places where an edge stands through pieces at the end, in their order. */
+static void FindCuts(Look *look, const Edge *edge)
+{
+  Place ends[2];
+  Box   box;
+
+  look->n_events = 0;
+  for (int i = 0; i < 2; i++) memcpy(ends[i], edge->end[i]->x[1], sizeof(Place));
+  BoxAround(2, (const Place *)ends, box);
+  for (int i = 0; i < look->n_found; i++) {
+    const Piece *piece = &look->list->pieces[look->found[i]];
+    Crossing     at;
+
+    if (!BoxesMeet(box, piece->box, 0) || IsLeftOut(look, edge, piece)) continue;
+    if (PiecePierce(look->dim, (const Place *)piece->x[1], piece->normal[1], (const Place *)ends, &at.s, &at.inward))
+      LookAdd(look, piece, at);
+  }
+  LookSort(look);
+}
+
+/* Judges the middle between two places where an edge goes through pieces. These are no farther than its closest
+   piece can be. */
+static void JudgeMiddle(Look *look, const Edge *edge, double in, double out, Finding *worst)
+{
+  const long   tag[2] = {edge->end[0]->tag, edge->end[1]->tag};
+  const double half   = 0.5 * (out - in) * Distance(edge->end[0]->x[1], edge->end[1]->x[1]);
+
+  for (int k = 0; k < 2 && edge->of[k]; k++) {
+    const Point middle = EdgePoint(edge, edge->of[k], 0.5 * (in + out));
+    Box         box;
+    Stand       stand;
+
+    BoxAround(1, (const Place *)&middle.x[1], box);
+    LookAt(look, box, half);
+    stand = PointStand(look, &middle, 1);
+    JudgeDepth(look, &middle, &stand, tag, worst);
+  }
+}
+
+/* Judges the parts of an edge that stand in the other side at the end, between two places where it goes through. */
+static void JudgeCuts(Look *look, const Edge *edge, Finding *worst)
+{
+  FindCuts(look, edge);
+  for (int i = 0; i < look->n_events; i++) {
+    int out = i + 1;
+
+    if (!look->events[i].at.inward) continue;
+    while (out < look->n_events && look->events[out].at.inward) out++;
+    if (out == look->n_events) return;
+    JudgeMiddle(look, edge, look->events[i].at.s, look->events[out].at.s, worst);
+  }
+}
+
+/* Does an edge look at a piece, with one of the faces around it? */
+static int LooksAt(const Edge *edge, const Piece *piece)
+{
+  for (int k = 0; k < 2 && edge->of[k]; k++)
+    if (Dot(edge->of[k]->normal[1], piece->normal[1]) < 0) return 1;
+  return 0;
+}
+
+/* Least depth that the faces around an edge allow in a piece. */
+static double EdgeAllowed(const Look *look, const Edge *edge, const Piece *piece, double depth)
+{
+  double allowed = INFINITY;
+
+  for (int k = 0; k < 2 && edge->of[k]; k++) {
+    const Point point = EdgePoint(edge, edge->of[k], 0.5);
+
+    allowed = fmin(allowed, AllowedDepth(look, &point, piece) + ExplainedDepth(look, &point, piece, depth));
+  }
+  return allowed;
+}
+
+/* Judges an edge, with the box that it sweeps, that crosses the edges of a piece. a: its ends at both states. */
+static void JudgeCrossings(const Look *look, const Edge *edge, Place a[2][2], const Box box, const Piece *piece,
+                           Finding *worst)
+{
+  for (int e = 0; e < 3; e++) {
+    Place   b[2][2];
+    Box     other;
+    EdgeEnd last;
+    double  allowed;
+    Finding finding;
+
+    for (int state = 0; state < 2; state++)
+      for (int i = 0; i < 2; i++) memcpy(b[state][i], piece->x[state][(e + i) % 3], sizeof(Place));
+    BoxAround(4, (const Place *)b, other);
+    if (!BoxesMeet(box, other, 0)) continue;
+    if (!SweepEdges((const Place *)a[0], (const Place *)a[1], (const Place *)b[0], (const Place *)b[1], &last))
+      continue;
+    if (!last.over || last.distance >= 0) continue;
+    allowed = EdgeAllowed(look, edge, piece, -last.distance);
+    if (!(-last.distance > allowed)) continue;
+    finding = (Finding){.kind    = FINDING_EDGES,
+                        .ratio   = -last.distance / allowed,
+                        .depth   = -last.distance,
+                        .allowed = allowed,
+                        .tag     = {edge->end[0]->tag, edge->end[1]->tag},
+                        .face    = piece->face,
+                        .X       = {edge->end[0]->X[0], edge->end[0]->X[1], edge->end[0]->X[2]}};
+    FindingKeep(&finding, worst);
+  }
+}
+
+/*@
+  EdgeFinding - judges an edge: its depth at the end of the step, and whether it has crossed edges.
+
+  Not collective
+
+  Input Parameters:
++ look      - the pieces of the other side
+. edge      - the edge
+- crossings - in space: judge crossings of edges as well, which one of two sides has to
+
+  Input/Output Parameter:
+. worst - the worst finding so far
+@*/
+void EdgeFinding(Look *look, const Edge *edge, int crossings, Finding *worst)
+{
+  Place x[2][2];
+  Box   box;
+
+  for (int state = 0; state < 2; state++)
+    for (int i = 0; i < 2; i++) memcpy(x[state][i], edge->end[i]->x[state], sizeof(Place));
+  BoxAround(4, (const Place *)x, box);
+  LookAt(look, box, 0);
+  if (!look->n_found) return;
+  for (int i = 0; crossings && look->dim == 3 && i < look->n_found; i++) {
+    const Piece *piece = &look->list->pieces[look->found[i]];
+
+    if (LooksAt(edge, piece) && !IsLeftOut(look, edge, piece)) JudgeCrossings(look, edge, x, box, piece, worst);
+  }
+  JudgeCuts(look, edge, worst);
+}

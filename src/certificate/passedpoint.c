@@ -1,0 +1,143 @@
+/* Points that pass faces of the other side in a step, see stand.h. */
+#include "stand.h"
+#include <math.h>
+
+static double Dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static double Distance(const double a[3], const double b[3])
+{
+  const double r[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+
+  return sqrt(Dot(r, r));
+}
+
+static void Between(const double a[3], const double b[3], double s, double c[3])
+{
+  for (int d = 0; d < 3; d++) c[d] = (1 - s) * a[d] + s * b[d];
+}
+
+/* How far a point is behind the plane of a piece at a time of the step. */
+static double BehindAt(int dim, const Piece *piece, const Point *point, double s)
+{
+  double x[3][3], p[3];
+
+  for (int a = 0; a < dim; a++) Between(piece->x[0][a], piece->x[1][a], s, x[a]);
+  Between(point->x[0], point->x[1], s, p);
+  return -PieceFront(dim, (const Place *)x, p);
+}
+
+static double Cosine(const Piece *a, const Piece *b)
+{
+  return Dot(a->normal[1], b->normal[1]);
+}
+
+/* Keeps that a point has passed the piece where it came in, if that is the worst. */
+static void KeepPassed(const Point *point, const Event *in, double depth, double allowed, Finding *worst)
+{
+  const Finding finding = {.kind    = FINDING_PASSED,
+                           .ratio   = depth / allowed,
+                           .depth   = depth,
+                           .allowed = allowed,
+                           .tag     = {point->tag, 0},
+                           .face    = in->piece->face,
+                           .X       = {point->X[0], point->X[1], point->X[2]}};
+
+  FindingKeep(&finding, worst);
+}
+
+/* Judges a point that was behind one piece and has come out of another one, or stands in it. Where the two are no
+   opposite sides of a wall, it is back on the side from which it came: straight motions cut corners. Where contact
+   presses, it may pass the tip of a wedge as deep as it may stand in it. */
+static void JudgePassage(const Look *look, const Point *point, const Event *in, const Event *out, Finding *worst)
+{
+  const double depth =
+    fmin(BehindAt(look->dim, in->piece, point, out->at.s), BehindAt(look->dim, out->piece, point, in->at.s));
+  const int carried = point->closed || in->piece->closed || out->piece->closed;
+  double    allowed = STAND_ROUND_OFF * fmin(point->size, fmin(in->piece->size, out->piece->size));
+
+  if (Cosine(in->piece, out->piece) > STAND_OPPOSED) return;
+  if (carried) allowed = look->penetration * fmin(point->size, fmin(in->piece->size, out->piece->size));
+  allowed += look->overlap;
+  if (!(depth > allowed)) return;
+  KeepPassed(point, in, depth, allowed, worst);
+}
+
+/* Judges a point that has gone behind a piece and is not found behind any surface at the end. */
+static void JudgeGone(const Look *look, const Point *point, const Event *in, const Stand *end, Finding *worst)
+{
+  const double depth = BehindAt(look->dim, in->piece, point, 1);
+  const double allowed = AllowedDepth(look, point, in->piece) + ExplainedDepth(look, point, in->piece, depth);
+  double foot[3];
+
+  if (!(depth > allowed) || (end->piece && end->front)) return;
+  (void)PieceClosest(look->dim, (const Place *)in->piece->x[1], point->x[1], foot);
+  if (Distance(foot, point->x[1]) > depth + 0.5 * in->piece->size) return; /* it left past an end */
+  KeepPassed(point, in, depth, allowed, worst);
+}
+
+/* Finds the crossings of a point, in the order of time. */
+static void PointEvents(Look *look, const Point *point, const Box box)
+{
+  look->n_events = 0;
+  for (int i = 0; i < look->n_found; i++) {
+    const Piece *piece = &look->list->pieces[look->found[i]];
+    Crossing     crossing[SWEEP_MAX];
+    int          times;
+
+    if (!BoxesMeet(box, piece->box, 0) || HasTag(piece, look->dim, point->tag)) continue;
+    if (FaceMarksTreated(point->marks, piece->marks)) continue;
+    times =
+      SweepPoint(look->dim, (const Place *)piece->x[0], (const Place *)piece->x[1], point->x[0], point->x[1], crossing);
+    for (int k = 0; k < times; k++) LookAdd(look, piece, crossing[k]);
+  }
+  LookSort(look);
+}
+
+/*@
+  PointFinding - follows a point along the step and judges what has happened to it.
+
+  Not collective
+
+  Input Parameters:
++ look  - the pieces of the other side
+- point - the point
+
+  Input/Output Parameter:
+. worst - the worst finding so far
+
+  Notes:
+  A point has come in where it crosses a piece to its back, or where it stood behind one at the start. It has come out
+  where it crosses a piece to its front, or where it stands behind one on the other side of a wall at the end. In
+  between it was as deep as it was behind the first piece when it came out, or behind the last one when it came in.
+@*/
+void PointFinding(Look *look, const Point *point, Finding *worst)
+{
+  Event in = {.piece = NULL};
+  Box   box;
+  Stand start, end;
+
+  BoxAround(2, (const Place *)point->x, box);
+  LookAt(look, box, STAND_REACH * point->size + look->overlap);
+  if (!look->n_found) return;
+  start = PointStand(look, point, 0);
+  end   = PointStand(look, point, 1);
+  JudgeDepth(look, point, &end, (long[2]){point->tag, 0}, worst);
+  PointEvents(look, point, box);
+  if (start.inside) in = (Event){start.piece, {0, 1}};
+  for (int k = 0; k < look->n_events; k++) {
+    const Event *event = &look->events[k];
+
+    if (event->at.inward && !in.piece) {
+      in = *event;
+    } else if (!event->at.inward && in.piece) {
+      JudgePassage(look, point, &in, event, worst);
+      in.piece = NULL;
+    }
+  }
+  if (in.piece && end.inside && Cosine(in.piece, end.piece) <= STAND_OPPOSED)
+    JudgePassage(look, point, &in, &(Event){end.piece, {1, 0}}, worst);
+  if (in.piece && !end.inside) JudgeGone(look, point, &in, &end, worst);
+}
