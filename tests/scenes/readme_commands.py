@@ -24,6 +24,7 @@ LIKE = {
     f"{PYTHON} scripts/incompressible_table.py {BURNISH}": f"{PYTHON} scripts/incompressible_table.py --help",
     f"{PYTHON} scripts/o_ring_table.py {BURNISH}": f"{PYTHON} scripts/o_ring_table.py --help",
     f"{PYTHON} scripts/o_ring_calculix.py": f"{PYTHON} scripts/o_ring_calculix.py --help",
+    f"{PYTHON} scripts/o_ring_calculix.py --solid": f"{PYTHON} scripts/o_ring_calculix.py --help",
     "build/tests/incompressible meshes runs/records/incompressible_rates.csv": "test -s "
     "runs/records/incompressible_rates.csv",
     f"{PYTHON} -m http.server -d out/site": f"timeout 1 {PYTHON} -m http.server 0 -d out/site; test $? = 124",
@@ -103,6 +104,9 @@ FULL = {
     f"{PYTHON} scripts/paper.py cup_flattening -j 1 --quick {BURNISH} --out $WORK/out/paper",
     f"{PYTHON} scripts/compare_calculix.py --record runs/records/calculix.csv":
     f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix.csv",
+    f"{PYTHON} scripts/compare_calculix.py --record runs/records/calculix_friction.csv \"mu \"":
+    f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix_friction.csv",
+    f"{PYTHON} scripts/all_table.py --record runs/records/all.csv": printed("all_table", "all"),
     f"{PYTHON} tests/hard/run.py --group guards":
     f"{PYTHON} tests/hard/run.py {BURNISH} --out $WORK/out/hard --case 'corner of two walls' --ranks 1",
     f"{PYTHON} tests/hard/run.py --record runs/records/hard.csv":
