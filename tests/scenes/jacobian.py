@@ -78,11 +78,15 @@ for form, n_arc in (("node_to_surface", 10), ("surface_to_surface", 16)):
 
 SLIPPING = ["contact.0.friction.mu=0.2"]
 STICKING = ["contact.0.friction.mu=2"]
+# A node that begins a step with a tiny opening has a share of slip (beta) that rises within that opening: too curved for
+# one-sided differences of any step. With steps of 0.1 there is one such node, with steps of 0.06 there is none.
+TURN_STICKING = STICKING + ["stepping.initial=0.06"]
 for name, own in (("sticks", STICKING), ("slips", SLIPPING)):
+    turn = TURN_STICKING if own is STICKING else own
     CASES[f"turning rigid cylinder, surface to surface, {name}"] = (
-        RUNS / "slide_facets.yaml", TURNING + DIFFUSE + own)
+        RUNS / "slide_facets.yaml", TURNING + DIFFUSE + turn)
     CASES[f"turning rigid cylinder, facets, surface to surface, {name}"] = (
-        RUNS / "slide_facets.yaml", TURNING + ["contact.0.smoother=facet"] + SURFACE + own)
+        RUNS / "slide_facets.yaml", TURNING + ["contact.0.smoother=facet"] + SURFACE + turn)
     CASES[f"coarse pinched pipe, surface to surface, {name}"] = (
         RUNS / "pipe_pinch.yaml", COARSE_PIPE + ["loads.0.uy=-2", "stepping.initial=0.5"] + DIFFUSE + own)
 CASES["coarse pinched pipe, live offsets, slips"] = (
@@ -133,8 +137,9 @@ CASES["meshed tool, diffuse, far turned"] = (RUNS / "slide_cylinder.yaml", PUSHE
 ])
 
 # Where a case's forces are this strongly curved, one-sided differences need a shorter step than PETSc's 1.5e-8: their
-# deviation is in proportion to it, 2.4e-4 at 1e-6, 3.7e-6 at 1.5e-8 and 4.9e-7 at 2e-9.
-STEPS = {"turning rigid cylinder, facets, surface to surface, sticks": 2e-9}
+# deviation is in proportion to it, 3e-6 at 1.5e-8 and 4e-7 at 2e-9 with the smooth surface.
+STEPS = dict.fromkeys(("turning rigid cylinder, surface to surface, sticks",
+                       "turning rigid cylinder, facets, surface to surface, sticks"), 2e-9)
 
 args = arguments()
 check = Check()
