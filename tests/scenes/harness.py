@@ -34,12 +34,12 @@ class Run:
                     for row in csv.DictReader(file, skipinitialspace=True)]
 
     def fields(self):
-        """Node coordinates and every field of the last written step, contact fields as contact/PAIR/NAME."""
+        """Node coordinates and every field of the last written step but components of tensors, contact fields as contact/PAIR/NAME."""
         fields = {}
         with h5py.File(self.directory / "results.h5", "r") as file:
             last = file["steps"][sorted(file["steps"])[-1]]
             last.visititems(lambda name, item: fields.update({name: item[()]})
-                            if isinstance(item, h5py.Dataset) else None)
+                            if isinstance(item, h5py.Dataset) and not item.is_virtual else None)
             fields["nodes"] = file["mesh/nodes"][()]
             for pair in file.get("contact", {}):
                 fields[f"contact/{pair}/nodes"] = file["contact"][pair]["nodes"][()]
