@@ -6,7 +6,9 @@
   #include <fcntl.h>
   #include <linux/audit.h>
   #include <linux/filter.h>
-  #include <linux/landlock.h>
+  #if __has_include(<linux/landlock.h>)
+    #include <linux/landlock.h>
+  #endif
   #include <linux/seccomp.h>
   #include <sched.h>
   #include <stddef.h>
@@ -14,12 +16,13 @@
   #include <sys/syscall.h>
   #include <unistd.h>
 
+  #if defined(SYS_landlock_create_ruleset) && defined(LANDLOCK_ACCESS_FS_WRITE_FILE)
   /* Everything that changes files. */
-  #define WRITES                                                                                      \
-    (LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR | LANDLOCK_ACCESS_FS_REMOVE_FILE | \
-     LANDLOCK_ACCESS_FS_MAKE_CHAR | LANDLOCK_ACCESS_FS_MAKE_DIR | LANDLOCK_ACCESS_FS_MAKE_REG |       \
-     LANDLOCK_ACCESS_FS_MAKE_SOCK | LANDLOCK_ACCESS_FS_MAKE_FIFO | LANDLOCK_ACCESS_FS_MAKE_BLOCK |    \
-     LANDLOCK_ACCESS_FS_MAKE_SYM)
+    #define WRITES                                                                                      \
+      (LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR | LANDLOCK_ACCESS_FS_REMOVE_FILE | \
+       LANDLOCK_ACCESS_FS_MAKE_CHAR | LANDLOCK_ACCESS_FS_MAKE_DIR | LANDLOCK_ACCESS_FS_MAKE_REG |       \
+       LANDLOCK_ACCESS_FS_MAKE_SOCK | LANDLOCK_ACCESS_FS_MAKE_FIFO | LANDLOCK_ACCESS_FS_MAKE_BLOCK |    \
+       LANDLOCK_ACCESS_FS_MAKE_SYM)
 
 /* Allows to write below a path, as far as `access` says. */
 static void AllowBelow(int rules, const char *path, unsigned long long access)
@@ -42,6 +45,12 @@ static void ForbidWriting(const char *folder)
   (void)syscall(SYS_landlock_restrict_self, rules, 0);
   close(rules);
 }
+  #else
+static void ForbidWriting(const char *folder)
+{
+  (void)folder;
+}
+  #endif
 
   #if defined(__x86_64__)
     #define THIS_PROCESSOR AUDIT_ARCH_X86_64
@@ -74,8 +83,10 @@ static void ForbidProcesses(void)
     IF_EQUAL(SYS_vfork, 0, 1),
     ANSWER(SECCOMP_RET_ERRNO | EPERM),
     #endif
+    #ifdef SYS_clone3
     IF_EQUAL(SYS_clone3, 0, 1),
     ANSWER(SECCOMP_RET_ERRNO | ENOSYS),
+    #endif
     IF_EQUAL(SYS_clone, 0, 3),
     LOAD(args[0]),
     IF_BIT(CLONE_THREAD, 1, 0),

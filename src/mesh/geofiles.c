@@ -12,6 +12,8 @@
 /* The files are followed so many times at most until their variables are known. Each pass finds what one more level of
    names in variables leads to. */
 #define PASSES 8
+/* Files may include each other so deeply. Each level takes some kilobytes of the stack. */
+#define DEPTH 32
 
 /* How gmsh treats a file that a .geo names. */
 typedef enum {
@@ -31,68 +33,91 @@ static const struct {
   {"FileName", READS_DATA, '='},
 };
 
-/* Endings of files that gmsh reads as shapes, meshes or pictures. Any other file it reads as commands, unless it begins
-   as one of Headers. gmsh knows the endings in small and in capital letters. */
-static const char *const DataEndings[] = {
-  "stl",     "nii", "brep", "rle", "brp", "xao",  "iges", "igs", "step", "stp", "sat",  "x_t",  "xmt_txt", "x_b",
-  "xmt_bin", "unv", "vtk",  "wrl", "iv",  "vrml", "mesh", "off", "diff", "med", "mmed", "rmed", "bdf",     "nas",
-  "neu",     "p3d", "pnm",  "pbm", "pgm", "ppm",  "bmp",  "jpg", "jpeg", "png", "ply2", "ply",  "geom",    "cgns"};
-static const char *const Headers[] = {"$PTS",        "$NO",       "$PARA",       "$ELM",
-                                      "$MeshFormat", "$Comments", "$PostFormat", "$View"};
+/* Endings of files that gmsh reads as shapes, meshes or pictures, in small or in capital letters; then those that it
+   knows in small letters only. Any other file it reads as commands, unless it begins as one of Headers. */
+static const char *const SmallEndings[] = {"brep", "rle", "x_t", "x_b", "xmt_txt", "xmt_bin"};
+static const char *const DataEndings[]  = {"stl",  "nii",  "brp", "xao",  "iges", "igs",  "step", "stp",  "sat",
+                                           "unv",  "vtk",  "wrl", "iv",   "vrml", "mesh", "off",  "diff", "med",
+                                           "mmed", "rmed", "bdf", "nas",  "neu",  "p3d",  "pnm",  "pbm",  "pgm",
+                                           "ppm",  "bmp",  "jpg", "jpeg", "png",  "ply2", "ply",  "geom", "cgns"};
+static const char *const Headers[]      = {"$PTS",        "$NO",       "$PARA",       "$ELM",
+                                           "$MeshFormat", "$Comments", "$PostFormat", "$View"};
 /* Endings of files that gmsh hands to another program. */
 static const char *const ProgramEndings[] = {"gz", "py", "m", "exe", "ol", "pro"};
+
+/* A file that was met, by its full path */
+typedef struct {
+  char     *path;
+  PetscBool followed; /* as commands; a file may be read as data first */
+} Met;
 
 typedef struct {
   Scene      scene;
   PetscBool  trust;
   GeoFiles  *files;
   GeoStrings known, found; /* variables: of the pass before, and of this one */
-  int        n_seen, room;
-  char     **seen; /* full paths of the files that were followed in this pass */
+  PetscBool  open;         /* the variables could not be settled */
+  int        depth;        /* files that are being followed, one in the other */
+  int        n_met, room;
+  Met       *met; /* in this pass */
   Complaint *complaint;
 } Walk;
 
 static PetscErrorCode WalkFile(Walk *, const char *path, Reading);
 
-static PetscBool HasEnding(const char *file, const char *const *endings, size_t n)
+/* Tells whether the ending of a file is in a list, in small letters or, unless `small`, all in capitals. */
+static PetscBool HasEnding(const char *file, const char *const *endings, size_t n, PetscBool small)
 {
   const char *dot = strrchr(file, '.');
 
   for (size_t i = 0; dot && i < n; i++) {
     const size_t length = strlen(endings[i]);
-    size_t       small = 0, capital = 0;
+    size_t       same = 0, capital = 0;
 
     if (strlen(dot + 1) != length) continue;
     for (size_t k = 0; k < length; k++) {
-      small += dot[1 + k] == endings[i][k];
+      same += dot[1 + k] == endings[i][k];
       capital += dot[1 + k] == toupper(endings[i][k]);
     }
-    if (small == length || capital == length) return PETSC_TRUE;
+    if (same == length || (!small && capital == length)) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
 
-/* Tells whether a file that was seen already is met again, and notes it. */
-static PetscErrorCode Seen(Walk *walk, const char *path, PetscBool *seen)
+static PetscBool IsData(const char *file)
+{
+  return HasEnding(file, DataEndings, PETSC_STATIC_ARRAY_LENGTH(DataEndings), PETSC_FALSE) ||
+             HasEnding(file, SmallEndings, PETSC_STATIC_ARRAY_LENGTH(SmallEndings), PETSC_TRUE)
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
+/* Finds a file among those that were met, or adds it. *known: it was there. */
+static PetscErrorCode Meet(Walk *walk, const char *path, Met **met, PetscBool *known)
 {
   PetscFunctionBeginUser;
-  *seen = PETSC_FALSE;
-  for (int i = 0; i < walk->n_seen; i++)
-    if (!strcmp(walk->seen[i], path)) *seen = PETSC_TRUE;
-  if (*seen) PetscFunctionReturn(PETSC_SUCCESS);
-  if (walk->n_seen == walk->room) {
-    walk->room = 2 * walk->room + 16;
-    PetscCall(PetscRealloc((size_t)walk->room * sizeof(char *), &walk->seen));
+  *met   = NULL;
+  *known = PETSC_TRUE;
+  for (int i = 0; i < walk->n_met; i++) {
+    *met = &walk->met[i];
+    if (!strcmp((*met)->path, path)) PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(PetscStrallocpy(path, &walk->seen[walk->n_seen++]));
+  *known = PETSC_FALSE;
+  if (walk->n_met == walk->room) {
+    walk->room = 2 * walk->room + 16;
+    PetscCall(PetscRealloc((size_t)walk->room * sizeof(Met), &walk->met));
+  }
+  *met  = &walk->met[walk->n_met++];
+  **met = (Met){0};
+  PetscCall(PetscStrallocpy(path, &(*met)->path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ForgetSeen(Walk *walk)
+static PetscErrorCode ForgetMet(Walk *walk)
 {
   PetscFunctionBeginUser;
-  for (int i = 0; i < walk->n_seen; i++) PetscCall(PetscFree(walk->seen[i]));
-  walk->n_seen = 0;
+  for (int i = 0; i < walk->n_met; i++) PetscCall(PetscFree(walk->met[i].path));
+  walk->n_met = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,24 +137,29 @@ static void Judge(Walk *walk, const char *path, int line, const char *what)
 static PetscErrorCode FollowName(Walk *walk, const char *path, const GeoTokens *tokens, int at, Reading reading)
 {
   const char *slash = strrchr(path, '/');
-  char        directory[PATH_MAX + 1], file[PATH_MAX + 1], what[128], *name;
+  char        directory[PATH_MAX + 1], full[PATH_MAX + 1], file[PATH_MAX + 1], what[128], *name;
   const int   line = tokens->token[at].line;
 
   PetscFunctionBeginUser;
+  /* gmsh's CurrentDirectory is that of the file itself; names start at the folder as it was written, through links. */
+  if (!realpath(path, full)) PetscCall(PetscStrncpy(full, path, sizeof(full)));
+  if (strrchr(full, '/')) strrchr(full, '/')[1] = '\0';
   snprintf(directory, sizeof(directory), "%.*s", slash ? (int)(slash - path) + 1 : 0, path);
-  PetscCall(GeoStringsEvaluate(&walk->known, tokens, &at, directory, &name));
+  PetscCall(GeoStringsEvaluate(&walk->known, tokens, &at, full, &name));
   if (!name && reading == READS_DATA) {
     walk->files->open = PETSC_TRUE;
   } else if (!name) {
     Judge(walk, path, line,
           "the name of a file is made while gmsh runs, so that nobody can tell which commands it has");
-  } else if (reading == READS_BY_NAME && HasEnding(name, ProgramEndings, PETSC_STATIC_ARRAY_LENGTH(ProgramEndings))) {
+  } else if (*name == '\\' || (*name && name[1] == ':')) {
+    Judge(walk, path, line, "the name of a file is one of another system");
+  } else if (reading == READS_BY_NAME &&
+             HasEnding(name, ProgramEndings, PETSC_STATIC_ARRAY_LENGTH(ProgramEndings), PETSC_FALSE)) {
     snprintf(what, sizeof(what), "gmsh hands '%.60s' to another program", name);
     Judge(walk, path, line, what);
   } else {
     snprintf(file, sizeof(file), "%s%s", *name == '/' ? "" : directory, name);
-    if (reading == READS_BY_NAME && HasEnding(name, DataEndings, PETSC_STATIC_ARRAY_LENGTH(DataEndings)))
-      reading = READS_DATA;
+    if (reading == READS_BY_NAME && IsData(name)) reading = READS_DATA;
     PetscCall(WalkFile(walk, file, reading));
   }
   PetscCall(PetscFree(name));
@@ -190,19 +220,29 @@ static PetscErrorCode WalkFile(Walk *walk, const char *name, Reading reading)
 {
   char      path[PATH_MAX + 1], *text;
   size_t    size;
-  PetscBool seen, script;
+  PetscBool known, script;
+  Met      *met;
 
   PetscFunctionBeginUser;
   if (walk->complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (walk->depth > DEPTH) {
+    Judge(walk, name, 1, "files include each other too deeply");
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (!realpath(name, path)) PetscCall(PetscStrncpy(path, name, sizeof(path)));
-  PetscCall(Seen(walk, path, &seen));
-  if (seen) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Meet(walk, path, &met, &known));
+  if (known && (met->followed || reading == READS_DATA)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GmshFileLoad(path, &text, &size));
-  walk->files->content = HashBytes(walk->files->content, text ? text : "", text ? size + 1 : 0);
-  script               = text && reading != READS_DATA ? PETSC_TRUE : PETSC_FALSE;
+  if (!known) walk->files->content = HashBytes(walk->files->content, text ? text : "", text ? size + 1 : 0);
+  script = text && reading != READS_DATA ? PETSC_TRUE : PETSC_FALSE;
   for (size_t i = 0; script && reading == READS_BY_NAME && i < PETSC_STATIC_ARRAY_LENGTH(Headers); i++)
     if (!strncmp(text, Headers[i], strlen(Headers[i]))) script = PETSC_FALSE;
-  if (script) PetscCall(WalkScript(walk, path, text, size));
+  if (script) {
+    met->followed = PETSC_TRUE; /* the list may move from here on */
+    walk->depth++;
+    PetscCall(WalkScript(walk, name, text, size));
+    walk->depth--;
+  }
   PetscCall(PetscFree(text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -214,7 +254,7 @@ static PetscErrorCode WalkOnce(Walk *walk)
   char options[PETSC_MAX_PATH_LEN + 8];
 
   PetscFunctionBeginUser;
-  PetscCall(ForgetSeen(walk));
+  PetscCall(ForgetMet(walk));
   PetscCall(GeoFilesReset(walk->files));
   walk->files->content = HASH_START;
   snprintf(options, sizeof(options), "%s.opt", walk->scene->mesh_file);
@@ -241,7 +281,8 @@ static PetscErrorCode CollectStrings(Walk *walk)
     walk->found = (GeoStrings){.scene = walk->scene};
   }
   walk->trust = trust;
-  if (now != before) Judge(walk, walk->scene->mesh_file, 1, "the names of its files cannot be followed");
+  walk->open  = now != before ? PETSC_TRUE : PETSC_FALSE;
+  if (walk->open) Judge(walk, walk->scene->mesh_file, 1, "the names of its files cannot be followed");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -274,8 +315,9 @@ PetscErrorCode GeoFilesRead(Scene scene, PetscBool trust, GeoFiles *files, Compl
   *files = (GeoFiles){0};
   PetscCall(CollectStrings(&walk));
   PetscCall(WalkOnce(&walk));
-  PetscCall(ForgetSeen(&walk));
-  PetscCall(PetscFree(walk.seen));
+  files->open = files->open || walk.open ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(ForgetMet(&walk));
+  PetscCall(PetscFree(walk.met));
   PetscCall(GeoStringsDestroy(&walk.known));
   PetscCall(GeoStringsDestroy(&walk.found));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,7 +2,12 @@
    manual, sections "Other general commands", "Post-processing commands", "List of all gmsh options" and "Gmsh mesh size
    fields". */
 #include "geoscript.h"
+#include <ctype.h>
+#include <stdio.h>
 #include <string.h>
+
+/* Room for the name of an option. gmsh knows none half as long. */
+#define OPTION_LENGTH 256
 
 static const char RunsProgram[] = "runs a program", WritesFile[] = "writes a file";
 
@@ -46,7 +51,7 @@ static PetscBool EndsWith(const char *name, int length, const char *end)
   Not collective
 
   Input Parameters:
-+ option - full name of the option, such as "Mesh.Algorithm"
++ option - full name of the option, such as "Mesh.Algorithm"; blanks and an index, as in "View[0].Name", do not count
 - length - its length
 
   Note:
@@ -55,13 +60,20 @@ name of the option in a message.
 @*/
 const char *GeoOptionForbidden(const char *option, int length)
 {
-  if (!strncmp(option, "Solver.", 7) || !strncmp(option, "Solver[", 7))
-    return "is an option of programs that gmsh runs";
-  if (EndsWith(option, length, "Command") || EndsWith(option, length, "Editor"))
-    return "names a program that gmsh runs";
-  if (!strncmp(option, "General.", 8) &&
-      (EndsWith(option, length, "FileName") || EndsWith(option, length, "FilePattern") ||
-       EndsWith(option, length, "SaveOptions") || EndsWith(option, length, "SaveSession")))
+  char name[OPTION_LENGTH] = "";
+  int  n = 0, depth = 0;
+
+  for (int i = 0; i < length; i++) {
+    depth += (option[i] == '[') - (i && option[i - 1] == ']');
+    if (!depth && option[i] && n < OPTION_LENGTH - 1 && (isalnum((unsigned char)option[i]) || strchr("._", option[i])))
+      name[n++] = option[i];
+  }
+  name[n] = '\0';
+  if (strstr(name, "Solver.") == name) return "is an option of programs that gmsh runs";
+  if (EndsWith(name, n, "Command") || EndsWith(name, n, "Editor")) return "names a program that gmsh runs";
+  if (strstr(name, "General.") == name && strcmp(name, "General.BackgroundImageFileName") &&
+      (EndsWith(name, n, "FileName") || EndsWith(name, n, "FilePattern") || EndsWith(name, n, "SaveOptions") ||
+       EndsWith(name, n, "SaveSession")))
     return "has gmsh write files of its own";
   return NULL;
 }
@@ -78,16 +90,20 @@ static PetscBool PrintsToFile(const GeoTokens *tokens, int at)
   return i < tokens->n && GeoTokenIs(&tokens->token[i], ">") ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Returns what the option does that begins at token `at`, as in General.LogFileName. */
+/* Returns what the option does that begins at token `at`, as in General.LogFileName or View[0].Name. */
 static const char *OptionForbidden(const GeoTokens *tokens, int at)
 {
-  const GeoToken *token = tokens->token + at, *last;
+  const GeoToken *token = tokens->token + at, *end = tokens->token + tokens->n - 1, *dot = token + 1;
+  char            name[OPTION_LENGTH];
 
-  if (at + 2 >= tokens->n || (at && GeoTokenIs(token - 1, "."))) return NULL;
-  if (!GeoTokenIs(token + 1, ".") && !GeoTokenIs(token, "Solver")) return NULL;
-  if (GeoTokenIs(token, "Solver") && !GeoTokenIs(token + 1, ".") && !GeoTokenIs(token + 1, "[")) return NULL;
-  last = GeoTokenIs(token + 1, ".") && token[2].kind == GEO_WORD ? token + 2 : token + 1;
-  return GeoOptionForbidden(token->at, (int)(last->at + last->length - token->at));
+  if (dot < end && GeoTokenIs(dot, "[")) {
+    while (dot < end && !GeoTokenIs(dot, "]")) dot++;
+    dot++;
+  }
+  if (dot + 1 >= end || !GeoTokenIs(dot, ".") || dot[1].kind != GEO_WORD) return NULL;
+  snprintf(name, sizeof(name), "%.*s.%.*s", PetscMin(token->length, OPTION_LENGTH / 2), token->at,
+           PetscMin(dot[1].length, OPTION_LENGTH / 2 - 2), dot[1].at);
+  return GeoOptionForbidden(name, (int)strlen(name));
 }
 
 /*@

@@ -3,6 +3,9 @@
 #include "base/hash.h"
 #include <string.h>
 
+/* Calls of StrCat in StrCat that are followed. Each takes some kilobytes of the stack. */
+#define NESTED 16
+
 static GeoString *Find(const GeoStrings *strings, const GeoToken *name)
 {
   for (int i = 0; i < strings->n; i++)
@@ -36,6 +39,23 @@ static PetscErrorCode Note(GeoStrings *strings, const GeoToken *name, const GeoT
   if (!string->times && value->kind == GEO_TEXT) PetscCall(CopyToken(value, &string->value));
   string->times++;
   string->constant = string->constant && constant ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes the name by which a constant is known to gmsh's database. Constants of one name have one value. */
+static PetscErrorCode NoteShared(GeoStrings *strings, const GeoToken *name)
+{
+  char *text;
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < strings->n_shown; i++) {
+    if (strlen(strings->shown[i]) == (size_t)name->length &&
+        !strncmp(strings->shown[i], name->at, (size_t)name->length))
+      strings->shared = PETSC_TRUE;
+  }
+  PetscCall(CopyToken(name, &text));
+  PetscCall(PetscRealloc((size_t)(strings->n_shown + 1) * sizeof(char *), &strings->shown));
+  strings->shown[strings->n_shown++] = text;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -85,6 +105,13 @@ PetscErrorCode GeoStringsAdd(GeoStrings *strings, const GeoTokens *tokens)
       depth++;
     } else if (constants && token->kind == GEO_SIGN && strchr("])}", *token->at)) {
       constants = --depth > 0;
+    } else if (GeoTokenIs(token, "SetString") || GeoTokenIs(token, "SetNumber")) {
+      strings->shared = PETSC_TRUE;
+    } else if (constants && GeoTokenIs(token, "Name") && token[1].kind == GEO_TEXT) {
+      PetscCall(NoteShared(strings, token + 1));
+    } else if (token->kind == GEO_WORD && GeoTokenIs(token + 1, "~")) {
+      PetscCall(Note(strings, token, token, PETSC_FALSE));
+      Find(strings, token)->indexed = PETSC_TRUE;
     } else if (token->kind == GEO_WORD && IsSet(tokens, i, constants ? PETSC_TRUE : PETSC_FALSE, &value)) {
       PetscCall(Note(strings, token, value, constants ? PETSC_TRUE : PETSC_FALSE));
     }
@@ -92,16 +119,31 @@ PetscErrorCode GeoStringsAdd(GeoStrings *strings, const GeoTokens *tokens)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Returns the text of a variable, NULL if it is not known. */
+/* Tells whether some file sets variables whose computed names may be this one: NAME~{i} = ... */
+static PetscBool MayBeSetByIndex(const GeoStrings *strings, const GeoToken *name)
+{
+  for (int i = 0; i < strings->n; i++) {
+    const GeoString *other  = &strings->string[i];
+    const int        length = (int)strlen(other->name);
+
+    if (other->indexed && name->length > length && !strncmp(name->at, other->name, (size_t)length)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Returns the text of a variable, NULL if it is not known. A parameter of the scene is the value of a constant, and of
+   a variable that no file sets. What other files set beside it depends on what gmsh comes to. */
 static const char *Value(const GeoStrings *strings, const GeoToken *name)
 {
   const GeoString *string = Find(strings, name);
 
+  if (MayBeSetByIndex(strings, name)) return NULL;
+  if (string && (string->times != 1 || (string->constant && strings->shared))) return NULL;
   for (int i = 0; i < strings->scene->n_parameters; i++) {
-    if (GeoTokenIs(name, strings->scene->parameters[i].key) && (!string || string->constant))
-      return strings->scene->parameters[i].value;
+    if (!GeoTokenIs(name, strings->scene->parameters[i].key)) continue;
+    return !string || string->constant ? strings->scene->parameters[i].value : NULL;
   }
-  return string && string->times == 1 ? string->value : NULL;
+  return string ? string->value : NULL;
 }
 
 /* Appends the texts of the arguments of StrCat(...), or gives the only one of Str(...). */
@@ -119,6 +161,7 @@ static PetscErrorCode EvaluateArguments(const GeoStrings *strings, const GeoToke
   do {
     char *part;
 
+    if (tokens->token[*at].kind == GEO_END) break;
     (*at)++;
     PetscCall(GeoStringsEvaluate(strings, tokens, at, directory, &part));
     if (!part || strlen(joined) + strlen(part) >= sizeof(joined)) known = PETSC_FALSE;
@@ -127,7 +170,7 @@ static PetscErrorCode EvaluateArguments(const GeoStrings *strings, const GeoToke
     n++;
   } while (known && GeoTokenIs(&tokens->token[*at], ","));
   if (!GeoTokenIs(&tokens->token[*at], ")") && !GeoTokenIs(&tokens->token[*at], "]")) known = PETSC_FALSE;
-  (*at)++;
+  if (tokens->token[*at].kind != GEO_END) (*at)++;
   if (known && (joins || n == 1)) PetscCall(PetscStrallocpy(joined, text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -136,6 +179,19 @@ static PetscErrorCode EvaluateArguments(const GeoStrings *strings, const GeoToke
 static PetscBool EndsExpression(const GeoToken *token)
 {
   return token->kind == GEO_SIGN && strchr(";,)]", *token->at) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Tells whether this many calls of StrCat and Str stand in front of each other: StrCat(StrCat(StrCat(... */
+static PetscBool NestedTooDeeply(const GeoTokens *tokens, int at)
+{
+  int depth = 0;
+
+  while (at >= 2 && depth < NESTED &&
+         (GeoTokenIs(&tokens->token[at - 1], "StrCat") || GeoTokenIs(&tokens->token[at - 1], "Str"))) {
+    at -= 2;
+    depth++;
+  }
+  return depth >= NESTED ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /*@
@@ -167,6 +223,8 @@ PetscErrorCode GeoStringsEvaluate(const GeoStrings *strings, const GeoTokens *to
     PetscCall(CopyToken(token, text));
   } else if (GeoTokenIs(token, "CurrentDirectory") || GeoTokenIs(token, "CurrentDir")) {
     PetscCall(PetscStrallocpy(directory, text));
+  } else if (NestedTooDeeply(tokens, *at)) {
+    PetscFunctionReturn(PETSC_SUCCESS);
   } else if (GeoTokenIs(token, "StrCat") || GeoTokenIs(token, "Str")) {
     PetscCall(EvaluateArguments(strings, tokens, at, directory, text));
   } else if (token->kind == GEO_WORD && EndsExpression(&tokens->token[*at])) {
@@ -195,7 +253,7 @@ uint64_t GeoStringsHash(const GeoStrings *strings)
     hash = HashBytes(hash, value, strlen(value) + 1);
     hash = HashBytes(hash, (const char *)&string->times, sizeof(string->times));
   }
-  return hash;
+  return HashBytes(hash, (const char *)&strings->shared, sizeof(strings->shared));
 }
 
 /*@
@@ -213,7 +271,9 @@ PetscErrorCode GeoStringsDestroy(GeoStrings *strings)
     PetscCall(PetscFree(strings->string[i].name));
     PetscCall(PetscFree(strings->string[i].value));
   }
+  for (int i = 0; i < strings->n_shown; i++) PetscCall(PetscFree(strings->shown[i]));
+  PetscCall(PetscFree(strings->shown));
   PetscCall(PetscFree(strings->string));
-  strings->n = strings->room = 0;
+  *strings = (GeoStrings){.scene = strings->scene};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

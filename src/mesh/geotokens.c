@@ -34,6 +34,33 @@ static size_t NumberLength(const char *at)
   return isdigit((unsigned char)at[e]) ? e + strspn(at + e, "0123456789") : n;
 }
 
+/* Words after which gmsh notes its place in the file, or goes on from another one. It reads by lines, and comes back to
+   the beginning of a line, whatever began on the line before. */
+static const char *const Jumps[] = {"If",     "Else",  "ElseIf",   "EndIf", "For",
+                                    "EndFor", "Macro", "Function", "Call",  "Return"};
+
+/* Tells whether one of these words stands in n characters, with no letter beside it. */
+static PetscBool HoldsJump(const char *at, size_t n)
+{
+  for (size_t i = 0; i < n; i++) {
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(Jumps); k++) {
+      const size_t length = strlen(Jumps[k]);
+
+      if (i + length > n || strncmp(at + i, Jumps[k], length)) continue;
+      if ((!i || !isalpha((unsigned char)at[i - 1])) && (i + length == n || !isalpha((unsigned char)at[i + length])))
+        return PETSC_TRUE;
+    }
+  }
+  return PETSC_FALSE;
+}
+
+static PetscBool IsJump(const GeoToken *token)
+{
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(Jumps); k++)
+    if (GeoTokenIs(token, Jumps[k])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Returns the length of the blanks and comments that begin here. */
 static size_t SkipLength(const char *at)
 {
@@ -43,6 +70,14 @@ static size_t SkipLength(const char *at)
   if (at[1] == '/') return strcspn(at, "\n");
   end = strstr(at + 2, "*/");
   return end ? (size_t)(end + 2 - at) : strlen(at);
+}
+
+/* Tells whether the last token is a word that ends right before this place. */
+static PetscBool IsJoined(const GeoTokens *tokens, const char *at)
+{
+  const GeoToken *last = tokens->n ? &tokens->token[tokens->n - 1] : NULL;
+
+  return last && last->kind == GEO_WORD && last->at + last->length == at ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Adds the token that begins here. Returns how many characters it takes. */
@@ -56,7 +91,13 @@ static PetscErrorCode AddNext(GeoTokens *tokens, const char *at, int line, size_
     const size_t length = strcspn(at + 1, quote);
 
     if (!at[1 + length]) tokens->wrong = "a text has no end";
-    if (length > TEXT_LENGTH) tokens->wrong = "a text has more than 1023 characters, after which gmsh reads commands";
+    if (length > TEXT_LENGTH)
+      tokens->wrong = "a text has more than 1023 characters, after which gmsh reads commands";
+    else if (memchr(at + 1, '\n', length) || memchr(at + 1, '\r', length) || HoldsJump(at + 1, length) ||
+             IsJoined(tokens, at))
+      tokens->wrong =
+        "gmsh may read a part of a text as commands, for its line end, its If or For, or the word that it "
+        "is joined to";
     PetscCall(AddToken(tokens, tokens->wrong ? GEO_END : GEO_TEXT, at + 1, length, line));
     *n = length + 2;
   } else if (BeginsWord(*at)) {
@@ -77,6 +118,19 @@ static int CountLines(const char *at, size_t n)
 
   for (size_t i = 0; i < n; i++) lines += at[i] == '\n';
   return lines;
+}
+
+/* A comment that is joined to a word, or that goes over several lines behind a jump, may be no comment to gmsh. */
+static void CheckComment(GeoTokens *tokens, const char *at, size_t n, int line)
+{
+  PetscBool jump = PETSC_FALSE;
+
+  if (IsJoined(tokens, at) && strchr("EI", *tokens->token[tokens->n - 1].at))
+    tokens->wrong = "gmsh may not see the comment that is joined to a word";
+  if (at[1] != '*' || !memchr(at, '\n', n)) return;
+  for (int k = tokens->n - 1; k >= 0 && tokens->token[k].line == line; k--)
+    if (IsJump(&tokens->token[k])) jump = PETSC_TRUE;
+  if (jump) tokens->wrong = "gmsh may read lines of the comment as commands, for the word before it, such as For";
 }
 
 /*@
@@ -101,6 +155,11 @@ PetscErrorCode GeoTokensCreate(const char *text, size_t size, GeoTokens *tokens)
   while (*at && !tokens->wrong) {
     size_t n = SkipLength(at);
 
+    if (*at == '/' && n) CheckComment(tokens, at, n, line);
+    if (tokens->wrong) {
+      PetscCall(AddToken(tokens, GEO_END, at, 0, line));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
     if (!n) PetscCall(AddNext(tokens, at, line, &n));
     if (tokens->wrong) PetscFunctionReturn(PETSC_SUCCESS);
     line += CountLines(at, n);

@@ -91,8 +91,8 @@ static PetscErrorCode ReadPipe(int end, char **text)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Runs gmsh without a shell and gives all that it printed, to be freed with PetscFree(). Unless `confined` is NULL, gmsh
-   can start no program and write in this folder only. The status is NO_PROGRAM where there is no gmsh. */
+/* Runs gmsh without a shell and gives all that it printed, to be freed with PetscFree(). Unless `confined` is NULL,
+   gmsh can start no program and write in this folder only. The status is NO_PROGRAM where there is no gmsh. */
 static PetscErrorCode GmshExecute(char *const arguments[], const char *confined, char **output, int *status)
 {
   char **environment;
@@ -276,18 +276,22 @@ static PetscErrorCode MeshIsWhole(const char *file, PetscBool *whole)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Runs gmsh on the .geo. The mesh gets its name when it is whole. gmsh may write in the folder `confined` only,
-   anywhere if this is NULL. */
-static PetscErrorCode MeshGeometry(Scene scene, const char *file, const char *confined, Complaint *complaint)
+/* Runs gmsh on the .geo, in a folder of its own, beyond which it may not write unless the user trusts the scene. The
+   mesh gets its name when it is whole. */
+static PetscErrorCode MeshGeometry(Scene scene, const char *file, PetscBool trust, Complaint *complaint)
 {
-  char         temporary[PETSC_MAX_PATH_LEN + TEXT_PARTS_IN_NAME], dim[16], order[16], errors[1024], *output;
+  char folder[PETSC_MAX_PATH_LEN + TEXT_PARTS_IN_NAME], temporary[sizeof(folder) + 8], dim[16], order[16], errors[1024],
+    *output;
   const char **arguments;
   int          n = 0, status;
   struct stat  made;
   PetscBool    whole;
 
   PetscFunctionBeginUser;
-  snprintf(temporary, sizeof(temporary), "%s.%d.tmp", file, (int)getpid());
+  snprintf(folder, sizeof(folder), "%s.%d", file, (int)getpid());
+  snprintf(temporary, sizeof(temporary), "%s/mesh", folder);
+  if (mkdir(folder, 0777) && errno != EEXIST)
+    Complain(complaint, "cannot make the directory '%s' for a mesh: %s", folder, strerror(errno));
   snprintf(dim, sizeof(dim), "-%d", scene->dim);
   snprintf(order, sizeof(order), "%d", PetscMax(scene->order, 1));
   const char *const fixed[] = {"gmsh",
@@ -314,7 +318,7 @@ static PetscErrorCode MeshGeometry(Scene scene, const char *file, const char *co
   arguments[n++] = "-o";
   arguments[n++] = temporary;
   arguments[n]   = NULL;
-  PetscCall(GmshExecute((char *const *)arguments, confined, &output, &status));
+  PetscCall(GmshExecute((char *const *)arguments, trust ? NULL : folder, &output, &status));
   ErrorLines(output, errors, sizeof(errors));
   PetscCall(MeshIsWhole(temporary, &whole));
   if (status || errors[0])
@@ -326,6 +330,7 @@ static PetscErrorCode MeshGeometry(Scene scene, const char *file, const char *co
   else if (rename(temporary, file))
     Complain(complaint, "cannot write '%s': %s", file, strerror(errno));
   unlink(temporary);
+  rmdir(folder);
   PetscCall(PetscFree(output));
   PetscCall(PetscFree(arguments));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -415,7 +420,7 @@ PetscErrorCode GmshGenerate(Scene scene, const char *directory, PetscBool trust,
     if (open || stat(file, &there)) {
       PetscCall(PetscTime(&start));
       PetscCall(MakeDirectories(directory, complaint));
-      if (!complaint->text[0]) PetscCall(MeshGeometry(scene, file, trust ? NULL : directory, complaint));
+      if (!complaint->text[0]) PetscCall(MeshGeometry(scene, file, trust, complaint));
       PetscCall(PetscTime(&end));
       *seconds = (PetscReal)(end - start);
     }

@@ -1,11 +1,28 @@
 /* Rigid tools as meshes, see toolshapes.h. */
 #include "toolshapes.h"
 #include <math.h>
+#include <string.h>
 
 /* A full circle has so many edges: its chords then lie within 0.06 % of the radius. */
 #define CIRCLE_EDGES 90
 /* A sphere has so many bands from pole to pole. */
 #define SPHERE_BANDS 45
+
+/* Makes the name of the last shape fit for a path in a file, and different from those of all others. */
+static PetscErrorCode SettleName(ToolShapes *shapes)
+{
+  ToolShape *last = &shapes->shape[shapes->n - 1];
+
+  PetscFunctionBeginUser;
+  for (char *at = last->name; *at; at++)
+    if (*at == '/') *at = '_';
+  for (int s = 0; s < shapes->n - 1; s++) {
+    if (strcmp(shapes->shape[s].name, last->name)) continue;
+    PetscCall(PetscStrlcat(last->name, "_", sizeof(last->name)));
+    s = -1;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 static PetscErrorCode AddShape(ToolShapes *shapes, ElementType type, PetscInt n_nodes, PetscInt n_cells,
                                ToolShape **added)
@@ -36,6 +53,7 @@ static PetscErrorCode AddMeshed(Mesh mesh, Scene scene, const MeshRigid *rigid, 
     PetscCall(AddShape(shapes, (ElementType)type, rigid->n_nodes, n, &shape));
     PetscCall(PetscSNPrintf(shape->name, sizeof(shape->name), "%s%s%s", rigid->name, n < rigid->n_faces ? " " : "",
                             n < rigid->n_faces ? ElementGet((ElementType)type)->name : ""));
+    PetscCall(SettleName(shapes));
     shape->number = body;
     shape->motion = &scene->bodies[body].motion;
     for (PetscInt k = 0; k < rigid->n_nodes; k++)
@@ -227,6 +245,7 @@ static PetscErrorCode AddAnalytic(Mesh mesh, Scene scene, int pair, ToolShapes *
   else
     PetscCall(AddRings(&frame, kind, shapes, &shape));
   PetscCall(PetscSNPrintf(shape->name, sizeof(shape->name), "%s_%s", contact->name, names[kind]));
+  PetscCall(SettleName(shapes));
   shape->number = scene->n_bodies + pair;
   shape->motion = &contact->motion;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -37,7 +37,9 @@ static void XdmfPrintDataset(FILE *out, const char *type, PetscInt n, int width,
 {
   fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"%s\" Precision=\"8\" Dimensions=\"%lld", type, (long long)n);
   if (width > 1) fprintf(out, " %d", width);
-  fprintf(out, "\">results.vtkhdf:%s</DataItem>", path);
+  fprintf(out, "\">results.vtkhdf:");
+  XdmfPrintText(out, path);
+  fprintf(out, "</DataItem>");
 }
 
 /* Prints an array of `width` columns at the nodes. */

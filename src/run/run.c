@@ -8,6 +8,19 @@
 #include "report/precheck.h"
 #include "report/rundirectory.h"
 
+/* Tells whether a PETSc option may write files or run scripts: a viewer with a file's name (ascii:FILE), a viewer that
+   always writes one, a name of a file, and solvers in Python. */
+static PetscBool OptionReachesOut(const char *key, const char *value)
+{
+  static const char *const viewers[] = {"binary", "hdf5", "vtk", "matlab", "saws", "socket", "python"};
+  const size_t             length    = strlen(key);
+
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(viewers); k++)
+    if (!strcmp(value, viewers[k])) return PETSC_TRUE;
+  if (strchr(value, ':') || strstr(key, "python")) return PETSC_TRUE;
+  return length >= 8 && !strcmp(key + length - 8, "filename") ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* Puts the scene's PETSc options into PETSc's database, below those of the environment and of the command line: only
    options that nobody has set. The database belongs to the process, so that RunDestroy() takes them out again. A value
    such as ascii:FILE has PETSc write a file, which a scene may do only if the user trusts it. */
@@ -19,10 +32,10 @@ static PetscErrorCode RunInsertOptions(Run *run, PetscBool trust)
     char      key[256];
     PetscBool set;
 
-    if (!trust && strchr(run->scene->petsc[i].value, ':'))
+    if (!trust && OptionReachesOut(run->scene->petsc[i].key, run->scene->petsc[i].value))
       PetscCall(RefuseInput(run->comm,
-                            "%s: '%s' names a file to write; allowed: values without ':' (-trust on the command line "
-                            "allows files, for a scene that you trust)",
+                            "%s: '%s' writes a file or runs a script; allowed: other options (-trust on the command "
+                            "line allows these, for a scene that you trust)",
                             SceneWhere(run->scene, "petsc", run->scene->petsc[i].key), run->scene->petsc[i].value));
     PetscCall(PetscSNPrintf(key, sizeof(key), "-%s", run->scene->petsc[i].key));
     PetscCall(PetscOptionsHasName(NULL, NULL, key, &set));

@@ -61,16 +61,34 @@ MAIN = {
     "late_value": ('Macro m\nInclude Str(f);\nReturn\nf = "good.geo"; Include "later.geo";', "made while gmsh runs"),
     "packed": ('Merge "x.geo.gz";', "another program"),
     "option": ('General.OptionsFileName = "x"; General.SaveOptions = 1;', "write files of its own"),
-    "solver": ('Solver.Executable0 = "sh";', "programs that gmsh runs"),
+    "solver": ('Solver . Executable0 = "sh";', "programs that gmsh runs"),
+    "index": ('General[0].SaveOptions = 1;', "write files of its own"),
+    "data_first": ('a = FileExists("evil1.geo"); Include "evil1.geo";', "evil1.geo:2: 'SystemCall' runs a program"),
+    "capitals": ('Merge "evil3.BREP";', "evil3.BREP:1: 'SystemCall' runs a program"),
+    "swallowed": (f"If (0)\nx = I\"; EndIf SystemCall '{TOUCH}'; //\";\nEndIf", "a part of a text as commands"),
+    "second_pass": (f'For i In {{1:2}} x = "\nSystemCall \'{TOUCH}\'; //";\nEndFor', "a part of a text as commands"),
+    "comment_pass": (f"For i In {{1:2}} /*\nSystemCall '{TOUCH}'; */\nEndFor", "lines of the comment as commands"),
+    "parameter": ('If (!Exists(f)) f = "good.geo"; EndIf Include Str(f);', "made while gmsh runs"),
+    "index_of_name": ('f_1 = "good.geo"; f~{1} = "evil1.geo"; Include Str(f_1);', "made while gmsh runs"),
+    "database": ('DefineConstant[f = {"good.geo", Name "P/f"}]; SetString("P/f", "evil1.geo"); Include Str(f);',
+                 "made while gmsh runs"),
+    "unfinished": ('Include StrCat(StrCat(StrCat(', "made while gmsh runs"),
+    "linked": ('Include "link.geo";', "here.geo:1: 'SystemCall' runs a program"),
 }
 write("evil1.geo", f'\nSystemCall "{TOUCH}";\n')
 write("evil2.txt", f'SystemCall "{TOUCH}";\n')
+write("evil3.BREP", f'SystemCall "{TOUCH}";\n')
 write("good.geo", "h = 1;\n")
+(place / "sub").mkdir()
+(place / "sub" / "real.geo").write_text('Include "here.geo";\n')
+(place / "sub" / "here.geo").write_text("h = 1;\n")
+(place / "link.geo").symlink_to("sub/real.geo")
+write("here.geo", f'SystemCall "{TOUCH}";\n')
 write("later.geo", 'f = "evil1.geo";\nCall m;\n')
 for name, (command, pattern) in MAIN.items():
     geometry = write(f"{name}.geo", SQUARE + command + "\n")
     before = footprint()
-    finished = scene(geometry)
+    finished = scene(geometry, overrides=["mesh.parameters={f: evil1.geo}"] if name == "parameter" else [])
     says(f"{name}: refused", pattern, finished)
     check.holds(f"{name}: exit 1, nothing done", finished.status == 1 and footprint() == before,
                 f"status {finished.status}, new: {set(footprint()) - set(before)}")
@@ -79,7 +97,7 @@ write("beside.geo.opt", f'SystemCall "{TOUCH}";\n')
 says("options beside the .geo: refused", r"beside.geo.opt:1: 'SystemCall'", scene(geometry))
 says("option as parameter: refused", "programs that gmsh runs",
      scene(write("plain.geo", SQUARE), overrides=["mesh.parameters={Solver.Executable0: sh}"]))
-says("PETSc option with a file: refused", "petsc.*names a file to write",
+says("PETSc option with a file: refused", "petsc.*writes a file",
      scene(place / "plain.geo", overrides=[f"petsc={{snes_view: 'ascii:{place}/done'}}"]))
 check.holds("nothing was done", not (place / "done").exists(), "no file")
 

@@ -12,12 +12,16 @@ typedef struct {
   char     *name, *value; /* value: NULL if it is no plain text */
   int       times;        /* how often the files set it */
   PetscBool constant;     /* in DefineConstant, which a parameter of the scene replaces */
+  PetscBool indexed;      /* NAME~{i}: it stands for all names with this beginning */
 } GeoString;
 
 typedef struct {
   Scene      scene; /* its parameters */
   int        n, room;
   GeoString *string;
+  PetscBool  shared; /* a constant may get its value from gmsh's database */
+  int        n_shown;
+  char     **shown; /* names of constants there */
 } GeoStrings;
 
 PetscErrorCode GeoStringsAdd(GeoStrings *, const GeoTokens *);
