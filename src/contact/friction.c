@@ -642,10 +642,10 @@ PetscErrorCode FrictionTerm(const ContactPair *pair, PetscInt c, PetscReal t, Fr
                             PetscBool *acts)
 {
   LawValue  value;
-  PetscReal gap, area;
+  PetscReal area;
 
   PetscFunctionBeginUser;
-  ContactTermLaw(pair, c, t, &value, &gap, &area);
+  ContactTermLaw(pair, c, t, &value, NULL, &area);
   *acts = (PetscBool)(value.stiffness > 0);
   if (*acts) PetscCall(FrictionTermAsk(pair, c, t, in, acts));
   if (*acts) TermEvaluate(pair, c, in, out);

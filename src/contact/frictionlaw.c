@@ -102,11 +102,13 @@ void FrictionComponents(const double normal[3], const double along[3], const dou
 /* Share of the slip that counts, and its derivative by the gap. */
 static double CountedShare(const FrictionInput *in, double *rate)
 {
-  const double depth = in->pressure / in->stiffness, way = in->began + depth;
+  double depth, way;
 
   *rate = 0;
   if (!(in->began > 0)) return 1;
-  if (!(depth > 0)) return 0;
+  if (!(in->pressure > 0)) return 0;
+  depth = in->pressure / in->stiffness;
+  way   = in->began + depth;
   *rate = -in->rate / in->stiffness * in->began / (way * way);
   return depth / way;
 }

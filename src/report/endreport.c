@@ -216,7 +216,7 @@ static void PrintEnergy(const EnergyFigures *energy, FILE *stream)
           (double)energy->growth);
   if (energy->lag > 0) /* of routines of users alone none is known */
     fprintf(stream,
-            "         stresses lag behind the turns of plastic flow by %.2g %% in the mean, forces by that or less\n",
+            "         stresses lag behind the turns of plastic flow by %.2g %% in the mean, as far as the steps show it\n",
             100 * (double)(energy->lag / energy->plastic));
 }
 

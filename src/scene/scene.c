@@ -181,10 +181,10 @@ static PetscErrorCode SceneReadStepping(Scene scene)
   scene->stepping.growth           = SchemaReal(document, "stepping.growth");
   if (SchemaHas(document, "stepping.plastic_strain"))
     scene->stepping.plastic_strain = SchemaReal(document, "stepping.plastic_strain");
-  if (SchemaHas(document, "stepping.plastic_lag") || scene->stepping.control != STEP_FIXED)
-    scene->stepping.plastic_lag = SchemaReal(document, "stepping.plastic_lag");
   for (int b = 0; b < scene->n_bodies; b++)
     flows = (PetscBool)(flows || (!scene->bodies[b].rigid && scene->bodies[b].material.law == MATERIAL_VON_MISES));
+  if (flows && (SchemaHas(document, "stepping.plastic_lag") || scene->stepping.control != STEP_FIXED))
+    scene->stepping.plastic_lag = SchemaReal(document, "stepping.plastic_lag");
   if (scene->stepping.plastic_strain > 0 && !flows)
     PetscCall(SceneRefuse(scene, "stepping", "plastic_strain",
                           "bounds plastic strains, which no body has; allowed: with law: von_mises", NULL));

@@ -292,8 +292,8 @@ const SchemaKey SchemaKeys[] = {
            "repeated with a smaller dt, down to dt_min. Without the key there is no bound"},
   {"stepping.plastic_lag", REAL, .range = "[0, inf)", .preset = "0.2",
    .help = "largest part by which the stresses of bodies that yield may lag behind their flow in a step, the mean "
-           "weighted with plastic work; a step with more is repeated with a smaller dt, down to dt_min. 0: no bound, "
-           "as without the key where control is fixed"},
+           "weighted with plastic work; a step with more is repeated with a smaller dt as long as that lessens it, "
+           "down to dt_min. 0: no bound, as without the key where control is fixed"},
   {"stepping.damping", CHOICE, .values = "none | auto", .preset = "none",
    .help = "auto: where static steps fail, the bodies are followed in pseudo-time, slowed down by a viscous restraint "
            "that is taken away before the step ends; the last screen says how much energy it took"},

@@ -10,8 +10,8 @@
    known. In the mean over the step's plastic work they flow by at most so many times their elastic strain. An elastic
    strain that turns no longer matters then, and the next step can tell how the flow turns. */
 #define STEPPER_BEGUN 20
-/* A step that was shortened for such a bound is to use at most this part of what the attempt before used, which had
-   twice the length or more. Else its length is not the cause, and shorter steps would not help. */
+/* A step that was shortened for its lag is to have at most this part of the lag of the attempt before, which was 1.4
+   times as long or longer. Else its length is not the cause, and shorter steps would not help. */
 #define STEPPER_GAIN 0.9
 /* A failed step is tried again with this part of its dt. */
 #define STEPPER_CUT 0.5
@@ -364,38 +364,38 @@ static PetscErrorCode ReportFailure(StepperReport *report, PetscReal t, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the flow of plastic bodies in a step uses of what the scene allows: 1 is all of it. The lag is measured against
-   the plastic work of the step, or against what the mean step of that length has where this one has less. */
-static PetscReal FlowUsed(LoadStepper stepper, const PlasticPath *path, PetscReal dt)
+/* What the lag of plastic bodies in a step uses of what the scene allows: 1 is all of it. It is measured against the
+   plastic work of the step, or against what the mean step of that length has where this one has less. */
+static PetscReal LagUsed(LoadStepper stepper, const PlasticPath *path, PetscReal dt)
 {
-  const Model     model  = stepper->model;
-  const PetscReal strain = model->scene->stepping.plastic_strain, lag = model->scene->stepping.plastic_lag,
-                  work = PetscMax(path->work, EnergyBalanceGet(model->balance).plastic * dt / model->t);
-  PetscReal       used = strain > 0 ? path->growth / strain : 0;
+  const Model     model = stepper->model;
+  const PetscReal lag   = model->scene->stepping.plastic_lag,
+                  work  = PetscMax(path->work, EnergyBalanceGet(model->balance).plastic * dt / model->t);
 
-  if (!(lag > 0 && work > 0)) return used;
-  return PetscMax(used, PetscMax(path->lag / lag, path->begun / STEPPER_BEGUN) / work);
+  return lag > 0 && work > 0 ? PetscMax(path->lag / lag, path->begun / STEPPER_BEGUN) / work : 0;
 }
 
 /* Says whether the bodies flow by no more than the scene allows in the step to the present solution, or dt is the
    smallest one. A step that is taken back is followed by a shorter one, one that stays bounds the next dt. A step
-   stays, too, that is shorter than the attempt before and uses as much: it does not come from the length. */
+   stays, too, that is shorter than the attempt before and lags as much: its lag does not come from the length. */
 static PetscErrorCode LoadStepperBoundFlow(LoadStepper stepper, PetscReal dt, PetscReal *most, PetscBool *within)
 {
   const Model     model  = stepper->model;
-  const PetscReal before = stepper->used;
+  const PetscReal before = stepper->used, strain = model->scene->stepping.plastic_strain;
+  PetscReal       growth, used;
   PlasticPath     path;
 
   PetscFunctionBeginUser;
   *most = stepper->size.dt_max;
   if (!model->balance) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!(model->scene->stepping.plastic_strain > 0 || model->scene->stepping.plastic_lag > 0))
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!(strain > 0 || model->scene->stepping.plastic_lag > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ElasticityPlasticPath(model->problem->elasticity, model->u, model->t, &path));
-  stepper->used = FlowUsed(stepper, &path, dt);
-  *within       = (PetscBool)(stepper->used <= 1 || dt <= stepper->size.dt_min ||
-                        (before > 0 && stepper->used > STEPPER_GAIN * before));
-  if (stepper->used > 0) *most = PetscMax(stepper->size.dt_min, STEPPER_STRAIN / stepper->used * dt);
+  growth        = strain > 0 ? path.growth / strain : 0;
+  stepper->used = LagUsed(stepper, &path, dt);
+  used          = PetscMax(growth, stepper->used);
+  *within       = (PetscBool)(dt <= stepper->size.dt_min ||
+                        (growth <= 1 && (stepper->used <= 1 || (before > 0 && stepper->used > STEPPER_GAIN * before))));
+  if (used > 0) *most = PetscMax(stepper->size.dt_min, STEPPER_STRAIN / used * dt);
   if (*within)
     *most = PetscMax(*most, STEPPER_CUT * dt);
   else
