@@ -5,8 +5,8 @@
    process: wrong input in the scene or in the mesh comes back as the status BURNISH_WRONG_INPUT with a message, and the
    program can go on with another scene. tests/library/library.c is a small example.
 
-   BurnishSetScene() and BurnishSetRestart() forget the values of BurnishSet(). Directory, overwrite, quiet and trust stay
-   until they are set again. A message and the path of a mesh file are valid until the next run or BurnishDestroy(). The
+   BurnishSetScene() and BurnishSetRestart() forget the values of BurnishSet(). Directory, overwrite, quiet and trust
+   stay until they are set again. A message and the path of a mesh file are valid until the next run or BurnishDestroy(). The
    value of a probe is NaN where it has none, for example without contact. Meshes that are made go to out/ in the
    working directory. One object runs at a time in a process, because PETSc's options and error handlers belong to the
    process.

@@ -1,7 +1,7 @@
 /* A spring at each free dof: force scale * weight (x - anchor), with its energy and tangent.
 
-   The owner gives the weights once and chooses the scale, 1 at first; with 0 there are no springs. They have no force at
-   the anchor, which DofSpringsAnchor() moves to a state; at first it is at displacements of 0. Functions that say so
+   The owner gives the weights once and chooses the scale, 1 at first; with 0 there are no springs. They have no force
+   at the anchor, which DofSpringsAnchor() moves to a state; at first it is at displacements of 0. Functions that say so
    accept NULL for no springs. */
 #pragma once
 #include "mesh/mesh.h"

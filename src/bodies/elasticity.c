@@ -287,8 +287,8 @@ static PetscBool VolumeIsStiff(Scene scene, PetscInt body)
   return (PetscBool)(moduli.kappa < moduli.projected);
 }
 
-/* Counts the multipliers, and makes room for those of the present, the accepted and a kept state. A mixed group has some if
-   the volume of one of its cells is too stiff. */
+/* Counts the multipliers, and makes room for those of the present, the accepted and a kept state. A mixed group has some
+   if the volume of one of its cells is too stiff. */
 static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
 {
   PetscInt   n = 0, n_yielding = 0;

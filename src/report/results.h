@@ -1,4 +1,4 @@
-/* The results of a run: its directory with results.vtkhdf and results.xdmf, steps.csv and summary.json, and the progress on
+/* The results of a run: its directory with results.vtkhdf, results.xdmf, steps.csv and summary.json, and the progress on
    the terminal. Ties the parts that write them; does not know how values were computed.
 
    ResultsCreate() touches no file. ResultsStart() makes the directory and prints the first lines, ResultsStep() writes

@@ -8,8 +8,8 @@
 #include "mesh/mesh.h"
 
 typedef struct {
-  char          name[160]; /* of the tool's surface; PAIR_plane, PAIR_cylinder or PAIR_sphere of an analytic one; no other
-                              shape has it */
+  char          name[160]; /* of the tool's surface; PAIR_plane, PAIR_cylinder or PAIR_sphere of an analytic one; each
+                              has another */
   int           number; /* index into the scene's bodies; of an analytic one their number plus the index of its pair */
   const Motion *motion;
   PetscInt      n_nodes, n_cells;

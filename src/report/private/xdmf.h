@@ -1,4 +1,4 @@
-/* results.xdmf: the text through which ParaView reads results.vtkhdf. XdmfWrite() writes it anew for all steps so far. */
+/* results.xdmf: the text through which ParaView reads results.vtkhdf. XdmfWrite() writes it anew for all steps. */
 #pragma once
 #include "fieldsindex.h"
 
