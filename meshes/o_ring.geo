@@ -1,4 +1,5 @@
-// The meridian plane of an O-ring in a groove with rounded edges, under a lid; x = r, y = z, lengths in mm. Groove and lid are curves.
+// The meridian plane of an O-ring in a groove with rounded edges, under a lid; x = r, y = z, lengths in mm. Groove and
+// lid are curves.
 DefineConstant[
   cord = {3.53, Name "diameter of the cord"}, mean = {53.53, Name "mean diameter of the ring"},
   depth = {2.8, Name "of the groove: depth"}, width = {4.7, Name "of the groove: width"},

@@ -19,11 +19,11 @@ RIM = "{name: answer, displacement: [30, 0], component: x}"
 POLE = "{name: answer, displacement: [30, 0, 0], component: x}"
 # name: (scene, overrides, slave, master, more of the entry, probe of the answer, whether its pressure is uniform)
 SCENES = {
-    "pipe": ("pipe_pinch", ("mesh.parameters={n_arc: 12, n_wall: 1, n_len: 5}", ), "plate_bottom", "pipe_outer", "", FORCE,
-             False),
+    "pipe": ("pipe_pinch", ("mesh.parameters={n_arc: 12, n_wall: 1, n_len: 5}", ), "plate_bottom", "pipe_outer", "",
+             FORCE, False),
     "plate": ("plate_cylinder_meshed",
-              ("mesh.parameters={h_contact: 1, h_far: 7, n_thick: 2, n_width: 2, cylinder: 1, facet: 1, n_cylinder_z: 4}",
-               "mesh.order=1"), "plate_bottom", "cylinder", "", TIP, False),
+              ("mesh.parameters={h_contact: 1, h_far: 7, n_thick: 2, n_width: 2, cylinder: 1, facet: 1, "
+               "n_cylinder_z: 4}", "mesh.order=1"), "plate_bottom", "cylinder", "", TIP, False),
     "rings": ("ring_in_ring", ("mesh.parameters.jitter=0.25", ), "inner_contact", "outer_contact",
               ", initial_overlap: resolve", RIM, True),
     "spheres": ("spheres", ("mesh.parameters.jitter=0.25", ), "inner_contact", "outer_contact",
@@ -74,8 +74,8 @@ def compare(rows, scene, formulation):
 
 
 def table(rows):
-    print("| scene | formulation | spread of the roles (%) | all against their mean (%) | iterations: named, swapped, all, listed | "
-          "noise of the pressure (rms, %) | CPU s |")
+    print("| scene | formulation | spread of the roles (%) | all against their mean (%) | "
+          "iterations: named, swapped, all, listed | noise of the pressure (rms, %) | CPU s |")
     print("| --- " * 7 + "|")
     for scene in SCENES:
         for formulation in FORMULATIONS:
@@ -86,8 +86,8 @@ def table(rows):
 
             spread = f"{spread:.2g}" if "swapped" in found else "-"
             noise = cells("noise_rms") if found["named"]["noise_rms"] else "-"
-            print(f"| {scene} | {formulation.replace('_', ' ')} | {spread} | {difference:+.2g} | {cells('iterations')} | "
-                  f"{noise} | {cells('cpu_s')} |")
+            print(f"| {scene} | {formulation.replace('_', ' ')} | {spread} | {difference:+.2g} | "
+                  f"{cells('iterations')} | {noise} | {cells('cpu_s')} |")
 
 
 def main():

@@ -143,7 +143,7 @@ def main():
     curve()
     record(arguments.record)
     print("pictures: " + ", ".join(str(path) for path in sorted(OUT.glob("pipe_pinch*.png"))))
-    print("ParaView: " + ", ".join(str(directory(name) / "results.xdmf") for name in RUNS))
+    print("ParaView: " + ", ".join(str(directory(name) / "results.vtkhdf") for name in RUNS))
 
 
 main()

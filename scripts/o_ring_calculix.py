@@ -9,8 +9,8 @@ The stiffness of CalculiX's contact is that many times Young's modulus over 1 mm
 lower. A run of CalculiX is stopped after --limit CPU seconds.
     build/venv/bin/python scripts/o_ring_calculix.py --solid
 does the same for a quarter of the ring in space (runs/rubber/o_ring_3d.yaml): mixed hex27, tet10 and tet4, and C3D20R
-on the mesh of hex27, without the inner nodes. `axisymmetric` is the force over that of the axisymmetric ring, whose
-mesh is the cross-section. It writes runs/records/o_ring_3d.csv. All forces are over 360 degrees."""
+on the coarser mesh of hex27, without the inner nodes. `axisymmetric` is the force over that of the axisymmetric ring,
+whose mesh is the cross-section. It writes runs/records/o_ring_3d.csv. All forces are over 360 degrees."""
 import argparse
 import csv
 import math
@@ -31,8 +31,9 @@ DEPTH, WIDTH, FOOT, EDGE = 2.8, 4.7, 0.4, 0.2  # of the groove, as in meshes/o_r
 NUS = (0.45, 0.49, 0.499, 0.4999, 0.5)
 COLUMNS = ("code", "element", "n", "arc", "nu", "increment", "status", "steps", "failed", "iterations", "cpu_s",
            "force", "axisymmetric")
-# Quarters in space: element, order, tetrahedra, elements along a quarter of the cord, elements around
-SOLIDS = (("hex27", 2, 0, 4, 6), ("tet10", 2, 1, 4, 12), ("tet4", 1, 1, 6, 12), ("tet4", 1, 1, 8, 24))
+# Quarters in space: element, order, tetrahedra, elements along a quarter of the cord, elements around, Poisson's ratios
+SOLIDS = (("hex27", 2, 0, 4, 6, (0.499, 0.5)), ("hex27", 2, 0, 6, 8, (0.499, )), ("tet10", 2, 1, 4, 12, (0.499, 0.5)),
+          ("tet4", 1, 1, 6, 12, (0.499, 0.5)), ("tet4", 1, 1, 8, 24, (0.499, )))
 SOLID_NUS = (0.499, 0.5)
 TOOLS = 4  # elements of groove and lid around the axis for one of the ring, which follow the circle closely enough
 TOOL = 100000  # from this number on nodes and elements are those of groove, lid and spring
@@ -238,14 +239,14 @@ def rings(directory):
 def solids(directory):
     """Rows of the quarter in space."""
     for nu in SOLID_NUS:
-        for element, order, simplex, n, arc in SOLIDS:
+        for element, order, simplex, n, arc in (case[:5] for case in SOLIDS if nu in case[5]):
             flat = {"hex27": "quad9", "tet10": "tri6", "tet4": "tri3"}[element]
             mesh, row = burnish(flat, "runs/o_ring.yaml", plane(order, simplex, n), "neo_hookean", nu, directory)
             force = row["force"]
             overrides = (*plane(order, simplex, n), f"mesh.parameters.arc={arc}", "output.every=0")
             found = [burnish(element, "runs/rubber/o_ring_3d.yaml", overrides, "neo_hookean", nu, directory)[1]]
             found[0]["force"] = found[0]["force"] and 4 * found[0]["force"]
-            for step in args.increments if element == "hex27" and nu <= 0.499 else ():
+            for step in args.increments if (element, n) == ("hex27", 4) and nu <= 0.499 else ():
                 lines = swept(deck(mesh, nu, step, args.stiffness), arc)
                 found.append(calculix(lines, "C3D20R", nu, step, 4, directory))
             for row in found:

@@ -16,7 +16,8 @@ EndFor
 For i In {0:1}
   For k In {0:1}
     p = 10 * i + 4 * k; l = 100 * (i + 1) + 10 * k;
-    Line(l + 1) = {p + 1, p + 2}; Line(l + 2) = {p + 2, p + 3}; Line(l + 3) = {p + 3, p + 4}; Line(l + 4) = {p + 4, p + 1};
+    Line(l + 1) = {p + 1, p + 2}; Line(l + 2) = {p + 2, p + 3};
+    Line(l + 3) = {p + 3, p + 4}; Line(l + 4) = {p + 4, p + 1};
     Curve Loop(l) = {l + 1, l + 2, l + 3, l + 4}; Plane Surface(l) = {l};
     Transfinite Curve{l + 1, l + 3} = Round(n_thick * refine) + 1;
     Transfinite Curve{l + 2, l + 4} = Round(n_len * refine) + 1;

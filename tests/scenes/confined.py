@@ -10,7 +10,8 @@ E, NU, WIDTH, J = 5, 0.45, 20, 10 / 12
 MU, LAMBDA = E / 2 / (1 + NU), E * NU / (1 + NU) / (1 - 2 * NU)
 FORCE = -WIDTH * (MU * (J - 1 / J) + LAMBDA * math.log(J) / J)  # neo-Hookean, stretched along one axis alone
 FACE = 2  # size of the block's faces
-for name, contact in (("named", ()), ("list", ("contact=[{name: fit, surfaces: all, formulation: node_to_surface}]", ))):
+LIST = "contact=[{name: fit, surfaces: all, formulation: node_to_surface}]"
+for name, contact in (("named", ()), ("list", (LIST, ))):
     summary = run(args, SCENES / "confined.yaml", out=name, overrides=contact).summary()
     check.near(f"{name}: force", summary["probes"]["push"] / FORCE, 1, 3e-3)
     check.near(f"{name}: corner across", summary["probes"]["corner_x"] / FACE, 0, 1e-3)

@@ -34,7 +34,8 @@ class Run:
                     for row in csv.DictReader(file, skipinitialspace=True)]
 
     def fields(self):
-        """Node coordinates and every field of the last written step but components of tensors, contact fields as contact/PAIR/NAME."""
+        """Node coordinates and every field of the last written step but components of tensors, contact fields as
+        contact/PAIR/NAME."""
         fields = {}
         with h5py.File(self.directory / "results.h5", "r") as file:
             last = file["steps"][sorted(file["steps"])[-1]]

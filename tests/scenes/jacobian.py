@@ -78,8 +78,8 @@ for form, n_arc in (("node_to_surface", 10), ("surface_to_surface", 16)):
 
 SLIPPING = ["contact.0.friction.mu=0.2"]
 STICKING = ["contact.0.friction.mu=2"]
-# A node that begins a step with a tiny opening has a share of slip (beta) that rises within that opening: too curved for
-# one-sided differences of any step. With steps of 0.1 there is one such node, with steps of 0.06 there is none.
+# A node that begins a step with a tiny opening has a share of slip (beta) that rises within that opening: too curved
+# for one-sided differences of any step. With steps of 0.1 there is one such node, with steps of 0.06 there is none.
 TURN_STICKING = STICKING + ["stepping.initial=0.06"]
 for name, own in (("sticks", STICKING), ("slips", SLIPPING)):
     turn = TURN_STICKING if own is STICKING else own

@@ -157,7 +157,8 @@ def bumper():
 
 
 def edges():
-    """Beams that cross edge on edge: a run that judges its steps stops at the place, another one says what it leaves."""
+    """Beams that cross edge on edge: a run that judges its steps stops at the place, another one says what it
+    leaves."""
     judged = run(args, BEAMS, out="judged", must=2, overrides=["output.certificate=true"])
     check.holds("the edge is named", "the edge of the nodes" in judged.text and "any.lower.upper" in judged.text)
     free = run(args, BEAMS, out="unjudged")

@@ -1,5 +1,5 @@
-"""results.vtkhdf shows VTK what it holds by steps, and tools that move: read by h5py as the format says, and by VTK's own reader
-where Python has it."""
+"""results.vtkhdf shows VTK what it holds by steps, and tools that move: read by h5py as the format says, and by VTK's
+own reader where Python has it."""
 
 import pathlib
 
@@ -41,10 +41,12 @@ def by_format(what, path):
     with h5py.File(path, "r") as file:
         part, steps = file["VTKHDF"], sorted(file["steps"])
         nodes, tool = len(file["mesh/nodes"]), next(iter(file["tools"].values()))
-        check.holds(f"{what}: header", part.attrs["Type"] == b"UnstructuredGrid" and list(part.attrs["Version"]) == [2, 0])
+        check.holds(f"{what}: header",
+                    part.attrs["Type"] == b"UnstructuredGrid" and list(part.attrs["Version"]) == [2, 0])
         check.holds(f"{what}: steps", part["Steps"].attrs["NSteps"] == len(steps) == len(part["Steps/Values"]) and
                     list(part["Steps/Values"]) == [file["steps"][step].attrs["t"] for step in steps], f"{len(steps)}")
-        check.holds(f"{what}: points", numpy.array_equal(part["Points"], numpy.vstack([file["mesh/nodes"], tool["nodes"]])))
+        check.holds(f"{what}: points",
+                    numpy.array_equal(part["Points"], numpy.vstack([file["mesh/nodes"], tool["nodes"]])))
         cells, ends = part["Connectivity"][()], part["Offsets"][()]
         check.holds(f"{what}: cells", ends[-1] == len(cells) and len(ends) == len(part["Types"]) + 1
                     and cells[:ends[len(file["mesh/block_0"])]].max() < nodes and cells[ends[-2]:].min() >= nodes
@@ -52,8 +54,9 @@ def by_format(what, path):
         same = True
         for k, step in enumerate(steps):
             group = file["steps"][step]
+            moved = group["tools"][tool.name.split("/")[-1]]
             same &= numpy.array_equal(array(file, "displacement", k)[:nodes], group["displacement"])
-            same &= numpy.array_equal(array(file, "displacement", k)[nodes:], group["tools"][tool.name.split("/")[-1]]["displacement"])
+            same &= numpy.array_equal(array(file, "displacement", k)[nodes:], moved["displacement"])
             same &= numpy.array_equal(array(file, "stress", k)[:nodes], group["stress"])
             same &= numpy.array_equal(array(file, "stress_xy", k)[:nodes], group["stress"][:, 3])
             same &= numpy.array_equal(array(file, "pressure", k)[:nodes], group["pressure"])
@@ -97,7 +100,8 @@ for name, (geometry, order, tool) in TOOLS.items():
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(SCENE.format(mesh=scene, geometry=geometry, order=order, tool=tool))
     directory = run(args, path, "-quiet", out=name).directory
-    check.holds(f"{name}: second name", (directory / "results.vtkhdf").resolve() == (directory / "results.h5").resolve())
+    check.holds(f"{name}: second name",
+                (directory / "results.vtkhdf").resolve() == (directory / "results.h5").resolve())
     for reader in readers:
         reader(name, directory / "results.vtkhdf")
 check.finish()
