@@ -31,7 +31,7 @@ FILE = re.compile(r"(?://|#) ([\w/]+\.(?:geo|yaml))\b")  # first line of a block
 COPY = re.compile(r"(?<=<!-- the file )(\S+)( -->\n```\w+\n)(.*?)(?=^```$)", re.DOTALL | re.MULTILINE)
 PROGRAM = re.compile(r"\s*(\$ )?(make|mpirun|burnish|build/\S+|scripts/\S+|\w*/?python3?|export|cmake|ctest|pkg-config"
                      r"|sbatch|qsub|module|spack|apt|apt-get|sudo|git|pip)\s+\S")
-KINDS = ("sh", "console", "c", "yaml", "text")
+KINDS = ("sh", "console", "c", "python", "yaml", "text")
 PATH = re.compile(r"(?:src|include|tests|scripts|runs|meshes|doc)/[\w/.-]*\w")
 ROW = re.compile(r"^\| `(out/\w+)` \|(.*)\|$", re.MULTILINE)  # of a table with figures of that run
 TOLERANCE = 5e-3  # of numbers: steps depend a little on rounding and on the version of gmsh
