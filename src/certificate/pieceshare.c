@@ -55,12 +55,13 @@ static PetscErrorCode ListNear(Side side, const Box near, int n_images, const Su
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sends pieces to the ranks whose boxes they meet. counts, starts: bytes. */
+/* Sends pieces to the ranks whose boxes they meet. */
 static PetscErrorCode SendPieces(MPI_Comm comm, int ranks, const Box *boxes, const PieceList *mine, PieceList *list)
 {
   PetscMPIInt *count, *start, *arrive, *from;
   PetscInt     n = 0;
   Piece       *send;
+  MPI_Datatype piece;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc4(ranks, &count, ranks + 1, &start, ranks, &arrive, ranks + 1, &from));
@@ -73,15 +74,18 @@ static PetscErrorCode SendPieces(MPI_Comm comm, int ranks, const Box *boxes, con
         if (pass) send[n] = mine->pieces[k];
         n++;
       }
-      start[r + 1] = (PetscMPIInt)(n * (PetscInt)sizeof(Piece));
-      count[r]     = start[r + 1] - start[r];
+      PetscCall(PetscMPIIntCast(n, &start[r + 1]));
+      count[r] = start[r + 1] - start[r];
     }
   }
   PetscCallMPI(MPI_Alltoall(count, 1, MPI_INT, arrive, 1, MPI_INT, comm));
   for (int r = 0; r < ranks; r++) from[r + 1] = from[r] + arrive[r];
-  list->n = from[ranks] / (PetscInt)sizeof(Piece);
+  list->n = from[ranks];
   PetscCall(PieceListRoom(list, list->n));
-  PetscCallMPI(MPI_Alltoallv(send, count, start, MPI_BYTE, list->pieces, arrive, from, MPI_BYTE, comm));
+  PetscCallMPI(MPI_Type_contiguous((int)sizeof(Piece), MPI_BYTE, &piece));
+  PetscCallMPI(MPI_Type_commit(&piece));
+  PetscCallMPI(MPI_Alltoallv(send, count, start, piece, list->pieces, arrive, from, piece, comm));
+  PetscCallMPI(MPI_Type_free(&piece));
   PetscCall(PetscFree(send));
   PetscCall(PetscFree4(count, start, arrive, from));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -256,8 +256,8 @@ static PetscErrorCode CreateOwners(Mesh mesh, const PetscInt point_node[])
   }
   mesh->n_body_owned = mesh->n_body_nodes - n_ghosts / copies;
   for (PetscInt k = 0; k < n_tool_nodes && rank; k++)
-    SetGhost(mesh, copies * mesh->n_body_nodes + k, 0, copies * n_body_nodes[0] + k, &leaf[n_ghosts],
-             &remote[n_ghosts], &n_ghosts);
+    SetGhost(mesh, copies * mesh->n_body_nodes + k, 0, copies * n_body_nodes[0] + k, &leaf[n_ghosts], &remote[n_ghosts],
+             &n_ghosts);
   mesh->n_owned = mesh->n_nodes - n_ghosts;
   PetscCall(PetscFree(n_body_nodes));
   PetscCall(PetscSFCreate(mesh->comm, &mesh->node_sf));
