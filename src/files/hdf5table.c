@@ -329,3 +329,32 @@ PetscErrorCode Hdf5TableOpenFile(MPI_Comm comm, const char *name, unsigned mode,
   CallHDF5(H5Pclose(access));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  Hdf5WriteAttribute - writes an attribute of a group or a dataset, in the place of one of the same name.
+
+  Collective on the file
+
+  Input Parameters:
++ object - the group or the dataset
+. name   - of the attribute
+. type   - HDF5 type of the values
+. n      - number of values; 1 makes a scalar
+- values - the values
+
+  Note:
+  Errors: PETSC_ERR_FILE_WRITE.
+@*/
+PetscErrorCode Hdf5WriteAttribute(hid_t object, const char *name, hid_t type, hsize_t n, const void *values)
+{
+  hid_t space, attribute;
+
+  PetscFunctionBeginUser;
+  if (H5Aexists(object, name) > 0) CallHDF5(H5Adelete(object, name));
+  CallHDF5(space = n > 1 ? H5Screate_simple(1, &n, NULL) : H5Screate(H5S_SCALAR));
+  CallHDF5(attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
+  CallHDF5(H5Awrite(attribute, type, values));
+  CallHDF5(H5Aclose(attribute));
+  CallHDF5(H5Sclose(space));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

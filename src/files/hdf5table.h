@@ -3,7 +3,7 @@
 
    Each rank has items of its own. Hdf5TableCreate() says which row of the table each item has; each rank writes or
    reads a contiguous part of the rows. Hdf5TableWriteReals() and Hdf5TableWriteIntegers() write items as a dataset;
-   Hdf5TableCollect() and Hdf5TableSpread() bring items to their rows and back. */
+   Hdf5TableCollect() and Hdf5TableSpread() bring items to their rows and back. Hdf5WriteAttribute() writes attributes. */
 #pragma once
 #include "base/petsccompat.h"
 #include <hdf5.h>
@@ -34,3 +34,4 @@ PetscErrorCode Hdf5TableWriteIntegers(hid_t file, const char *path, const Hdf5Ta
 PetscErrorCode Hdf5TableCreateFile(MPI_Comm, const char *name, hid_t *file);
 PetscErrorCode Hdf5TableCreateFileBehind(MPI_Comm, const char *name, hsize_t own, hid_t *file);
 PetscErrorCode Hdf5TableOpenFile(MPI_Comm, const char *name, unsigned access, hid_t *file);
+PetscErrorCode Hdf5WriteAttribute(hid_t object, const char *name, hid_t type, hsize_t n, const void *values);

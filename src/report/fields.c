@@ -76,21 +76,6 @@ static const struct {
 enum { FRICTION_FIELDS = 3 };
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 
-/* Writes an attribute: a scalar, or n > 1 values. */
-static PetscErrorCode FileWriteAttribute(hid_t object, const char *name, hid_t type, int n, const void *value)
-{
-  const hsize_t size = (hsize_t)n;
-  hid_t         space, attribute;
-
-  PetscFunctionBeginUser;
-  CallHDF5(space = n > 1 ? H5Screate_simple(1, &size, NULL) : H5Screate(H5S_SCALAR));
-  CallHDF5(attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
-  CallHDF5(H5Awrite(attribute, type, value));
-  CallHDF5(H5Aclose(attribute));
-  CallHDF5(H5Sclose(space));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscBool FieldsShows(Fields fields, int kind)
 {
   switch (kind) {
@@ -452,7 +437,7 @@ static PetscErrorCode FieldsWriteMaster(Fields fields, hid_t file, int pair)
   if (master->shape != ANALYTIC_PLANE) values[n++] = master->radius;
   PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d/contact/%s", (int)fields->n_written, contact->name));
   CallHDF5(group = H5Gopen2(file, path, H5P_DEFAULT));
-  PetscCall(FileWriteAttribute(group, names[master->shape], H5T_NATIVE_DOUBLE, n, values));
+  PetscCall(Hdf5WriteAttribute(group, names[master->shape], H5T_NATIVE_DOUBLE, n, values));
   CallHDF5(H5Gclose(group));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -731,8 +716,8 @@ PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
   if (FieldsShows(fields, SHOW_CONTACT) && !FieldsHoldContact(fields)) PetscCall(FieldsWriteSlaveNodes(fields, file));
   PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d", (int)fields->n_written));
   CallHDF5(group = H5Gcreate2(file, path, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  PetscCall(FileWriteAttribute(group, "t", H5T_NATIVE_DOUBLE, 1, &t));
-  PetscCall(FileWriteAttribute(group, "step", H5T_NATIVE_INT64, 1, &number));
+  PetscCall(Hdf5WriteAttribute(group, "t", H5T_NATIVE_DOUBLE, 1, &t));
+  PetscCall(Hdf5WriteAttribute(group, "step", H5T_NATIVE_INT64, 1, &number));
   CallHDF5(H5Gclose(group));
   if (FieldsShows(fields, SHOW_DISPLACEMENT)) PetscCall(FieldsWriteDisplacement(fields, file));
   if (FieldsShows(fields, SHOW_STRESS)) PetscCall(FieldsWriteStress(fields, file));

@@ -56,20 +56,6 @@ static PetscBool Exists(hid_t place, const char *path)
   return PETSC_FALSE;
 }
 
-static PetscErrorCode WriteAttribute(hid_t object, const char *name, hid_t type, hsize_t n, const void *value)
-{
-  hid_t space, attribute;
-
-  PetscFunctionBeginUser;
-  if (H5Aexists(object, name) > 0) CallHDF5(H5Adelete(object, name));
-  CallHDF5(space = n > 1 ? H5Screate_simple(1, &n, NULL) : H5Screate(H5S_SCALAR));
-  CallHDF5(attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
-  CallHDF5(H5Awrite(attribute, type, value));
-  CallHDF5(H5Aclose(attribute));
-  CallHDF5(H5Sclose(space));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Measures the grid. */
 static void Measure(Part *part)
 {
@@ -291,11 +277,11 @@ static PetscErrorCode CreatePart(Part *part)
 
   PetscFunctionBeginUser;
   CallHDF5(part->vtk = H5Gcreate2(part->file, "/VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  PetscCall(WriteAttribute(part->vtk, "Version", H5T_NATIVE_INT64, 2, version));
+  PetscCall(Hdf5WriteAttribute(part->vtk, "Version", H5T_NATIVE_INT64, 2, version));
   CallHDF5(text = H5Tcopy(H5T_C_S1));
   CallHDF5(H5Tset_size(text, sizeof(kind) - 1));
   CallHDF5(H5Tset_strpad(text, H5T_STR_NULLPAD));
-  PetscCall(WriteAttribute(part->vtk, "Type", text, 1, kind));
+  PetscCall(Hdf5WriteAttribute(part->vtk, "Type", text, 1, kind));
   CallHDF5(H5Tclose(text));
   PetscCall(WriteValues(part->vtk, "NumberOfPoints", H5T_NATIVE_INT64, 1, &counts[0]));
   PetscCall(WriteValues(part->vtk, "NumberOfCells", H5T_NATIVE_INT64, 1, &counts[1]));
@@ -428,7 +414,7 @@ static PetscErrorCode MakeRoom(Part *part)
     part->room = FIRST_STEPS;
     while (part->room < steps) part->room *= MORE_STEPS;
     room = (int64_t)part->room;
-    PetscCall(WriteAttribute(part->vtk, "room", H5T_NATIVE_INT64, 1, &room));
+    PetscCall(Hdf5WriteAttribute(part->vtk, "room", H5T_NATIVE_INT64, 1, &room));
     PetscCall(CreateArrays(part, PETSC_TRUE));
   } else {
     PetscCall(CreateArrays(part, PETSC_FALSE));
@@ -511,7 +497,7 @@ static PetscErrorCode CountStep(Part *part)
     PetscCall(ExtendTable(steps, StepTables[k].name, rows, StepTables[k].value, 0));
   PetscCall(ExtendOffsets(part, steps, rows));
   PetscCall(ExtendValues(part->index, steps, rows));
-  PetscCall(WriteAttribute(steps, "NSteps", H5T_NATIVE_INT64, 1, &count));
+  PetscCall(Hdf5WriteAttribute(steps, "NSteps", H5T_NATIVE_INT64, 1, &count));
   CallHDF5(H5Gclose(steps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
