@@ -105,6 +105,7 @@ typedef struct {
   PetscReal force;    /* sum of the normal forces; axisymmetric: over 360 degrees */
   PetscReal pressure; /* mean, each node weighted by its force (force per area) */
   PetscReal peak;     /* largest pressure of a node */
+  PetscReal friction[3]; /* sum of the forces by friction */
 } ContactLoad;
 
 /* What friction does in a pair, over all its slave nodes. */
@@ -165,9 +166,11 @@ PetscErrorCode ContactUnpredictedEnergy(Contact, const PetscReal *u, PetscReal t
 /* Penalties and multipliers */
 PetscErrorCode ContactSoften(Contact, PetscReal most);
 PetscErrorCode ContactStiffest(Contact, PetscReal *most);
-PetscErrorCode ContactScalePenalty(Contact, PetscReal factor);
+PetscErrorCode ContactScalePenalty(Contact, PetscReal factor, PetscReal stick);
 PetscErrorCode ContactStiffen(Contact, int pair, PetscReal factor);
+PetscErrorCode ContactStiffenStick(Contact, int pair, PetscReal factor);
 PetscReal      ContactPairInitialPenalty(Contact, int pair);
+PetscReal      ContactPairStick(Contact, int pair);
 PetscErrorCode ContactPairFriction(Contact, int pair, ContactFriction *);
 PetscErrorCode ContactPairLoad(Contact, int pair, const PetscReal *u, ContactLoad *);
 PetscErrorCode ContactAdjustPenalty(Contact, ContactWindowState *);

@@ -19,6 +19,7 @@ PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, PetscBool frict
   PetscFunctionBeginUser;
   state->n        = n;
   state->friction = friction;
+  state->stick    = 1;
   PetscCall(
     PetscCalloc5(n, &state->penalty, n, &state->status, n, &state->gap, n, &state->offset, n, &state->multiplier));
   for (PetscInt c = 0; c < n; c++) {
@@ -52,6 +53,7 @@ PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to)
     PetscCall(PetscArraycpy(to->traction, from->traction, 3 * from->n));
     PetscCall(PetscArraycpy(to->slid, from->slid, from->n));
     PetscCall(PetscArraycpy(to->slips, from->slips, from->n));
+    to->stick      = from->stick;
     to->dissipated = from->dissipated;
     to->turned     = from->turned;
   }
@@ -101,6 +103,8 @@ static PetscErrorCode ArchiveFriction(ContactState *state, Archive archive, cons
   PetscCall(PetscFree(slips));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energies, 2, MPIU_REAL, MPIU_SUM, comm));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/stick", name));
+  PetscCall(ArchiveReals(archive, path, 1, &state->stick));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/dissipated", name));
   PetscCall(ArchiveReals(archive, path, 2, energies));
   if (ArchiveLoads(archive)) {

@@ -18,6 +18,7 @@ typedef struct {
   PetscBool  friction; /* there is room for these; without nodes they are NULL on a rank */
   PetscReal *traction, *slid;
   PetscBool *slips;
+  PetscReal  stick;      /* factor on the automatic penalty of what sticks, the same on all ranks */
   PetscReal  dissipated; /* energy that friction has taken so far on this rank */
   PetscReal  turned;     /* part of it that nodes took whose slip turned much within a step */
   PetscInt   augmented;  /* times that pressures became multipliers; on rank 0 */

@@ -8,15 +8,19 @@
 
   Input Parameters:
 + contact - the contact
-- factor  - the same on all ranks; 1 ends it
+. factor  - on those of pressures, the same on all ranks; 1 ends it
+- stick   - on the penalty of what sticks, the same on all ranks; 1 ends it
 
   Note:
   The penalties themselves do not change.
 @*/
-PetscErrorCode ContactScalePenalty(Contact contact, PetscReal factor)
+PetscErrorCode ContactScalePenalty(Contact contact, PetscReal factor, PetscReal stick)
 {
   PetscFunctionBeginUser;
-  for (int p = 0; p < contact->n_pairs; p++) contact->pairs[p].trial_factor = factor;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    contact->pairs[p].trial_factor = factor;
+    contact->pairs[p].trial_stick  = stick;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -43,6 +47,30 @@ PetscErrorCode ContactStiffen(Contact contact, int p, PetscReal factor)
 }
 
 /*@
+  ContactStiffenStick - multiplies the penalty of what sticks in a pair, in the present state.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+. p       - number of the pair
+- factor  - the same on all ranks
+
+  Note:
+  For pairs whose scene names neither that penalty nor an elastic slip. What the step began with of elastic slip stays,
+  so that its traction grows by the factor, and equilibrium takes the slip back.
+@*/
+PetscErrorCode ContactStiffenStick(Contact contact, int p, PetscReal factor)
+{
+  ContactPair *pair = &contact->pairs[p];
+
+  PetscFunctionBeginUser;
+  pair->now.stick *= factor;
+  if (pair->friction) pair->friction->stiffness *= factor;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactPairLoad - sums up how a pair presses.
 
   Collective
@@ -53,25 +81,44 @@ PetscErrorCode ContactStiffen(Contact contact, int p, PetscReal factor)
 - u       - local displacements of that residual, u[n_nodes*dim] (length)
 
   Output Parameter:
-. load - force, mean pressure and largest pressure
+. load - force, mean pressure, largest pressure and friction
 @*/
 PetscErrorCode ContactPairLoad(Contact contact, int p, const PetscReal *u, ContactLoad *load)
 {
-  ContactNodes nodes;
-  PetscReal    sum[2] = {0, 0}, most = 0;
+  const Friction friction = contact->pairs[p].friction;
+  ContactNodes   nodes;
+  PetscReal      sum[5] = {0}, most = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetNodes(contact, p, u, &nodes));
   for (PetscInt c = 0; c < nodes.n; c++) {
+    for (int d = 0; d < 3 && friction; d++) sum[2 + d] += friction->nodal[3 * c + d];
     if (!(nodes.force[c] > 0)) continue;
     sum[0] += nodes.force[c];
     sum[1] += nodes.force[c] * nodes.pressure[c];
     most = PetscMax(most, nodes.pressure[c]);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 5, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
-  *load = (ContactLoad){.force = sum[0], .pressure = sum[0] > 0 ? sum[1] / sum[0] : 0, .peak = most};
+  *load = (ContactLoad){.force    = sum[0],
+                        .pressure = sum[0] > 0 ? sum[1] / sum[0] : 0,
+                        .peak     = most,
+                        .friction = {sum[2], sum[3], sum[4]}};
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairStick - returns the factor on the automatic penalty of what sticks in a pair.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+@*/
+PetscReal ContactPairStick(Contact contact, int p)
+{
+  return contact->pairs[p].now.stick;
 }
 
 /*@

@@ -489,21 +489,22 @@ static void TermMaterial(const ContactPair *pair, PetscInt c, PetscReal t, Petsc
 {
   *in = (FrictionInput){.cohesion  = pair->scene->cohesion,
                         .limit     = pair->scene->tau_max,
-                        .stiffness = pair->friction->stiffness,
+                        .stiffness = pair->trial_stick * pair->friction->stiffness,
                         .pressure  = pressure};
 
   in->coefficient = TermCoefficient(pair, c, t, pressure, &in->steepness);
 }
 
-/* Sets the penalty of what sticks for the step, where the scene names the elastic slip at which nodes begin to slip:
-   each of them can bear its bound at the accepted pressures. The tractions alone are state, so that the penalty may
-   change from step to step. */
+/* Sets the penalty of what sticks for the step: the automatic one with the factor of the state, or, where the scene
+   names the elastic slip at which nodes begin to slip, one with which each of them can bear its bound at the accepted
+   pressures. The tractions are state and no slips, so that the penalty may change from step to step. */
 static PetscErrorCode SetStiffness(ContactPair *pair, PetscReal t)
 {
   const PetscReal slip = pair->scene->stick_slip;
   PetscReal       most = 0;
 
   PetscFunctionBeginUser;
+  pair->friction->stiffness = pair->friction->automatic * pair->now.stick;
   if (slip == 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt c = 0; c < pair->n; c++) {
     FrictionInput in;

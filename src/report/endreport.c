@@ -100,7 +100,7 @@ static void PrintFriction(const PairFigures *pair, FILE *stream)
             (long long)friction->footless);
 }
 
-/* Prints what penetration leaves of error, as estimated at the end of the load. */
+/* Prints what penetration and elastic slip leave of error, as estimated at the end of the load. */
 static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
 {
   const PenaltyError *error = &pair->penalty_error;
@@ -115,6 +115,11 @@ static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
   if (pair->scene->penalty_may_stiffen && pair->stiffened > 1)
     fprintf(stream, "; penalty raised %.3g times for it%s", (double)pair->stiffened,
             pair->penalty_stays ? ", which lowered it by less than forecast: it was raised no more" : "");
+  fprintf(stream, "\n");
+  if (!pair->scene->friction) return;
+  fprintf(stream, "         elastic slip leaves about %.2g %% in forces, %.2g %% in displacements",
+          100 * (double)error->slip_force, 100 * (double)error->slip_displacement);
+  if (pair->stick_stiffened > 1) fprintf(stream, "; its penalty raised %.3g times for it", (double)pair->stick_stiffened);
   fprintf(stream, "\n");
 }
 

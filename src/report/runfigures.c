@@ -43,6 +43,7 @@ static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
   PetscCall(ContactPairQuality(contact, p, &pair->quality));
   PetscCall(ContactPairPenalty(contact, p, &pair->penalty_min, &pair->penalty_max));
   pair->stiffened = pair->penalty_max > 0 ? pair->penalty_max / ContactPairInitialPenalty(contact, p) : 1;
+  pair->stick_stiffened = ContactPairStick(contact, p);
   PetscCall(ContactPairWindow(contact, p, &pair->window));
   PetscCall(ContactPairFriction(contact, p, &pair->friction));
   PetscCall(ContactPairScatter(contact, p, model->u, &pair->scatter));

@@ -38,9 +38,10 @@
  */
 #define EQUILIBRIUM_MOST_TURN 1
 
-/* Penalties are stiffened at most this many times at one load parameter. The first time is enough where the error is
-   proportional to the compliance of the penalty, which it is when it is small. */
-#define EQUILIBRIUM_MAX_STIFFEN 2
+/* Penalties are stiffened at most this many times at one load parameter: twice those of pressures, and twice those of
+   what sticks. The first time is enough where the error is proportional to the compliance of the penalty, which it is
+   when it is small. */
+#define EQUILIBRIUM_MAX_STIFFEN 4
 /* A fluid may move this many times at one load parameter. It wets all places that it can at once, so that it moves a
    few times only, and each move is a small load. */
 #define EQUILIBRIUM_MAX_FLUID 50
@@ -431,7 +432,8 @@ static PetscBool ModelEstimatesAt(Model model, PetscReal t)
 
   if (t >= 1) return PETSC_TRUE;
   for (int p = 0; p < ContactPairs(model->contact); p++)
-    choice = (PetscBool)(choice || ContactPairScene(model->contact, p)->penalty_may_stiffen);
+    choice = (PetscBool)(choice || ContactPairScene(model->contact, p)->penalty_may_stiffen ||
+                         ContactPairScene(model->contact, p)->stick_may_stiffen);
   return (PetscBool)(choice && ModelAsked(model, t));
 }
 
@@ -441,7 +443,7 @@ static PetscErrorCode ModelSoften(Model model, const PetscReal factor[], Vec x, 
 {
   PetscFunctionBeginUser;
   PetscCall(PetscInfo(model->snes, "no solution with stiffer penalties: they stay as they were\n"));
-  for (int p = 0; p < ContactPairs(model->contact); p++) PetscCall(ContactStiffen(model->contact, p, 1 / factor[p]));
+  PetscCall(ModelUnstiffen(model, factor));
   PetscCall(VecCopy(x, model->x));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   ContactForgetLost(model->contact);
@@ -450,7 +452,6 @@ static PetscErrorCode ModelSoften(Model model, const PetscReal factor[], Vec x, 
   report->detail[0]        = '\0';
   report->result           = SOLVE_CONVERGED;
   report->stiffened        = EQUILIBRIUM_MAX_STIFFEN;
-  ModelPenaltyStop(model, factor);
   PetscCall(ModelSolveHeld(model, report));
   if (report->result == SOLVE_CONVERGED) PetscCall(ModelEstimatePenalty(model));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -467,7 +468,7 @@ static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, Contac
   PetscFunctionBeginUser;
   PetscCall(ModelEstimatePenalty(model));
   if (report->stiffened == EQUILIBRIUM_MAX_STIFFEN) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(ContactPairs(model->contact), &factor));
+  PetscCall(PetscMalloc1(PENALTY_SOURCES * ContactPairs(model->contact), &factor));
   PetscCall(ModelStiffen(model, factor, &stiffened));
   if (stiffened) {
     report->stiffened++;

@@ -83,7 +83,10 @@ typedef struct {
   PetscReal pressure;     /* of its mean pressure, nodes weighted by their forces */
   PetscReal peak;         /* of its largest pressure; where pressures scatter, that of the scatter too */
   PetscReal displacement; /* of the largest displacement in the model */
+  PetscReal slip_force;   /* by elastic slip: of the sum of a pair's forces by friction, or of its normal ones */
+  PetscReal slip_displacement; /* by elastic slip: of the largest displacement */
 } PenaltyError;
+#define PENALTY_ERROR_VALUES 6
 
 typedef struct _n_Model {
   Problem       problem;

@@ -3,7 +3,11 @@
    A quantity q depends on the factor s on all penalties like q(s) = q_0 (1 - c / s) once the penalties are stiff. Then
    its error q_0 - q is dq/d(ln s). One linear solve with the tangent gives du/d(ln s), because the residual depends on
    ln s through the penalty part of the contact forces alone. Forces and pressures are then evaluated a small way along
-   this derivative. */
+   this derivative.
+
+   The penalty of what sticks leaves an error in the same way: surfaces that stick give way by an elastic slip, as they
+   give way by penetrations. Its estimate is the same with tractions of friction where it sticks in the place of the
+   contact forces. What has slipped is free of it. */
 #include "modelimpl.h"
 
 /* Step along which forces and pressures are compared. Penetrations shrink by about this part of themselves, so that
@@ -30,17 +34,21 @@
 /* A pair whose forces are below this part of those of the most loaded pair does not stiffen its penalty, because its
    own error hardly counts in the model. */
 #define PENALTY_LIGHT_PAIR 1e-3
+/* Friction below this part of the pressure's forces is measured by this part of them: its own error hardly counts. */
+#define PENALTY_LIGHT_FRICTION 0.02
 
 /* No estimate */
-static const PenaltyError unknown = {.force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN};
+static const PenaltyError unknown = {
+  .force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN, .slip_force = NAN, .slip_displacement = NAN};
+
 
 /* Makes room for the estimates; none is known yet. */
 PetscErrorCode ModelCreatePenaltyError(Model model)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(ContactPairs(model->contact), &model->work->penalty_error));
-  PetscCall(PetscCalloc2(ContactPairs(model->contact), &model->work->stiffened_at, ContactPairs(model->contact),
-                         &model->work->stiffened_by));
+  PetscCall(PetscCalloc2(PENALTY_SOURCES * ContactPairs(model->contact), &model->work->stiffened_at,
+                         PENALTY_SOURCES * ContactPairs(model->contact), &model->work->stiffened_by));
   ModelForgetPenaltyError(model);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -48,10 +56,10 @@ PetscErrorCode ModelCreatePenaltyError(Model model)
 /* Forgets the estimates of a solve that was taken back. */
 void ModelForgetPenaltyError(Model model)
 {
-  for (int p = 0; p < ContactPairs(model->contact); p++) {
-    model->work->stiffened_at[p] = model->work->stiffened_by[p] = 0;
-    model->work->penalty_error[p]                               = unknown;
-  }
+  const int n = ContactPairs(model->contact);
+
+  for (int k = 0; k < PENALTY_SOURCES * n; k++) model->work->stiffened_at[k] = model->work->stiffened_by[k] = 0;
+  for (int p = 0; p < n; p++) model->work->penalty_error[p] = unknown;
 }
 
 /* Saves or loads the estimates with the model. */
@@ -61,8 +69,8 @@ PetscErrorCode ModelArchivePenaltyError(Model model, Archive archive)
 
   PetscFunctionBeginUser;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ArchiveReals(archive, "model/penalty_error", 4 * n, &model->work->penalty_error[0].force));
-  PetscCall(ArchiveReals(archive, "model/penalty_stiffened", n, model->work->stiffened_by));
+  PetscCall(ArchiveReals(archive, "model/penalty_error", PENALTY_ERROR_VALUES * n, &model->work->penalty_error[0].force));
+  PetscCall(ArchiveReals(archive, "model/penalty_stiffened", PENALTY_SOURCES * n, model->work->stiffened_by));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -100,16 +108,38 @@ PetscBool ModelPenaltyStays(Model model, int pair)
   return (PetscBool)(model->work->stiffened_by[pair] < 0);
 }
 
-/* Notes that no solution was found with penalties that are factor[] times as stiff. */
-void ModelPenaltyStop(Model model, const PetscReal factor[])
+/* Makes a pair's penalties stiffer in the present state. */
+static PetscErrorCode StiffenPair(Model model, PenaltySource source, int p, PetscReal factor)
 {
-  for (int p = 0; p < ContactPairs(model->contact); p++)
-    if (factor[p] > 1) model->work->stiffened_by[p] = -factor[p];
+  return source == BY_SLIP ? ContactStiffenStick(model->contact, p, factor) : ContactStiffen(model->contact, p, factor);
+}
+
+/* Takes back what ModelStiffen() has done, as no solution was found with penalties that are factor[] times as stiff. */
+PetscErrorCode ModelUnstiffen(Model model, const PetscReal factor[])
+{
+  const int pairs = ContactPairs(model->contact);
+
+  PetscFunctionBeginUser;
+  for (int source = 0; source < PENALTY_SOURCES; source++)
+    for (int p = 0; p < pairs; p++) {
+      const int k = source * pairs + p;
+
+      if (factor[k] == 1) continue;
+      PetscCall(StiffenPair(model, (PenaltySource)source, p, 1 / factor[k]));
+      model->work->stiffened_by[k] = -factor[k];
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Scales the penalties that an estimate is of. */
+static PetscErrorCode ModelScalePenalty(Model model, PenaltySource source, PetscReal factor)
+{
+  return ContactScalePenalty(model->contact, source == BY_PENETRATION ? factor : 1, source == BY_SLIP ? factor : 1);
 }
 
 /* The derivative of the free residual to ln s at the trial state. The residual is linear in s where what slips goes on
    slipping, up to the bound of the penalties of faces. The loads are compared over the same step. */
-static PetscErrorCode ModelPenaltyForces(Model model, Vec forces)
+static PetscErrorCode ModelPenaltyForces(Model model, PenaltySource source, Vec forces)
 {
   const Problem   problem = model->problem;
   const PetscReal scale   = 1 / (1 - PENALTY_STEP);
@@ -118,10 +148,10 @@ static PetscErrorCode ModelPenaltyForces(Model model, Vec forces)
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(forces, &single));
-  PetscCall(ContactScalePenalty(model->contact, scale));
+  PetscCall(ModelScalePenalty(model, source, scale));
   PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
   PetscCall(ProblemCollectResidual(problem, model->x, forces));
-  PetscCall(ContactScalePenalty(model->contact, 1));
+  PetscCall(ModelScalePenalty(model, source, 1));
   PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
   PetscCall(ProblemCollectResidual(problem, model->x, single));
   PetscCall(VecAXPY(forces, -1, single));
@@ -130,9 +160,9 @@ static PetscErrorCode ModelPenaltyForces(Model model, Vec forces)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -du/d(ln s) of the free displacements at the trial state, whose contact and slip are held. *known: the linear solve
-   succeeded. */
-static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known)
+/* -du/d(ln s) of the free displacements at the trial state, whose contact and slip are held, for each source that the
+   scene has. *known: the linear solves succeeded. */
+static PetscErrorCode ModelPenaltySlopes(Model model, int sources, Vec slope[], PetscBool *known)
 {
   Vec forces;
   KSP ksp;
@@ -140,14 +170,17 @@ static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &forces));
   PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, PETSC_FALSE));
-  PetscCall(ModelPenaltyForces(model, forces));
   PetscCall(LinearSolverRenew(model->work->solver));
   PetscCall(LinearSolverSetStart(model->work->solver, 0));
   PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(KSPSetOperators(ksp, model->problem->A, model->problem->P));
-  PetscCall(KSPSolve(ksp, forces, slope));
-  *known = (PetscBool)!LinearCheckLost(model->linear);
+  *known = PETSC_TRUE;
+  for (int source = 0; source < sources && *known; source++) {
+    PetscCall(ModelPenaltyForces(model, (PenaltySource)source, forces));
+    PetscCall(KSPSolve(ksp, forces, slope[source]));
+    *known = (PetscBool)!LinearCheckLost(model->linear);
+  }
   PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(VecDestroy(&forces));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -207,8 +240,37 @@ static PetscReal PartChanged(PetscReal now, PetscReal then, PetscReal step)
   return now > 0 ? PetscAbsReal(then - now) / (step * now) : 0;
 }
 
+/* Change of a pair's friction over the step, as a part of the whole of it. Friction that is light beside the pressure,
+   or that cancels out, is measured by the pressure. */
+static PetscReal FrictionChanged(const ContactLoad *now, const ContactLoad *stiff, PetscReal step)
+{
+  PetscReal change = 0, whole = 0;
+
+  for (int d = 0; d < 3; d++) {
+    change += PetscSqr(stiff->friction[d] - now->friction[d]);
+    whole += PetscSqr(now->friction[d]);
+  }
+  whole = PetscMax(PetscSqrtReal(whole), PENALTY_LIGHT_FRICTION * now->force);
+  return whole > 0 ? PetscSqrtReal(change) / (step * whole) : 0;
+}
+
+/* Changes of a pair's loads by stiffer penalties over a step, as parts of themselves. */
+static void ComparePairLoads(PenaltySource source, const ContactLoad *now, const ContactLoad *stiff, PetscReal step,
+                             PetscReal displacement, PenaltyError *error)
+{
+  if (source == BY_SLIP) {
+    error->slip_force = PetscMax(PartChanged(now->force, stiff->force, step), FrictionChanged(now, stiff, step));
+    error->slip_displacement = displacement;
+    return;
+  }
+  error->force        = PartChanged(now->force, stiff->force, step);
+  error->pressure     = PartChanged(now->pressure, stiff->pressure, step);
+  error->peak         = PartChanged(now->peak, stiff->peak, step);
+  error->displacement = displacement;
+}
+
 /* Compares forces and pressures at the trial state with those a step along the slope. */
-static PetscErrorCode ModelComparePenalty(Model model, Vec slope)
+static PetscErrorCode ModelComparePenalty(Model model, PenaltySource source, Vec slope)
 {
   const int       pairs = ContactPairs(model->contact);
   const PetscInt  n     = model->mesh->n_nodes * model->mesh->dim;
@@ -223,29 +285,30 @@ static PetscErrorCode ModelComparePenalty(Model model, Vec slope)
   PetscCall(VecWAXPY(x, -step, slope, model->x));
   PetscCall(ProblemDisplacements(model->problem, x, model->t, u));
   PetscCall(ModelLargestChange(model, u, step, &displacement));
-  PetscCall(ContactScalePenalty(model->contact, 1 / (1 - step)));
+  PetscCall(ModelScalePenalty(model, source, 1 / (1 - step)));
   PetscCall(ModelPairLoads(model, u, load));
-  PetscCall(ContactScalePenalty(model->contact, 1));
+  PetscCall(ModelScalePenalty(model, source, 1));
   PetscCall(ModelPairLoads(model, model->problem->trial, &load[pairs]));
-  for (int p = 0; p < pairs; p++) {
-    const ContactLoad *stiff = &load[p], *now = &load[pairs + p];
-
-    model->work->penalty_error[p] = (PenaltyError){.force        = PartChanged(now->force, stiff->force, step),
-                                                   .pressure     = PartChanged(now->pressure, stiff->pressure, step),
-                                                   .peak         = PartChanged(now->peak, stiff->peak, step),
-                                                   .displacement = displacement};
-  }
+  for (int p = 0; p < pairs; p++)
+    ComparePairLoads(source, &load[pairs + p], &load[p], step, displacement, &model->work->penalty_error[p]);
   PetscCall(VecDestroy(&x));
   PetscCall(PetscFree2(u, load));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes whether the last raise of a pair's penalties in this solve has brought too little of what was forecast. */
-static void JudgeStiffening(Model model, int pair)
+/* The largest error of a pair that stiffer penalties are to lower. */
+static PetscReal WorstError(const PenaltyError *error, PenaltySource source)
 {
-  const PenaltyError *error = &model->work->penalty_error[pair];
-  const PetscReal     worst = PetscMax(error->displacement, error->force);
-  PetscReal          *at = &model->work->stiffened_at[pair], *by = &model->work->stiffened_by[pair];
+  return source == BY_SLIP ? PetscMax(error->slip_displacement, error->slip_force)
+                           : PetscMax(error->displacement, error->force);
+}
+
+/* Notes whether the last raise of a pair's penalties in this solve has brought too little of what was forecast. */
+static void JudgeStiffening(Model model, PenaltySource source, int pair)
+{
+  const int       k     = source * ContactPairs(model->contact) + pair;
+  const PetscReal worst = WorstError(&model->work->penalty_error[pair], source);
+  PetscReal      *at = &model->work->stiffened_at[k], *by = &model->work->stiffened_by[k];
 
   if (*by > 0 && worst > *at * PetscPowReal(*by, -PENALTY_GAIN)) *by = -*by;
 }
@@ -253,21 +316,20 @@ static void JudgeStiffening(Model model, int pair)
 /* Estimates the errors at the trial state, in which the step has converged. The state stays as it is. */
 PetscErrorCode ModelEstimatePenalty(Model model)
 {
-  PetscBool known = PETSC_FALSE;
-  Vec       slope;
+  const int sources = ContactHasFriction(model->contact) ? PENALTY_SOURCES : BY_SLIP;
+  PetscBool known   = PETSC_FALSE;
+  Vec       slope[PENALTY_SOURCES];
 
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(model->x, &slope));
+  for (int source = 0; source < sources; source++) PetscCall(VecDuplicate(model->x, &slope[source]));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
-  PetscCall(ModelPenaltySlope(model, slope, &known));
-  if (known) PetscCall(ModelComparePenalty(model, slope));
-  for (int p = 0; p < ContactPairs(model->contact); p++) {
-    if (known)
-      JudgeStiffening(model, p);
-    else
-      model->work->penalty_error[p] = unknown;
+  PetscCall(ModelPenaltySlopes(model, sources, slope, &known));
+  for (int p = 0; p < ContactPairs(model->contact); p++) model->work->penalty_error[p] = unknown;
+  for (int source = 0; source < sources && known; source++) {
+    PetscCall(ModelComparePenalty(model, (PenaltySource)source, slope[source]));
+    for (int p = 0; p < ContactPairs(model->contact); p++) JudgeStiffening(model, (PenaltySource)source, p);
   }
-  PetscCall(VecDestroy(&slope));
+  for (int source = 0; source < sources; source++) PetscCall(VecDestroy(&slope[source]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -278,37 +340,56 @@ static PetscReal Factor(PetscReal error)
                   PetscMin(error / PENALTY_ERROR_WANTED, 1 + PENALTY_RISE * (error / PENALTY_ERROR_LARGE - 1)));
 }
 
-/* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty().
- *stiffened: some are. Those with such small forces stay as they are of which the solve itself leaves an error as large.
- */
+/* May the run make a pair's penalties stiffer? */
+static PetscBool MayStiffen(const SceneContact *scene, PenaltySource source)
+{
+  return (PetscBool)(source == BY_SLIP ? scene->stick_may_stiffen : scene->penalty_may_stiffen);
+}
+
+/* Makes the penalties of one kind stiffer that the run may choose and whose error is large. Those with such small forces
+   stay as they are of which the solve itself leaves an error as large. Returns whether some are stiffer. */
+static PetscErrorCode StiffenSource(Model model, PenaltySource source, const ContactLoad load[], PetscReal factor[],
+                                    PetscBool *stiffened)
+{
+  const int pairs = ContactPairs(model->contact);
+  PetscReal most = 0, left = model->scene->solver.tolerance * ProblemForceScale(model->problem);
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
+  for (int p = 0; p < pairs; p++) {
+    const PetscReal worst = WorstError(&model->work->penalty_error[p], source);
+    PetscReal      *at = &model->work->stiffened_at[source * pairs + p];
+    PetscReal      *by = &model->work->stiffened_by[source * pairs + p];
+
+    if (!MayStiffen(ContactPairScene(model->contact, p), source) || !(worst > PENALTY_ERROR_LARGE) ||
+        load[p].force < PENALTY_LIGHT_PAIR * most || PENALTY_ERROR_LARGE * load[p].force <= left || *by < 0)
+      continue;
+    factor[p] = *by = Factor(worst);
+    *at             = worst;
+    PetscCall(StiffenPair(model, source, p, factor[p]));
+    PetscCall(PetscInfo(model->snes, "contact '%s': estimated error %g, penalties%s %g times as stiff\n",
+                        ContactPairName(model->contact, p), (double)worst, source == BY_SLIP ? " of what sticks" : "",
+                        (double)factor[p]));
+    *stiffened = PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes penalties stiffer where the error is large, after ModelEstimatePenalty(): those of pressures, and those of what
+   sticks when the first ones are stiff enough. So a raise that fails takes nothing else back. factor[]: of the first
+   ones of all pairs, then of the second ones. *stiffened: some are. */
 PetscErrorCode ModelStiffen(Model model, PetscReal factor[], PetscBool *stiffened)
 {
   const int    pairs = ContactPairs(model->contact);
   ContactLoad *load;
-  PetscReal    most = 0, left = model->scene->solver.tolerance * ProblemForceScale(model->problem);
 
   PetscFunctionBeginUser;
   *stiffened = PETSC_FALSE;
+  for (int k = 0; k < PENALTY_SOURCES * pairs; k++) factor[k] = 1;
   PetscCall(PetscMalloc1(pairs, &load));
   PetscCall(ModelPresentLoads(model, model->problem->trial, load));
-  for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
-  for (int p = 0; p < pairs; p++) {
-    const PenaltyError *error = &model->work->penalty_error[p];
-    const PetscReal     worst = PetscMax(error->displacement, error->force);
-
-    factor[p] = 1;
-    if (!ContactPairScene(model->contact, p)->penalty_may_stiffen || !(worst > PENALTY_ERROR_LARGE) ||
-        load[p].force < PENALTY_LIGHT_PAIR * most || PENALTY_ERROR_LARGE * load[p].force <= left ||
-        ModelPenaltyStays(model, p))
-      continue;
-    factor[p]                    = Factor(worst);
-    model->work->stiffened_at[p] = worst;
-    model->work->stiffened_by[p] = factor[p];
-    PetscCall(ContactStiffen(model->contact, p, factor[p]));
-    PetscCall(PetscInfo(model->snes, "contact '%s': estimated error %g, penalties %g times as stiff\n",
-                        ContactPairName(model->contact, p), (double)worst, (double)factor[p]));
-    *stiffened = PETSC_TRUE;
-  }
+  for (int source = 0; source < PENALTY_SOURCES && !*stiffened; source++)
+    PetscCall(StiffenSource(model, (PenaltySource)source, load, &factor[source * pairs], stiffened));
   PetscCall(PetscFree(load));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -79,6 +79,7 @@ typedef struct {
   PetscReal  initial;               /* the penalty at the start of the run */
   PetscReal  most;                  /* largest penalty that counts (force per length and area), ContactSoften() */
   PetscReal  trial_factor;          /* factor on what penalties count for, ContactScalePenalty() */
+  PetscReal  trial_stick;           /* the same for the penalty of what sticks */
   PetscBool  holding, touching;     /* a linear step: closed terms stay so, and what touches is closed */
   PetscBool *held, *predicted;      /* terms closed where the linear step began; those the prediction counted on */
 

@@ -49,6 +49,9 @@ typedef struct {
   Vec       x, y;     /* free displacements at its start, and the whole step (length) */
 } RelaxedStep;
 
+/* Where bodies give way in contact: what the error of the penalty comes from. */
+typedef enum { BY_PENETRATION, BY_SLIP, PENALTY_SOURCES } PenaltySource;
+
 typedef struct _n_ModelWork {
   LinearSolver   solver;
   PetscBool      ordered;       /* the linear solver has chosen the order of its unknowns */
@@ -69,7 +72,8 @@ typedef struct _n_ModelWork {
   PetscBool  searched;       /* it was tried to move them */
 
   PenaltyError *penalty_error; /* of each pair, once the load is at its end */
-  PetscReal    *stiffened_at;  /* of each pair: its worst estimate when this solve stiffened it last; 0: it has not */
+  /* Of each pair for penetration, then of each for elastic slip: */
+  PetscReal    *stiffened_at;  /* its worst estimate when this solve stiffened it last; 0: it has not */
   PetscReal    *stiffened_by;  /* the factor by which it did; negative: that brought too little, and it stays */
 
   /* A look-ahead from the accepted state */
@@ -142,4 +146,4 @@ void           ModelForgetPenaltyError(Model);
 PetscErrorCode ModelArchivePenaltyError(Model, Archive);
 PetscErrorCode ModelEstimatePenalty(Model);
 PetscErrorCode ModelStiffen(Model, PetscReal factor[], PetscBool *stiffened);
-void           ModelPenaltyStop(Model, const PetscReal factor[]);
+PetscErrorCode ModelUnstiffen(Model, const PetscReal factor[]);
