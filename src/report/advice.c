@@ -99,6 +99,16 @@ static double PenetrationStays(const RunFigures *figures, const PairFigures *pai
   return 1;
 }
 
+static double SlipIsElastic(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  const PetscReal error = PetscMax(pair->penalty_error.slip_force, pair->penalty_error.slip_displacement);
+
+  (void)figures;
+  if (!pair->scene->friction || !(error > ADVICE_PENALTY)) return 0;
+  snprintf(text, ADVICE_TEXT, "%s: elastic slip leaves about %.2g %% of error", pair->name, (double)(100 * error));
+  return (double)(error / ADVICE_PENALTY_WANTED);
+}
+
 static double SlaveHangsOver(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   (void)figures;
@@ -341,6 +351,7 @@ typedef struct {
 static const Situation situations[] = {
   {.pair = PenetrationIsDeep, .changes = {CHANGE_FREE_PENALTY, CHANGE_STIFFER}},
   {.pair = PenetrationStays, .changes = {CHANGE_FINER_SLAVE}},
+  {.pair = SlipIsElastic, .changes = {CHANGE_STICK}},
   {.pair = SlaveHangsOver, .changes = {CHANGE_WHOLE_MASTER}},
   {.pair = MasterStandsIn, .changes = {CHANGE_FINER_SLAVE, CHANGE_ROLES}},
   {.pair = PressuresScatter, .changes = {CHANGE_SURFACE, CHANGE_FINER_SLAVE}},

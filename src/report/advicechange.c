@@ -15,12 +15,15 @@
 #define CHANGE_PENALTY 10.0
 /* By how much bounds are widened. */
 #define CHANGE_WIDER 10.0
+/* Elastic slip, in face sizes, that hardly counts. */
+#define CHANGE_STICK_SLIP 0.001
 /* The preset of stepping.plastic_lag, from which a scene without a bound is counted. */
 #define CHANGE_LAG_BOUND 0.2
 
 /* What a change moves. Changes of one axis add up or oppose each other. */
 typedef enum {
   AXIS_STIFFNESS, /* of a pair's penalty */
+  AXIS_STICK, /* stiffness of what sticks by friction */
   AXIS_WINDOW,
   AXIS_RANGE,
   AXIS_UPDATES,
@@ -110,6 +113,23 @@ static int PenaltyIsStiff(const ChangePlace *at)
 static void WriteSofter(const ChangePlace *at, char *text, size_t size)
 {
   WriteNumber(PairScene(at)->path, "penalty.scale", PenaltyScale(at) / CHANGE_PENALTY, text, size);
+}
+
+static int HasFriction(const ChangePlace *at)
+{
+  return PairScene(at) && PairScene(at)->friction;
+}
+
+/* Where the scene names no elastic slip, one that hardly counts. */
+static void WriteStick(const ChangePlace *at, char *text, size_t size)
+{
+  const SceneContact *contact = PairScene(at);
+
+  if (contact->stick_penalty > 0)
+    WriteNumber(contact->path, "friction.stick.penalty", contact->stick_penalty * at->factor, text, size);
+  else
+    WriteNumber(contact->path, "friction.stick.slip",
+                contact->stick_slip > 0 ? contact->stick_slip / at->factor : CHANGE_STICK_SLIP, text, size);
 }
 
 static int HasWindow(const ChangePlace *at)
@@ -490,6 +510,7 @@ static const Change changes[CHANGES] = {
   [CHANGE_FREE_PENALTY]   = {"contact.*.penalty", AXIS_STIFFNESS, 1, PenaltyIsChosen, WriteFreePenalty},
   [CHANGE_STIFFER]        = {"contact.*.penalty.scale", AXIS_STIFFNESS, 1, PenaltyIsFixed, WriteStiffer},
   [CHANGE_SOFTER]         = {"contact.*.penalty.scale", AXIS_STIFFNESS, -1, PenaltyIsStiff, WriteSofter},
+  [CHANGE_STICK]           = {"contact.*.friction.stick", AXIS_STICK, 1, HasFriction, WriteStick},
   [CHANGE_WIDER_WINDOW]   = {"contact.*.penalty.g_max", AXIS_WINDOW, 1, HasWindow, WriteWindow},
   [CHANGE_RANGE]          = {"contact.*.penalty.range", AXIS_RANGE, 1, IsAdjusted, WriteRange},
   [CHANGE_UPDATES]        = {"contact.*.penalty.max_updates", AXIS_UPDATES, 1, IsAugmented, WriteUpdates},

@@ -245,9 +245,10 @@ static void AddMasterDepth(cJSON *pair, const PairFigures *figure)
 }
 
 /* Adds what friction does in a pair that has some. */
-static void AddFriction(cJSON *pair, const ContactFriction *friction)
+static void AddFriction(cJSON *pair, const PairFigures *figure)
 {
-  cJSON *map = cJSON_AddObjectToObject(pair, "friction");
+  const ContactFriction *friction = &figure->friction;
+  cJSON                 *map      = cJSON_AddObjectToObject(pair, "friction");
 
   cJSON_AddItemToObject(map, "force", cJSON_CreateDoubleArray(friction->force, 3));
   cJSON_AddNumberToObject(map, "sticking", (double)friction->sticking);
@@ -256,6 +257,9 @@ static void AddFriction(cJSON *pair, const ContactFriction *friction)
   AddReal(map, "sticking_area", friction->sticking_area);
   AddReal(map, "slipping_area", friction->slipped_area);
   AddReal(map, "elastic_slip", friction->elastic);
+  AddReal(map, "error_force", figure->penalty_error.slip_force);
+  AddReal(map, "error_displacement", figure->penalty_error.slip_displacement);
+  AddReal(map, "stiffened", figure->stick_stiffened);
   AddReal(map, "slip", friction->slid);
   AddReal(map, "dissipated", friction->dissipated);
   AddReal(map, "dissipated_turning", friction->turned);
@@ -296,7 +300,7 @@ static void AddContact(cJSON *json, const RunFigures *figures)
     cJSON_AddNumberToObject(penalty, "missed", (double)window->missed);
     cJSON_AddNumberToObject(penalty, "outside_window", (double)window->outside);
     cJSON_AddNumberToObject(penalty, "largest_excess", (double)window->excess);
-    if (figure->scene->friction) AddFriction(pair, &figure->friction);
+    if (figure->scene->friction) AddFriction(pair, figure);
   }
 }
 

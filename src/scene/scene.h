@@ -101,7 +101,7 @@ typedef struct {
   double  cohesion, tau_max; /* traction that sticks without pressure, and the largest one (force per area); 0: none */
   double  stick_penalty;     /* force per length and area; 0: automatic */
   double  stick_slip;        /* largest elastic slip, in face sizes; 0: stick_penalty decides */
-  int     stick_may_stiffen; /* 1 if the run chooses the penalty of what sticks: neither of the two is named */
+  int     stick_may_stiffen; /* 1 if the run chooses both penalties: none of the three keys is named */
   int     penalty_auto;      /* 1 if the penalty is the automatic one */
   /* Penalty (force per length and area), 0 if it is automatic, and the factor on the automatic penalty. */
   double penalty, penalty_scale;

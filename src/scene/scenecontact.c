@@ -169,7 +169,7 @@ static PetscErrorCode SceneReadFriction(Scene scene, SceneContact *contact)
     PetscCall(SceneRefuse(scene, contact->path, "friction.mu", "is below 0; allowed: 0 and above", NULL));
   if (SchemaChoice(document, "%s.friction.stick.penalty", contact->path) != 0)
     contact->stick_penalty = SchemaReal(document, "%s.friction.stick.penalty", contact->path);
-  contact->stick_may_stiffen = contact->friction && !(contact->stick_penalty > 0);
+  contact->stick_may_stiffen = contact->friction && contact->penalty_may_stiffen && !(contact->stick_penalty > 0);
   if (!SceneHas(scene, contact->path, "friction.stick.slip")) PetscFunctionReturn(PETSC_SUCCESS);
   contact->stick_may_stiffen = 0;
   contact->stick_slip = SchemaReal(document, "%s.friction.stick.slip", contact->path);
