@@ -6,6 +6,9 @@
 /* The sides count as equal where the master's is less than this many times the slave's: where faces of both sides are
    in contact, they differ by curvature and round-off. */
 #define END_SIDES 1.01
+/* Penalties that are more than this many times what the run began with have been raised: a raise that was taken back
+   leaves rounding. */
+#define END_RAISED 1.001
 
 /* Names of the purposes that time is spent on */
 static const char *const purposes[TIMING_KINDS] = {[TIMING_SETUP]            = "set-up",
@@ -112,14 +115,14 @@ static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
     "%.2g %% in displacements",
     pair->name, 100 * (double)error->force, 100 * (double)error->pressure, 100 * (double)error->peak,
     100 * (double)error->displacement);
-  if (pair->scene->penalty_may_stiffen && pair->stiffened > 1)
+  if (pair->scene->penalty_may_stiffen && (double)pair->stiffened > END_RAISED)
     fprintf(stream, "; penalty raised %.3g times for it%s", (double)pair->stiffened,
             pair->penalty_stays ? ", which lowered it by less than forecast: it was raised no more" : "");
   fprintf(stream, "\n");
   if (!pair->scene->friction) return;
   fprintf(stream, "         elastic slip leaves about %.2g %% in forces, %.2g %% in displacements",
           100 * (double)error->slip_force, 100 * (double)error->slip_displacement);
-  if (pair->stick_stiffened > 1) fprintf(stream, "; its penalty raised %.3g times for it", (double)pair->stick_stiffened);
+  if ((double)pair->stick_stiffened > END_RAISED) fprintf(stream, "; its penalty raised %.3g times for it", (double)pair->stick_stiffened);
   fprintf(stream, "\n");
 }
 

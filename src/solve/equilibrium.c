@@ -42,6 +42,8 @@
    what sticks. The first time is enough where the error is proportional to the compliance of the penalty, which it is
    when it is small. */
 #define EQUILIBRIUM_MAX_STIFFEN 4
+/* Raises of penalties that are tried before they stay as they are: the whole one, and its square root. */
+#define EQUILIBRIUM_RAISES 2
 /* A fluid may move this many times at one load parameter. It wets all places that it can at once, so that it moves a
    few times only, and each move is a small load. */
 #define EQUILIBRIUM_MAX_FLUID 50
@@ -451,9 +453,33 @@ static PetscErrorCode ModelSoften(Model model, const PetscReal factor[], Vec x, 
   model->problem->inverted = -1;
   report->detail[0]        = '\0';
   report->result           = SOLVE_CONVERGED;
-  report->stiffened        = EQUILIBRIUM_MAX_STIFFEN;
   PetscCall(ModelSolveHeld(model, report));
-  if (report->result == SOLVE_CONVERGED) PetscCall(ModelEstimatePenalty(model));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves on with penalties that are factor[] times as stiff, or, where no solution is found, by the square root of that
+   only. If there is none either, the state is the one before. */
+static PetscErrorCode ModelSolveStiffened(Model model, PetscReal factor[], SolveReport *report,
+                                          ContactWindowState *window)
+{
+  Vec x;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(model->x, &x));
+  PetscCall(VecCopy(model->x, x));
+  for (int attempt = 0; attempt < EQUILIBRIUM_RAISES && *window == WINDOW_HOLDS; attempt++) {
+    if (attempt) PetscCall(ModelStiffenLess(model, factor));
+    PetscCall(ModelSolveHeld(model, report));
+    if (report->result == SOLVE_CONVERGED)
+      *window = WINDOW_MISSED;
+    else
+      PetscCall(ModelSoften(model, factor, x, report));
+    if (report->result != SOLVE_CONVERGED) break;
+  }
+  PetscCall(VecDestroy(&x));
+  if (*window == WINDOW_MISSED || report->result != SOLVE_CONVERGED) PetscFunctionReturn(PETSC_SUCCESS);
+  report->stiffened = EQUILIBRIUM_MAX_STIFFEN;
+  PetscCall(ModelEstimatePenalty(model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -463,7 +489,6 @@ static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, Contac
 {
   PetscBool  stiffened = PETSC_FALSE;
   PetscReal *factor;
-  Vec        x;
 
   PetscFunctionBeginUser;
   PetscCall(ModelEstimatePenalty(model));
@@ -473,14 +498,7 @@ static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, Contac
   if (stiffened) {
     report->stiffened++;
     report->adjusted++;
-    PetscCall(VecDuplicate(model->x, &x));
-    PetscCall(VecCopy(model->x, x));
-    PetscCall(ModelSolveHeld(model, report));
-    if (report->result == SOLVE_CONVERGED)
-      *window = WINDOW_MISSED;
-    else
-      PetscCall(ModelSoften(model, factor, x, report));
-    PetscCall(VecDestroy(&x));
+    PetscCall(ModelSolveStiffened(model, factor, report, window));
   }
   PetscCall(PetscFree(factor));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -393,3 +393,18 @@ PetscErrorCode ModelStiffen(Model model, PetscReal factor[], PetscBool *stiffene
   PetscCall(PetscFree(load));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* After ModelUnstiffen(): makes penalties stiffer by the square roots of the factors, which factor[] then has. */
+PetscErrorCode ModelStiffenLess(Model model, PetscReal factor[])
+{
+  const int pairs = ContactPairs(model->contact);
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < PENALTY_SOURCES * pairs; k++) {
+    if (factor[k] == 1) continue;
+    factor[k]                    = PetscSqrtReal(factor[k]);
+    model->work->stiffened_by[k] = factor[k];
+    PetscCall(StiffenPair(model, (PenaltySource)(k / pairs), k % pairs, factor[k]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

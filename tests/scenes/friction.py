@@ -10,7 +10,7 @@ RUNS = SCENES.parent.parent / "runs"
 MU = 0.3
 
 args = arguments(("part", "what is shown", ("flat", "bounds", "circle", "shear", "belt", "turn", "turn_solid", "bar",
-                                             "rings", "hold", "stiff", "enter", "ironing", "die", "paper")))
+                                             "rings", "hold", "stiff", "elastic", "enter", "ironing", "die", "paper")))
 check = Check()
 
 
@@ -284,6 +284,30 @@ def enter():
                     f"from {min(pulls):.3f} to {max(pulls):.3f}")
         ends.append(pulls[-1])
     check.near("forces with both penalties", ends[0] / ends[1], 1, 0.02)
+
+
+def elastic():
+    """A tyre over a kerb: what sticks gives way. The run says what that costs, and makes it stiffer where it may choose.
+    A raise for which there is no solution is made in two parts."""
+    named, ends, raised = "contact.0.friction.stick.slip=0.0005", {}, {}
+    for name, more in (("default", []), ("named", [named]), ("soft", ["contact.0.penalty.scale=700"]),
+                       ("stiff", ["contact.0.penalty.scale=700", named])):
+        finished = run(args, SCENES.parent / "jobs/tyre_kerb.yaml", out=name,
+                       overrides=["contact.0.friction.mu=0.4", "output.every=0", *more])
+        ends[name] = finished.summary()
+        raised[name] = ends[name]["contact"][0]["friction"]["stiffened"]
+        print(f"     {name}: {ends[name]['probes']}, penalty of what sticks raised {raised[name]:.3g} times")
+    for probe in ("force", "side_force"):
+        check.near(f"{probe}: the run's choice and a named elastic slip",
+                   ends["default"]["probes"][probe] / ends["named"]["probes"][probe], 1, 0.004)
+    friction = {name: end["contact"][0]["friction"] for name, end in ends.items()}
+    check.holds("the run's choice: what is left", friction["default"]["error_force"] < 0.004)
+    check.holds("it has raised the penalty", raised["default"] > 10)
+    check.holds("penalties of the scene stay", raised["soft"] == raised["stiff"] == raised["named"] == 1)
+    lost = [friction["stiff"]["force"][d] - friction["soft"]["force"][d] for d in (0, 1)]
+    part = math.hypot(*lost) / math.hypot(*friction["soft"]["force"])
+    check.near("error of the friction's force, estimated over true", friction["soft"]["error_force"] / part, 1, 0.3)
+    check.holds("a raise in two parts", ends["named"]["contact"][0]["penalty"]["error_force"] < 0.004)
 
 
 def ironing():

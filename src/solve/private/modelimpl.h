@@ -147,3 +147,4 @@ PetscErrorCode ModelArchivePenaltyError(Model, Archive);
 PetscErrorCode ModelEstimatePenalty(Model);
 PetscErrorCode ModelStiffen(Model, PetscReal factor[], PetscBool *stiffened);
 PetscErrorCode ModelUnstiffen(Model, const PetscReal factor[]);
+PetscErrorCode ModelStiffenLess(Model, PetscReal factor[]);
