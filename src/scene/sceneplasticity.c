@@ -179,12 +179,13 @@ PetscErrorCode SceneCheckRoutine(Scene scene, const SceneBody *body)
 /* Loads the library of a body. Ranks may see other files, so that the refusal is of all ranks together. */
 static PetscErrorCode SceneLoadRoutine(Scene scene, SceneBody *body, MPI_Comm comm)
 {
-  char    path[PETSC_MAX_PATH_LEN], message[UMAT_MESSAGE], text[PETSC_MAX_PATH_LEN + UMAT_MESSAGE];
+  char    path[PETSC_MAX_PATH_LEN], key[KEY_PATH_LENGTH], message[UMAT_MESSAGE], text[2 * PETSC_MAX_PATH_LEN];
   double *constants;
   int     n, failed;
 
   PetscFunctionBeginUser;
   (void)SceneLibraryPath(scene, body, path, sizeof path);
+  KeyPathJoin(key, body->path, routine_keys[0]);
   PetscCall(SceneReadConstants(scene, body, &n, &constants));
   failed =
     UmatOpen(path, body->name, n, constants, SchemaInteger(SceneDocument(scene), "%s.%s", body->path, routine_keys[2]),
@@ -193,7 +194,7 @@ static PetscErrorCode SceneLoadRoutine(Scene scene, SceneBody *body, MPI_Comm co
   if (failed)
     snprintf(text, sizeof text,
              "%s: %s - the library cannot be loaded; allowed: one with a routine umat, see scripts/build_umat.sh",
-             SceneWhere(scene, body->path, routine_keys[0]), message);
+             DocumentWhere(SceneDocument(scene), key), message);
   PetscCall(RefuseInputAnywhere(comm, failed ? text : NULL));
   if (SchemaBoolean(SceneDocument(scene), "%s.%s", body->path, routine_keys[3]))
     UmatSetUnsymmetric(body->material.umat);
