@@ -1,28 +1,19 @@
 /* A scene's .geo becomes a .msh file: gmsh runs as a program of its own, once for each content of the .geo and its
    parameters. */
-#define _GNU_SOURCE 1 /* execvpe */
 #include "gmsh.h"
-#include "base/confinement.h"
 #include "base/hash.h"
 #include "geofiles.h"
 #include "geoscript.h"
 #include "gmshfile.h"
+#include "gmshprocess.h"
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
-
-/* The exit status for a program that is not there, the same as the shell's. */
-#define NO_PROGRAM 127
-/* This plus the number of a signal is the exit status for a gmsh that the signal has ended, the same as the shell's. */
-#define KILLED 128
 /* A message repeats so many lines of gmsh at most. One mistake makes gmsh print dozens. */
 #define ERROR_LINES 6
 /* Hexadecimal digits in the name of the mesh file for what is meshed. */
@@ -32,87 +23,6 @@ extern char **environ;
 #define VERSION_DIGITS 4
 /* Room in a path, in bytes, for "/mesh-", hash, process number and ending. */
 #define TEXT_PARTS_IN_NAME 64
-
-/* Tells whether an environment variable belongs to MPI. A gmsh that is linked with MPI would take itself for one of our
-   ranks. */
-static PetscBool EnvironmentIsMPI(const char *entry)
-{
-  const char *const prefixes[] = {"OMPI_", "PMIX_", "ORTE_", "PRTE_", "PMI_", "HYDRA_", "MPIR_"};
-
-  for (size_t i = 0; i < sizeof(prefixes) / sizeof(*prefixes); i++)
-    if (!strncmp(entry, prefixes[i], strlen(prefixes[i]))) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-/* The environment of gmsh, to be freed with PetscFree(). It is ours without MPI's variables and without the user's own
-   gmsh options, so that the same scene gives the same mesh everywhere. */
-static PetscErrorCode ChildEnvironment(char ***environment)
-{
-  int n = 0, kept = 0;
-
-  PetscFunctionBeginUser;
-  while (environ[n]) n++;
-  PetscCall(PetscMalloc1(n + 2, environment));
-  for (int i = 0; i < n; i++)
-    if (!EnvironmentIsMPI(environ[i]) && strncmp(environ[i], "GMSH_HOME=", 10)) (*environment)[kept++] = environ[i];
-  (*environment)[kept++] = (char *)"GMSH_HOME=/nonexistent";
-  (*environment)[kept]   = NULL;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Becomes gmsh in the child process of GmshExecute(). It never returns. */
-static void ChildExecute(char *const arguments[], char *const environment[], const char *confined, int output)
-{
-  int input = open("/dev/null", O_RDONLY);
-
-  dup2(input, STDIN_FILENO);
-  dup2(output, STDOUT_FILENO);
-  dup2(output, STDERR_FILENO);
-  if (confined) ConfineProcess(confined);
-  execvpe(arguments[0], arguments, environment);
-  _exit(NO_PROGRAM);
-}
-
-/* Reads all that comes through a pipe and closes it with a zero. */
-static PetscErrorCode ReadPipe(int end, char **text)
-{
-  char   part[4096];
-  size_t size = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(1, text));
-  for (ssize_t n_read; (n_read = read(end, part, sizeof(part))) > 0 || (n_read < 0 && errno == EINTR);) {
-    if (n_read < 0) continue;
-    PetscCall(PetscRealloc(size + (size_t)n_read + 1, text));
-    memcpy(*text + size, part, (size_t)n_read);
-    size += (size_t)n_read;
-    (*text)[size] = '\0';
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Runs gmsh without a shell and gives all that it printed, to be freed with PetscFree(). Unless `confined` is NULL,
-   gmsh can start no program and write in this folder only. The status is NO_PROGRAM where there is no gmsh. */
-static PetscErrorCode GmshExecute(char *const arguments[], const char *confined, char **output, int *status)
-{
-  char **environment;
-  int    ends[2];
-  pid_t  child;
-
-  PetscFunctionBeginUser;
-  PetscCall(ChildEnvironment(&environment));
-  PetscCheck(!pipe(ends), PETSC_COMM_SELF, PETSC_ERR_SYS, "pipe: %s", strerror(errno));
-  child = fork();
-  PetscCheck(child >= 0, PETSC_COMM_SELF, PETSC_ERR_SYS, "fork: %s", strerror(errno));
-  if (!child) ChildExecute(arguments, environment, confined, ends[1]);
-  close(ends[1]);
-  PetscCall(ReadPipe(ends[0], output));
-  close(ends[0]);
-  while (waitpid(child, status, 0) < 0 && errno == EINTR) continue;
-  *status = WIFEXITED(*status) ? WEXITSTATUS(*status) : KILLED + WTERMSIG(*status);
-  PetscCall(PetscFree(environment));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Appends a line of gmsh's output to a message. */
 static void AppendLine(const char *line, char *text, size_t size)
@@ -159,12 +69,12 @@ static void ComplainFailed(Scene scene, int status, const char *errors, const ch
   char        last[1024];
 
   LastLines(output, last, sizeof(last));
-  if (status > KILLED)
+  if (status > GMSH_KILLED)
     Complain(complaint, "%s: gmsh was ended on '%s' by signal %d (%s)%s; allowed: %s; its last lines:%s", where,
-             scene->mesh_file, status - KILLED, strsignal(status - KILLED),
-             status - KILLED == SIGKILL ? ", mostly for lack of memory" : ", a crash of gmsh itself",
-             status - KILLED == SIGKILL ? "a coarser mesh, or more memory"
-                                        : "another version of gmsh, other mesh.parameters, or a .msh file",
+             scene->mesh_file, status - GMSH_KILLED, strsignal(status - GMSH_KILLED),
+             status - GMSH_KILLED == SIGKILL ? ", mostly for lack of memory" : ", a crash of gmsh itself",
+             status - GMSH_KILLED == SIGKILL ? "a coarser mesh, or more memory"
+                                             : "another version of gmsh, other mesh.parameters, or a .msh file",
              last[0] ? last : " none");
   else if (errors[0])
     Complain(complaint, "%s: gmsh failed on '%s' (exit status %d)%s", where, scene->mesh_file, status, errors);
@@ -381,9 +291,7 @@ made anew each time.
 PetscErrorCode GmshGenerate(Scene scene, const char *directory, PetscBool trust, char *file, PetscReal *seconds,
                             Complaint *complaint)
 {
-  char *const    ask[] = {(char *)"gmsh", (char *)"--version", NULL};
   char           prefix[TEXT_PARTS_IN_NAME], *version;
-  int            status;
   uint64_t       content = 0;
   PetscBool      found, open = PETSC_FALSE;
   struct stat    there;
@@ -403,8 +311,8 @@ PetscErrorCode GmshGenerate(Scene scene, const char *directory, PetscBool trust,
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   snprintf(prefix, sizeof(prefix), "mesh-%0*llx", CONTENT_DIGITS,
            (unsigned long long)(content >> (64 - 4 * CONTENT_DIGITS)));
-  PetscCall(GmshExecute(ask, NULL, &version, &status));
-  if (status == NO_PROGRAM) {
+  PetscCall(GmshVersion(directory, &version));
+  if (!version) {
     PetscCall(FindMesh(directory, prefix, file, &found));
     if (!found) {
       Complain(complaint,

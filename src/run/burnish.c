@@ -177,13 +177,14 @@ PetscErrorCode BurnishSetQuiet(Burnish burnish, PetscBool quiet)
 }
 
 /*@
-  BurnishSetTrust - lets scenes run programs and write files of their own choice.
+  BurnishSetTrust - lets scenes load libraries, run programs and write files of their own choice.
 
   Logically collective
 
   Input Parameters:
 + burnish - the object
-- trust   - PETSC_TRUE: a .geo may use commands such as SystemCall and Save, and PETSc options of a scene may name files
+- trust   - PETSC_TRUE: a .geo may use commands such as SystemCall and Save, PETSc options of a scene may name files, and
+            a body may have a routine of the user's (law: umat)
 
   Note:
   Without it such a scene is refused as wrong input. Set it for scenes of people whom you trust only.

@@ -54,6 +54,7 @@ static PetscErrorCode RunOpen(Run *run, const RunInput *input)
   if (input->directory && !input->directory[0])
     PetscCall(RefuseInput(run->comm, "the directory of the results has no name; allowed: a path"));
   PetscCall(SceneRead(run->comm, input->scene, input->n_set, input->set, &run->scene));
+  PetscCall(SceneLoadRoutines(run->scene, run->comm, input->trust));
   PetscCall(RunInsertOptions(run, input->trust));
   PetscCall(PetscSNPrintf(run->directory, sizeof(run->directory), "%s%s", input->directory ? input->directory : "out/",
                           input->directory ? "" : run->scene->name));
@@ -75,6 +76,7 @@ static PetscErrorCode RunReopen(Run *run, const RunInput *input)
   PetscCall(ErrorLogSetDirectory(run->directory));
   PetscCall(CheckpointOpen(run->comm, run->directory, &run->checkpoint));
   PetscCall(CheckpointReadScene(run->checkpoint, input->n_set, input->set, &run->scene));
+  PetscCall(SceneLoadRoutines(run->scene, run->comm, input->trust));
   PetscCall(RunInsertOptions(run, input->trust));
   PetscCall(RunDirectoryCheckRestart(run->comm, run->scene, run->directory));
   PetscCall(CheckpointMeshFile(run->checkpoint, run->mesh_file));

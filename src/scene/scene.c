@@ -129,7 +129,7 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
   }
   PetscCall(SceneReadMaterial(scene, body));
   PetscCall(SceneReadPlasticity(scene, body));
-  PetscCall(SceneReadRoutine(scene, body));
+  PetscCall(SceneCheckRoutine(scene, body));
   PetscCall(SceneReadFormulation(scene, body));
   PetscCall(SceneCheckIncompressible(scene, body));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -4,6 +4,7 @@
    SceneRead() reads the file on rank 0, applies the -set overrides and validates every key against the table of
    schemakeys.c. It refuses the first mistake with file, line, key, what is wrong and what is allowed. SceneReadAgain()
    reads the scene of a checkpoint, and SceneSameProblem() tells whether a restart may continue results of another text.
+   Reading loads and runs nothing: SceneLoadRoutines() loads the libraries of users that the scene names.
    Checks that need the mesh are made later by the part that owns them. Their messages start with SceneWhere().
    SceneBreaks() tells the step control where loads change their rate. SceneReference() prints the scene reference. */
 #pragma once
@@ -221,6 +222,7 @@ typedef struct {
 PetscErrorCode SceneRead(MPI_Comm, const char *file, int n_set, char *const *set, Scene *);
 PetscErrorCode SceneReadAgain(MPI_Comm, const char *file, const char *where, const char *text, int n_set,
                               char *const *set, Scene *);
+PetscErrorCode SceneLoadRoutines(Scene, MPI_Comm, PetscBool trust);
 PetscErrorCode SceneDestroy(Scene *);
 PetscBool      SceneSameProblem(const char *a, const char *b);
 const char    *SceneWhere(Scene, const char *path, const char *key);

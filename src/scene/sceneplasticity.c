@@ -1,6 +1,7 @@
 /* Yield stress and hardening of a plastic body, and routines of users, see sceneplasticity.h. */
 #include "sceneplasticity.h"
 #include "sceneread.h"
+#include "base/refusal.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -131,48 +132,101 @@ static PetscErrorCode SceneReadConstants(Scene scene, const SceneBody *body, int
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Keys of a routine */
+static const char *const routine_keys[] = {"material.library", "material.constants", "material.states",
+                                           "material.unsymmetric"};
+
+/* Writes the path of the library that a body names. It counts from the folder of the scene. Tells whether it fits. */
+static PetscBool SceneLibraryPath(Scene scene, const SceneBody *body, char *path, size_t size)
+{
+  const char *file = SchemaText(SceneDocument(scene), "%s.%s", body->path, routine_keys[0]);
+
+  return (PetscBool)((size_t)snprintf(path, size, "%s%s%s", file[0] == '/' ? "" : scene->directory,
+                                      file[0] == '/' ? "" : "/", file) < size);
+}
+
 /*@
-  SceneReadRoutine - loads the routine of a body with law: umat, or refuses the keys of one where the law is another.
+  SceneCheckRoutine - refuses a body with law: umat that names no library, and the keys of one where the law is another.
 
   Collective
 
   Input Parameters:
 + scene - the scene
-- body  - its law has been read; its material.umat is set, which UmatClose() frees
+- body  - its law has been read
 
   Note:
-  The path of the library counts from the folder of the scene.
+  Nothing is loaded, see SceneLoadRoutines().
 @*/
-PetscErrorCode SceneReadRoutine(Scene scene, SceneBody *body)
+PetscErrorCode SceneCheckRoutine(Scene scene, const SceneBody *body)
 {
-  static const char *const Own[] = {"material.library", "material.constants", "material.states",
-                                    "material.unsymmetric"};
-  char                     path[PETSC_MAX_PATH_LEN], message[UMAT_MESSAGE];
-  const char              *file;
-  double                  *constants;
-  int                      n, failed;
+  char path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
   if (body->material.law != MATERIAL_UMAT) {
-    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(Own); k++)
-      if (SceneHas(scene, body->path, Own[k]))
-        PetscCall(SceneRefuse(scene, body->path, Own[k], "is for law: umat", NULL));
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(routine_keys); k++)
+      if (SceneHas(scene, body->path, routine_keys[k]))
+        PetscCall(SceneRefuse(scene, body->path, routine_keys[k], "is for law: umat", NULL));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (!SceneHas(scene, body->path, Own[0]))
-    PetscCall(SceneRefuse(scene, body->path, Own[0], "is missing; allowed: the path of a shared library", NULL));
-  file = SchemaText(SceneDocument(scene), "%s.%s", body->path, Own[0]);
-  if (snprintf(path, sizeof path, "%s%s%s", file[0] == '/' ? "" : scene->directory, file[0] == '/' ? "" : "/", file) >=
-      (int)sizeof path)
-    PetscCall(SceneRefuse(scene, body->path, Own[0], "the path is too long", NULL));
+  if (!SceneHas(scene, body->path, routine_keys[0]))
+    PetscCall(
+      SceneRefuse(scene, body->path, routine_keys[0], "is missing; allowed: the path of a shared library", NULL));
+  if (!SceneLibraryPath(scene, body, path, sizeof path))
+    PetscCall(SceneRefuse(scene, body->path, routine_keys[0], "the path is too long", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Loads the library of a body. Ranks may see other files, so that the refusal is of all ranks together. */
+static PetscErrorCode SceneLoadRoutine(Scene scene, SceneBody *body, MPI_Comm comm)
+{
+  char    path[PETSC_MAX_PATH_LEN], key[KEY_PATH_LENGTH], message[UMAT_MESSAGE], text[2 * PETSC_MAX_PATH_LEN];
+  double *constants;
+  int     n, failed;
+
+  PetscFunctionBeginUser;
+  (void)SceneLibraryPath(scene, body, path, sizeof path);
+  KeyPathJoin(key, body->path, routine_keys[0]);
   PetscCall(SceneReadConstants(scene, body, &n, &constants));
-  failed = UmatOpen(path, body->name, n, constants, SchemaInteger(SceneDocument(scene), "%s.%s", body->path, Own[2]),
-                    &body->material.umat, message);
+  failed =
+    UmatOpen(path, body->name, n, constants, SchemaInteger(SceneDocument(scene), "%s.%s", body->path, routine_keys[2]),
+             &body->material.umat, message);
   PetscCall(PetscFree(constants));
   if (failed)
-    PetscCall(SceneRefuse(scene, body->path, Own[0],
-                          "- the library cannot be loaded; allowed: one with a routine umat, see scripts/build_umat.sh",
-                          message));
-  if (SchemaBoolean(SceneDocument(scene), "%s.%s", body->path, Own[3])) UmatSetUnsymmetric(body->material.umat);
+    snprintf(text, sizeof text,
+             "%s: %s - the library cannot be loaded; allowed: one with a routine umat, see scripts/build_umat.sh",
+             DocumentWhere(SceneDocument(scene), key), message);
+  PetscCall(RefuseInputAnywhere(comm, failed ? text : NULL));
+  if (SchemaBoolean(SceneDocument(scene), "%s.%s", body->path, routine_keys[3]))
+    UmatSetUnsymmetric(body->material.umat);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SceneLoadRoutines - loads the shared libraries that the bodies with law: umat name.
+
+  Collective
+
+  Input Parameters:
++ scene - from SceneRead(), which loads nothing
+. comm  - communicator of all ranks
+- trust - whether the scene may run code of its own; else one that names a library is refused
+
+  Note:
+  A library runs code as soon as it is loaded. A model of such a scene needs its routines. SceneDestroy() unloads them.
+@*/
+PetscErrorCode SceneLoadRoutines(Scene scene, MPI_Comm comm, PetscBool trust)
+{
+  PetscFunctionBeginUser;
+  for (int b = 0; b < scene->n_bodies; b++) {
+    SceneBody *body = &scene->bodies[b];
+
+    if (body->rigid || body->material.law != MATERIAL_UMAT) continue;
+    if (!trust)
+      PetscCall(SceneRefuse(scene, body->path, routine_keys[0],
+                            "is a library, whose code would run; allowed: laws of the program (-trust on the command "
+                            "line allows libraries, for a scene that you trust)",
+                            SchemaText(SceneDocument(scene), "%s.%s", body->path, routine_keys[0])));
+    PetscCall(SceneLoadRoutine(scene, body, comm));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

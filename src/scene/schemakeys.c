@@ -110,8 +110,9 @@ const SchemaKey SchemaKeys[] = {
    .help = "plastic strain in a unit of the load parameter t, which is the time"},
   {"bodies.*.material.perzyna.power", REAL, .range = "[1, inf)", .preset = "1", .help = "power of the excess"},
   {"bodies.*.material.library", FILENAME,
-   .help = "of umat, needed there: a shared library with Abaqus's UMAT interface; the path counts from the folder of "
-           "the scene. E and nu are the moduli of the undeformed state there, for penalties"},
+   .help = "of umat, needed there: a shared library with Abaqus's UMAT interface, loaded with -trust on the command line only; "
+           "the path counts from the folder of the scene. E and nu are the moduli of the undeformed state there, for "
+           "penalties"},
   {"bodies.*.material.constants", NUMBERS, .help = "of umat: PROPS"},
   {"bodies.*.material.unsymmetric", BOOLEAN, .preset = "false",
    .help = "of umat: true takes the whole of DDSDDE, false its symmetric part"},

@@ -9,7 +9,6 @@ import shutil
 import subprocess
 import sys
 
-import h5py
 import numpy
 
 SCENES = pathlib.Path(__file__).resolve().parent
@@ -36,6 +35,8 @@ class Run:
     def fields(self):
         """Node coordinates and every field of the last written step but components of tensors, contact fields as
         contact/PAIR/NAME."""
+        import h5py  # here: most tests need no field, and it takes longer to load than many runs take
+
         fields = {}
         with h5py.File(self.directory / "results.h5", "r") as file:
             last = file["steps"][sorted(file["steps"])[-1]]
@@ -79,13 +80,15 @@ def arguments(*own):
 
 
 def run(args, scene, *options, out="run", ranks=None, overrides=(), keep=False, must=0, limit=None):
-    """Runs a scene on the ranks asked for. must: the exit status without which the script ends at once, None: any.
-    limit: seconds, then status 124."""
+    """Runs a scene on the ranks asked for, a single one without mpirun, which would take as long as a small run. must:
+    the exit status without which the script ends at once, None: any. limit: seconds, then status 124."""
     directory = pathlib.Path(args.out) / out
     if not keep:
         shutil.rmtree(directory, ignore_errors=True)
     directory.parent.mkdir(parents=True, exist_ok=True)
-    command = ["mpirun", "-n", str(ranks or args.ranks), args.burnish, str(scene), "-o", str(directory), *options]
+    ranks = ranks or args.ranks
+    command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
+    command += [args.burnish, str(scene), "-o", str(directory), *options]
     for override in overrides:
         command += ["-set", override]
     if limit:

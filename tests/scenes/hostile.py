@@ -1,8 +1,10 @@
 """Scenes of strangers: geometry that runs programs or writes files is refused with its file and line, does nothing, and
-leaves no mesh. With -trust it is taken. A file that the geometry reads makes a new mesh when it changes."""
+leaves no mesh. So is a scene that names a library, which is not loaded. With -trust they are taken. A file that the
+geometry reads makes a new mesh when it changes."""
 import pathlib
 import re
 import shutil
+import subprocess
 
 from harness import SCENES, Check, arguments, run
 
@@ -100,6 +102,24 @@ says("option as parameter: refused", "programs that gmsh runs",
 says("PETSc option with a file: refused", "petsc.*writes a file",
      scene(place / "plain.geo", overrides=[f"petsc={{snes_view: 'ascii:{place}/done'}}"]))
 check.holds("nothing was done", not (place / "done").exists(), "no file")
+
+# A library runs code when it is loaded.
+write("library.c", f"""#include <stdlib.h>
+__attribute__((constructor)) static void Load(void) {{ if (system("{TOUCH}")) exit(1); }}
+void umat_(void) {{}}
+""")
+subprocess.run(["gcc", "-shared", "-fPIC", "-o", place / "library.so", place / "library.c"], check=True)
+MATERIAL = [f"bodies.0.material={{law: umat, E: 1, nu: 0.3, library: {place}/library.so}}"]
+for mode in ("-check", "-mesh", "-quiet"):
+    finished = run(args, SCENES / "wrong_mesh.yaml", mode, out="check", must=None,
+                   overrides=[f"mesh.file={place}/plain.geo", *MATERIAL])
+    says(f"library, {mode}: refused", r"-set bodies.0.material: bodies.0.material.library: \S*library.so is a library",
+         finished)
+    check.holds(f"library, {mode}: exit 1, not loaded", finished.status == 1 and not (place / "done").exists(),
+                f"status {finished.status}")
+trusted = scene(place / "plain.geo", "-trust", overrides=MATERIAL)
+check.holds("library, -trust: loaded", trusted.status == 0 and (place / "done").exists(), trusted.text.strip()[-200:])
+(place / "done").unlink()
 
 # With -trust the same commands run, and files of names that are made while gmsh runs make a new mesh when they change.
 trusted = scene(place / "printf.geo", "-trust")

@@ -33,7 +33,8 @@ def table(directory):
 
 
 def kill_and_restart(scene, directory, overrides, ranks, after):
-    command = ["mpirun", "-n", str(args.ranks), args.burnish, str(SCENES / scene), "-quiet", "-o", str(directory)]
+    command = ["mpirun", "-n", str(args.ranks), args.burnish, str(SCENES / scene), "-quiet", "-trust", "-o",
+               str(directory)]
     for override in overrides:
         command += ["-set", override]
     launcher = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -46,7 +47,7 @@ def kill_and_restart(scene, directory, overrides, ranks, after):
             break
         time.sleep(0.01)
     launcher.wait()
-    command = ["mpirun", "-n", str(ranks), args.burnish, "-restart", str(directory), "-quiet"]
+    command = ["mpirun", "-n", str(ranks), args.burnish, "-restart", str(directory), "-quiet", "-trust"]
     finished = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     return Run(finished.returncode, finished.stdout, directory)
 
@@ -66,7 +67,7 @@ CASES["rolling"] = "tool.yaml", 3, [
     "force: [0, -30], history: [[0, 0], [0.3, 1], [1, 1]], motion: [{ux: 2, history: [[0, 0], [0.3, 0], [1, 1]]}]}}"
 ]
 for name, (scene, after, overrides) in CASES.items():
-    whole = run(args, SCENES / scene, "-quiet", out=f"{name}_whole", overrides=overrides)
+    whole = run(args, SCENES / scene, "-quiet", "-trust", out=f"{name}_whole", overrides=overrides)
     for ranks in (args.ranks, args.ranks + 1):
         directory = out / f"{name}_parts_{ranks}"
         shutil.rmtree(directory, ignore_errors=True)

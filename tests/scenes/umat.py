@@ -41,7 +41,7 @@ def scene(name, material, kinematics, *more, **options):
                  "supports.2={surface: z_min, uz: 0}", *more]
     if kinematics == "finite":
         overrides += ["loads.0.ux=0.3", "loads.0.uy=0.2"]
-    return run(args, SCENES / "plastic_bar.yaml", "-quiet", out=f"{name}", overrides=overrides, **options)
+    return run(args, SCENES / "plastic_bar.yaml", "-quiet", "-trust", out=f"{name}", overrides=overrides, **options)
 
 
 for name, (source, constants, states, kinematics, own) in CASES.items():
@@ -103,7 +103,7 @@ tools = []
 for name in ("neo_hookean", "umat"):
     material = CASES["neo_hookean"][4] if name == "neo_hookean" else (
         f"{{law: umat, E: {E}, nu: {NU}, library: {library('neo_hookean.c')}, constants: [{MU}, {LAMBDA}]}}")
-    tools.append(run(args, SCENES / "tool.yaml", "-quiet", out=f"tool_{name}", overrides=[
+    tools.append(run(args, SCENES / "tool.yaml", "-quiet", "-trust", out=f"tool_{name}", overrides=[
         f"bodies.0.material={material}", "contact.0.master.cylinder.force=[0, -60e3]", "mesh.parameters.nx=10",
         "mesh.parameters.ny=5", "bodies.0.formulation=full", f"mesh.order={args.order}", "contact.0.friction.mu=0.3"]))
 for key in ("force", "way"):

@@ -47,7 +47,7 @@ def scene(name, material, kinematics, element, way, *options, more=(), must=0):
                  f"mesh.order={order}", f"bodies.0.material={material}", f"bodies.0.formulation={formulation}",
                  f"loads.0={{surface: x_max, ux: {way[0]}, uy: {way[1]}, history: [[0, 0], [0.5, 1], [1, 0.3]]}}",
                  "stepping={control: fixed, initial: 0.125}", *more]
-    return run(args, SCENES / "plastic_bar.yaml", *options, out=f"{name}_{element}_{args.geometry}",
+    return run(args, SCENES / "plastic_bar.yaml", "-trust", *options, out=f"{name}_{element}_{args.geometry}",
                overrides=overrides, must=must)
 
 

@@ -2,6 +2,7 @@
    mesh, and a damaged file is refused. */
 #include "gmsh.h"
 #include "gmshfile.h"
+#include "gmshprocess.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -144,6 +145,41 @@ static void test_without_gmsh(void **state)
   assert_non_null(strstr(missing.text, "-mesh"));
   Generate("{n: 3}", found, &complaint);
   assert_string_equal(made, found);
+}
+
+/* Puts a program named gmsh first on PATH and asks for its version. */
+static char *VersionOf(const char *command)
+{
+  char search[8192], line[256], *before = strdup(getenv("PATH")), *version;
+
+  snprintf(line, sizeof(line), command, folder);
+  assert_int_equal(system(line), 0);
+  snprintf(search, sizeof(search), "%s:%s", folder, before);
+  setenv("PATH", search, 1);
+  assert_int_equal(GmshVersion(folder, &version), 0);
+  setenv("PATH", before, 1);
+  free(before);
+  return version;
+}
+
+/* The version of a binary is asked for once. One that was put there anew, and a script, are asked. */
+static void test_version_is_kept(void **state)
+{
+  char *first = VersionOf("cp /bin/echo %s/gmsh"), *kept, *again, *script;
+
+  (void)state;
+  kept   = VersionOf("cd %s && sed -i 1q gmsh-version.txt && echo kept >>gmsh-version.txt");
+  again  = VersionOf("cd %s && cp gmsh other && mv other gmsh");
+  script = VersionOf("cd %s && printf '#!/bin/sh\\necho 9\\n' >other && chmod +x other && mv other gmsh");
+  assert_string_equal(kept, "kept\n");
+  assert_string_equal(again, first);
+  assert_string_equal(script, "9\n");
+  assert_int_equal(PetscFree(first), 0);
+  assert_int_equal(PetscFree(kept), 0);
+  assert_int_equal(PetscFree(again), 0);
+  assert_int_equal(PetscFree(script), 0);
+  script = VersionOf("rm %s/gmsh");
+  assert_int_equal(PetscFree(script), 0);
 }
 
 /* A gmsh that does what a script says in place of meshing */
@@ -304,9 +340,13 @@ static void test_damaged(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_meshed_once),     cmocka_unit_test(test_names_differ),
-                                     cmocka_unit_test(test_without_gmsh),    cmocka_unit_test(test_crash),
-                                     cmocka_unit_test(test_mistakes_in_geo), cmocka_unit_test(test_binary_equals_text),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_meshed_once),
+                                     cmocka_unit_test(test_names_differ),
+                                     cmocka_unit_test(test_without_gmsh),
+                                     cmocka_unit_test(test_version_is_kept),
+                                     cmocka_unit_test(test_crash),
+                                     cmocka_unit_test(test_mistakes_in_geo),
+                                     cmocka_unit_test(test_binary_equals_text),
                                      cmocka_unit_test(test_damaged)};
   char                    command[128];
   int                     failed;

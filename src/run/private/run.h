@@ -21,7 +21,7 @@ typedef struct {
   int         n_set;
   char      **set; /* KEY=VALUE edits of the scene */
   PetscBool   overwrite, quiet;
-  PetscBool   trust; /* the scene may run programs and write files of its own */
+  PetscBool   trust; /* the scene may load libraries, run programs and write files of its own */
 } RunInput;
 
 typedef struct {
