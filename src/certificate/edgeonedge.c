@@ -81,12 +81,31 @@ static int IsOwnEdge(const Edge *edge, const Place a[2], const Piece *piece, int
   return Volume((const Place *)X, (const Place *)Y) * Volume(a, b) >= 0;
 }
 
-/* Keeps how deep an edge stands across another one. at: the place on it. */
-static void KeepAcross(const Look *look, const Edge *edge, double at, const Piece *piece, double depth, Finding *worst)
+/* Sine of the angle between an edge and the nearer face around another one; 0 where it lies across both. normal: of
+   both edges, times a sign out of the body of these faces. */
+static double OffFace(const double normal[3], int sign, const Piece *piece, int edge)
+{
+  const double cosine = fmax(sign * Dot(normal, piece->normal[1]), sign * Dot(normal, piece->across[edge]));
+
+  return cosine < STAND_ALONG ? 0 : sqrt(fmax(0, 1 - cosine * cosine));
+}
+
+/* Depth of an edge, at a place, that a face explains which holds a pressed end of it: from there the edge goes off. */
+static double HeldDepth(const Place ends[2], const int pressed[2], double at, double off)
+{
+  double r[3];
+
+  Minus(ends[1], ends[0], r);
+  return off * sqrt(Dot(r, r)) * fmax(pressed[0] ? at : 0, pressed[1] ? 1 - at : 0);
+}
+
+/* Keeps how deep an edge stands across another one. at: the place on it; held: depth that faces explain. */
+static void KeepAcross(const Look *look, const Edge *edge, double at, const Piece *piece, double depth, double held,
+                       Finding *worst)
 {
   for (int k = 0; k < 2 && edge->of[k]; k++) {
     const Point  point     = EdgePoint(edge, edge->of[k], at);
-    const double explained = fmax(piece->sagitta, edge->of[k]->sagitta) + look->overlap,
+    const double explained = fmax(piece->sagitta, edge->of[k]->sagitta) + look->overlap + held,
                  allowed   = AllowedDepth(look, &point, piece) + explained;
     Finding finding        = {.ratio   = depth / allowed,
                               .depth   = depth,
@@ -116,11 +135,13 @@ static void KeepAcross(const Look *look, const Edge *edge, double at, const Piec
 . worst - the worst finding so far
 
   Note:
-  What the shape of faces explains elsewhere, an edge that stands between the points of a face, does not count here.
+  What the shape of faces explains elsewhere, an edge that stands between the points of a face, does not count here. An
+  edge whose pressed end rests on a face, along which it lies, may leave that face beyond its end.
 @*/
 void EdgeOnEdges(Look *look, const Edge *edge, double in, double out, Finding *worst)
 {
-  const Piece *own = edge->of[0];
+  const Piece *own        = edge->of[0];
+  const int    pressed[2] = {edge->end[0]->closed, edge->end[1]->closed};
   Place        a[2], part[2];
   Box          box;
 
@@ -134,7 +155,7 @@ void EdgeOnEdges(Look *look, const Edge *edge, double in, double out, Finding *w
     const Piece *piece = &look->list->pieces[look->found[i]];
 
     for (int k = 0; k < 3; k++) {
-      double at[2], normal[3], p[3], q[3], r[3], depth;
+      double at[2], normal[3], p[3], q[3], r[3], depth, held;
       Place  b[2];
       int    sign;
 
@@ -144,11 +165,14 @@ void EdgeOnEdges(Look *look, const Edge *edge, double in, double out, Finding *w
       sign = Dot(normal, piece->normal[1]) + Dot(normal, piece->across[k]) > 0 ? 1 : -1;
       if (!IsBetween(look, normal, sign, piece, k) || !IsBetween(look, normal, -sign, own, edge->number)) continue;
       if (IsOwnEdge(edge, (const Place *)a, piece, k, (const Place *)b)) continue;
+      held = fmax(HeldDepth((const Place *)a, pressed, at[0], OffFace(normal, sign, piece, k)),
+                  HeldDepth((const Place *)b, (int[2]){piece->closed, piece->closed}, at[1],
+                            OffFace(normal, -sign, own, edge->number)));
       Between(a[0], a[1], at[0], p);
       Between(b[0], b[1], at[1], q);
       Minus(q, p, r);
       depth = sign * Dot(normal, r);
-      if (depth > 0) KeepAcross(look, edge, at[0], piece, depth, worst);
+      if (depth > 0) KeepAcross(look, edge, at[0], piece, depth, held, worst);
     }
   }
 }

@@ -24,6 +24,9 @@
 #define STAND_REACH 0.5
 /* Normals whose cosine is below this belong to the two sides of a wall, not of a corner. */
 #define STAND_OPPOSED (-0.5)
+/* Cosine of the angle up to which an edge lies along a face and not across it, 30 degrees: half a face behind a point
+   that the face holds, it is a quarter of a face off. */
+#define STAND_ALONG 0.866
 /* Depths below this part of a face are round-off. */
 #define STAND_ROUND_OFF 1e-6
 
