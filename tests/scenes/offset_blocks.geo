@@ -25,7 +25,7 @@ Transfinite Curve{11:14} = n_up + 1;
 Transfinite Surface{1, 11};
 Recombine Surface{1, 11};
 low[] = Extrude {0, 0, 2} { Surface{1}; Layers{n_low}; Recombine; };
-up[] = Extrude {0, 0, 2} { Surface{11}; Layers{n_up}; Recombine; };
+up[] = Extrude {0, 0, 1.99} { Surface{11}; Layers{n_low}; Recombine; };
 Physical Volume("low") = {low[1]};
 Physical Volume("up") = {up[1]};
 Physical Surface("foot") = {1};
