@@ -50,8 +50,8 @@ static void Note(FindingKind kind, double depth, double allowed, double over_h, 
 }
 
 /*@
-  AnalyticPointFinding - judges a point of the slave: its depth in the tool at the end, and whether it has passed a
-  cylinder or a sphere.
+  AnalyticPointFinding - judges a point of the slave: its depth in the tool at the end, and whether it has passed
+  through a cylinder or a sphere.
 
   Not collective
 
@@ -61,6 +61,10 @@ static void Note(FindingKind kind, double depth, double allowed, double over_h, 
 
   Input/Output Parameter:
 . worst - the worst finding so far
+
+  Note:
+  A straight motion past a round tool cuts a corner. The point has passed through it where it came in and went out on
+  opposite sides: nearer to the centre than the radius times the cosine of half the angle between their normals.
 @*/
 void AnalyticPointFinding(const AnalyticTool *tool, const Point *point, Finding *worst)
 {
@@ -76,7 +80,7 @@ void AnalyticPointFinding(const AnalyticTool *tool, const Point *point, Finding 
   (void)PieceClosest(2, (const Place *)r, (const Place){0, 0, 0}, closest);
   memcpy(at, closest, sizeof(at));
   least = GapOf(tool, at, 1);
-  if (point->closed && Dot(r[0], r[1]) > STAND_OPPOSED * sqrt(Dot(r[0], r[0]) * Dot(r[1], r[1]))) return;
+  if (least + tool->surface.radius > sqrt((1 + STAND_OPPOSED) / 2) * tool->surface.radius) return;
   if (-least > allowed) Note(FINDING_PASSED, -least, allowed, 0, point, worst);
 }
 

@@ -318,6 +318,24 @@ PetscErrorCode CertificateCheck(Certificate certificate, const PetscReal *u_0, P
 }
 
 /*@
+  CertificateBalance - takes what is out of balance in an accepted state. The largest parts of the run are kept.
+
+  Not collective
+
+  Input Parameters:
++ certificate - the certificate
+. force       - part of the outer forces that is out of balance, the same on all ranks
+- moment      - the same of moments; NaN: there are none
+@*/
+void CertificateBalance(Certificate certificate, PetscReal force, PetscReal moment)
+{
+  CertificateFigures *figures = &certificate->figures;
+
+  figures->force = PetscMax(figures->force, force);
+  if (!PetscIsNanReal(moment)) figures->moment = PetscMax(figures->moment, moment);
+}
+
+/*@
   CertificateGetFigures - returns what was found so far.
 
   Not collective
@@ -330,7 +348,9 @@ PetscErrorCode CertificateCheck(Certificate certificate, const PetscReal *u_0, P
 @*/
 void CertificateGetFigures(Certificate certificate, CertificateFigures *figures)
 {
-  *figures = certificate ? certificate->figures : (CertificateFigures){.over_h = NAN, .ratio = NAN};
+  const CertificateFigures none = {.over_h = NAN, .ratio = NAN, .force = NAN, .moment = NAN};
+
+  *figures = certificate ? certificate->figures : none;
 }
 
 /*@
@@ -345,7 +365,7 @@ void CertificateGetFigures(Certificate certificate, CertificateFigures *figures)
 PetscErrorCode CertificateArchive(Certificate certificate, Archive archive)
 {
   CertificateFigures none = {0}, *figures = certificate ? &certificate->figures : &none;
-  PetscReal         *real[]    = {&figures->over_h, &figures->ratio};
+  PetscReal         *real[]    = {&figures->over_h, &figures->ratio, &figures->force, &figures->moment};
   PetscInt          *integer[] = {&figures->steps, &figures->refused};
 
   PetscFunctionBeginUser;

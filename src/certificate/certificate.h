@@ -18,11 +18,13 @@ typedef struct {
   PetscInt  steps, refused; /* steps that were judged; of these, those that did not hold */
   PetscReal over_h;         /* largest depth, less what geometry explains, over the size of the smaller face */
   PetscReal ratio;          /* largest depth of a step that holds, over what is allowed */
+  PetscReal force, moment;  /* largest parts of the outer forces and moments that are out of balance, forcebalance.h */
 } CertificateFigures;
 
 PetscErrorCode CertificateCreate(Mesh, Scene, Loads, Contact, Certificate *);
 PetscErrorCode CertificateDestroy(Certificate *);
 PetscErrorCode CertificateCheck(Certificate, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t,
                                 PetscBool *holds, char *text, size_t size);
+void           CertificateBalance(Certificate, PetscReal force, PetscReal moment);
 void           CertificateGetFigures(Certificate, CertificateFigures *);
 PetscErrorCode CertificateArchive(Certificate, Archive);

@@ -15,40 +15,6 @@ static double Distance(const double a[3], const double b[3])
   return sqrt(Dot(r, r));
 }
 
-static void Between(const double a[3], const double b[3], double s, double c[3])
-{
-  for (int d = 0; d < 3; d++) c[d] = (1 - s) * a[d] + s * b[d];
-}
-
-/* A point on an edge, for its depth: between the ends, of the faces around. Of two faces the worse one counts. */
-static Point EdgePoint(const Edge *edge, const Piece *piece, double s)
-{
-  Point point = {.tag    = edge->end[0]->tag,
-                 .size   = piece->size,
-                 .height = piece->height,
-                 .marks  = edge->end[0]->marks & edge->end[1]->marks,
-                 .body   = piece->body,
-                 .closed = piece->closed,
-                 .side   = piece->side,
-                 .order  = piece->order,
-                 .tip    = fmin(edge->end[0]->tip, edge->end[1]->tip)};
-
-  Between(edge->end[0]->X, edge->end[1]->X, s, point.X);
-  for (int state = 0; state < 2; state++) {
-    Between(edge->end[0]->x[state], edge->end[1]->x[state], s, point.x[state]);
-    for (int d = 0; d < 3; d++)
-      point.normal[state][d] = edge->end[0]->normal[state][d] + edge->end[1]->normal[state][d];
-  }
-  return point;
-}
-
-/* Is a piece at one of the ends of an edge, or treated by another pair together with the edge? */
-static int IsLeftOut(const Look *look, const Edge *edge, const Piece *piece)
-{
-  return HasTag(piece, look->dim, edge->end[0]->tag) || HasTag(piece, look->dim, edge->end[1]->tag) ||
-         FaceMarksTreated(edge->end[0]->marks & edge->end[1]->marks, piece->marks);
-}
-
 /* Finds the places where an edge stands through pieces at the end, in their order. */
 static void FindCuts(Look *look, const Edge *edge)
 {
@@ -62,7 +28,7 @@ static void FindCuts(Look *look, const Edge *edge)
     const Piece *piece = &look->list->pieces[look->found[i]];
     Crossing     at;
 
-    if (!BoxesMeet(box, piece->box, 0) || IsLeftOut(look, edge, piece)) continue;
+    if (!BoxesMeet(box, piece->box, 0) || EdgeLeavesOut(look, edge, piece)) continue;
     if (PiecePierce(look->dim, (const Place *)piece->x[1], piece->normal[1], (const Place *)ends, &at.s, &at.inward))
       LookAdd(look, piece, at);
   }
@@ -88,18 +54,23 @@ static void JudgeMiddle(Look *look, const Edge *edge, double in, double out, Fin
   }
 }
 
-/* Judges the parts of an edge that stand in the other side at the end, between two places where it goes through. */
+/* Judges the parts of an edge that stand in the other side at the end, between two places where it goes through. In a
+   part that reaches to an end of the edge, the point there is the deepest; in space the part may stand across edges. */
 static void JudgeCuts(Look *look, const Edge *edge, Finding *worst)
 {
+  double in = edge->end[0]->inside ? 0 : -1;
+
   FindCuts(look, edge);
   for (int i = 0; i < look->n_events; i++) {
-    int out = i + 1;
+    const Crossing at = look->events[i].at;
 
-    if (!look->events[i].at.inward) continue;
-    while (out < look->n_events && look->events[out].at.inward) out++;
-    if (out == look->n_events) return;
-    JudgeMiddle(look, edge, look->events[i].at.s, look->events[out].at.s, worst);
+    if (at.inward && in < 0) in = at.s;
+    if (at.inward || in < 0) continue;
+    if (in > 0) JudgeMiddle(look, edge, in, at.s, worst);
+    EdgeOnEdges(look, edge, in, at.s, worst);
+    in = -1;
   }
+  if (in >= 0 && edge->end[1]->inside) EdgeOnEdges(look, edge, in, 1, worst);
 }
 
 /* Does an edge look at a piece, with one of the faces around it? */
@@ -180,7 +151,8 @@ void EdgeFinding(Look *look, const Edge *edge, int crossings, Finding *worst)
   for (int i = 0; crossings && look->dim == 3 && i < look->n_found; i++) {
     const Piece *piece = &look->list->pieces[look->found[i]];
 
-    if (LooksAt(edge, piece) && !IsLeftOut(look, edge, piece)) JudgeCrossings(look, edge, x, box, piece, worst);
+    if (LooksAt(edge, piece) && !EdgeLeavesOut(look, edge, piece)) JudgeCrossings(look, edge, x, box, piece, worst);
   }
+  if (crossings && look->dim == 3) EdgePassage(look, edge, box, worst);
   JudgeCuts(look, edge, worst);
 }

@@ -34,35 +34,71 @@ static double Cosine(const Piece *a, const Piece *b)
   return Dot(a->normal[1], b->normal[1]);
 }
 
-/* Keeps that a point has passed the piece where it came in, if that is the worst. */
-static void KeepPassed(const Point *point, const Event *in, double depth, double allowed, Finding *worst)
+/* Do two pieces share a vertex? The flanks of a tip do, the sides of a film or a sheet do not. */
+static int Adjoin(int dim, const Piece *a, const Piece *b)
+{
+  for (int i = 0; i < dim; i++)
+    if (HasTag(b, dim, a->tag[i])) return 1;
+  return 0;
+}
+
+/* Keeps that a point or an edge has passed the piece where it came in, if that is the worst. */
+static void KeepPassed(const Point *point, long second, const Event *in, double depth, double allowed, Finding *worst)
 {
   const Finding finding = {.kind    = FINDING_PASSED,
                            .ratio   = depth / allowed,
                            .depth   = depth,
                            .allowed = allowed,
-                           .tag     = {point->tag, 0},
+                           .tag     = {point->tag, second},
                            .face    = in->piece->face,
                            .X       = {point->X[0], point->X[1], point->X[2]}};
 
   FindingKeep(&finding, worst);
 }
 
-/* Judges a point that was behind one piece and has come out of another one, or stands in it. Where the two are no
-   opposite sides of a wall, it is back on the side from which it came: straight motions cut corners. Where contact
-   presses, it may pass the tip of a wedge as deep as it may stand in it. */
-static void JudgePassage(const Look *look, const Point *point, const Event *in, const Event *out, Finding *worst)
+/*@
+  PassageFinding - judges a point, or an edge at a place, that was behind one piece and has come out of another one, or
+  stands in it.
+
+  Not collective
+
+  Input Parameters:
++ look   - the pieces of the other side
+. point  - the point
+. second - of an edge: tag of its second end, else 0
+. in     - where and when it came in
+. out    - where and when it came out
+- depth  - how deep it was in between (length)
+
+  Input/Output Parameter:
+. worst - the worst finding so far
+
+  Note:
+  Where the two pieces are no opposite sides of a wall, it is back on the side from which it came: straight motions cut
+  corners. Where contact presses, it may pass the tip of a wedge as deep as it may stand in it. A wall whose sides do
+  not meet is passed however thin it is, unless its faces are farther than that from the curved surface that they stand
+  for.
+@*/
+void PassageFinding(const Look *look, const Point *point, long second, const Event *in, const Event *out, double depth,
+                    Finding *worst)
 {
-  const double depth =
-    fmin(BehindAt(look->dim, in->piece, point, out->at.s), BehindAt(look->dim, out->piece, point, in->at.s));
   const int carried = point->closed || in->piece->closed || out->piece->closed;
   double    allowed = STAND_ROUND_OFF * fmin(point->size, fmin(in->piece->size, out->piece->size));
 
   if (Cosine(in->piece, out->piece) > STAND_OPPOSED) return;
-  if (carried) allowed = look->penetration * fmin(point->size, fmin(in->piece->size, out->piece->size));
-  allowed += look->overlap;
+  if (carried && Adjoin(look->dim, in->piece, out->piece))
+    allowed = look->penetration * fmin(point->size, fmin(in->piece->size, out->piece->size));
+  allowed += look->overlap + fmax(in->piece->sagitta, out->piece->sagitta);
   if (!(depth > allowed)) return;
-  KeepPassed(point, in, depth, allowed, worst);
+  KeepPassed(point, second, in, depth, allowed, worst);
+}
+
+static void JudgePassage(const Look *look, const Point *point, const Event *in, const Event *out, Finding *worst)
+{
+  const double depth =
+    fmin(BehindAt(look->dim, in->piece, point, out->at.s), BehindAt(look->dim, out->piece, point, in->at.s));
+
+  PassageFinding(look, point, 0, in, out, depth, worst);
 }
 
 /* Judges a point that has gone behind a piece and is not found behind any surface at the end. */
@@ -75,7 +111,7 @@ static void JudgeGone(const Look *look, const Point *point, const Event *in, con
   if (!(depth > allowed) || (end->piece && end->front)) return;
   (void)PieceClosest(look->dim, (const Place *)in->piece->x[1], point->x[1], foot);
   if (Distance(foot, point->x[1]) > depth + 0.5 * in->piece->size) return; /* it left past an end */
-  KeepPassed(point, in, depth, allowed, worst);
+  KeepPassed(point, 0, in, depth, allowed, worst);
 }
 
 /* Finds the crossings of a point, in the order of time. */
@@ -103,7 +139,7 @@ static void PointEvents(Look *look, const Point *point, const Box box)
 
   Input Parameters:
 + look  - the pieces of the other side
-- point - the point
+- point - the point; says on return whether it is inside
 
   Input/Output Parameter:
 . worst - the worst finding so far
@@ -113,20 +149,23 @@ static void PointEvents(Look *look, const Point *point, const Box box)
   where it crosses a piece to its front, or where it stands behind one on the other side of a wall at the end. In
   between it was as deep as it was behind the first piece when it came out, or behind the last one when it came in.
 @*/
-void PointFinding(Look *look, const Point *point, Finding *worst)
+void PointFinding(Look *look, Point *point, Finding *worst)
 {
   Event in = {.piece = NULL};
   Box   box;
   Stand start, end;
 
   BoxAround(2, (const Place *)point->x, box);
+  point->inside = 0;
   LookAt(look, box, STAND_REACH * point->size + look->overlap);
   if (!look->n_found) return;
   start = PointStand(look, point, 0);
   end   = PointStand(look, point, 1);
+
+  point->inside = end.inside;
   JudgeDepth(look, point, &end, (long[2]){point->tag, 0}, worst);
   PointEvents(look, point, box);
-  if (start.inside) in = (Event){start.piece, {0, 1}};
+  if (start.inside) in = (Event){.piece = start.piece, .at = {0, 1}};
   for (int k = 0; k < look->n_events; k++) {
     const Event *event = &look->events[k];
 
@@ -138,6 +177,6 @@ void PointFinding(Look *look, const Point *point, Finding *worst)
     }
   }
   if (in.piece && end.inside && Cosine(in.piece, end.piece) <= STAND_OPPOSED)
-    JudgePassage(look, point, &in, &(Event){end.piece, {1, 0}}, worst);
+    JudgePassage(look, point, &in, &(Event){.piece = end.piece, .at = {1, 0}}, worst);
   if (in.piece && !end.inside) JudgeGone(look, point, &in, &end, worst);
 }

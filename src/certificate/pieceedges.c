@@ -2,9 +2,10 @@
 #include "pieces.h"
 #include <stdlib.h>
 
-/* An edge of one piece: its points in ascending order */
+/* An edge of one piece: its points in ascending order, and its number there */
 typedef struct {
   PetscInt low, high, piece;
+  int      number;
 } EdgeOf;
 
 static int EarlierEdge(const void *a, const void *b)
@@ -26,7 +27,7 @@ static PetscInt ListEdges(Side side, EdgeOf *list)
     for (int e = 0; e < edges; e++) {
       const PetscInt a = side->corner[3 * k + e], b = side->corner[3 * k + (e + 1) % side->dim];
 
-      list[n++] = (EdgeOf){PetscMin(a, b), PetscMax(a, b), k};
+      list[n++] = (EdgeOf){PetscMin(a, b), PetscMax(a, b), k, e};
     }
   }
   qsort(list, (size_t)n, sizeof(*list), EarlierEdge);
@@ -55,8 +56,9 @@ PetscErrorCode SideEdges(Side side)
       (PetscBool)(i + 1 < n && list[i].low == list[i + 1].low && list[i].high == list[i + 1].high);
 
     side->edges[side->n_edges++] = (Edge){
-      .end = {&side->points[list[i].low], &side->points[list[i].high]},
-      .of  = {&side->pieces[list[i].piece], shared ? &side->pieces[list[i + 1].piece] : NULL},
+      .end    = {&side->points[list[i].low], &side->points[list[i].high]},
+      .of     = {&side->pieces[list[i].piece], shared ? &side->pieces[list[i + 1].piece] : NULL},
+      .number = list[i].number,
     };
     i += shared;
   }

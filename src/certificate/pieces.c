@@ -120,12 +120,16 @@ static void MeasureTool(Side side, const PetscInt *number, PetscReal *sum)
           X[a][d] = surface->rigid->coords[face->nodes[node[k][a]] * side->dim + d];
       PieceNormal(side->dim, (const Place *)X, normal);
       for (int a = 0; a < side->dim; a++) {
-        const PetscInt i = number[face->nodes[node[k][a]]];
+        const PetscInt i     = number[face->nodes[node[k][a]]];
+        const double   angle = side->dim == 3 ? PieceAngle((const Place *)X, a) : 0;
 
         if (i < 0) continue;
         sum[3 * i] += surface->face_size[f];
         sum[3 * i + 2] += 1;
-        for (int d = 0; d < 3; d++) side->points[i].turns[d] += normal[d];
+        for (int d = 0; d < 3; d++) {
+          side->points[i].turns[d] += normal[d];
+          side->points[i].ridge_turns[d] += angle * normal[d];
+        }
       }
     }
   }
@@ -262,8 +266,9 @@ static void PlacePoints(Side side, int state, const PetscReal *u, PetscReal t)
   }
 }
 
-/* Sums over the pieces around each point of a deformable body: normals of both states, longest sides. */
-enum { AROUND_NORMALS = 6, AROUND };
+/* Sums over the pieces around each point of a deformable body: normals of both states, longest sides, normals at the
+   end weighted by angles. */
+enum { AROUND_NORMALS = 6, AROUND_RIDGE, AROUND = AROUND_RIDGE + 3 };
 
 /* Finds the directions of a deformable surface at the points, of both states, and the mean side around them. */
 static PetscErrorCode PointsAround(Side side)
@@ -277,15 +282,18 @@ static PetscErrorCode PointsAround(Side side)
     const Piece *piece = &side->pieces[k];
 
     for (int a = 0; a < side->dim; a++) {
-      PetscReal *at = &sum[AROUND * side->corner[3 * k + a]];
+      PetscReal   *at    = &sum[AROUND * side->corner[3 * k + a]];
+      const double angle = side->dim == 3 ? PieceAngle((const Place *)piece->x[1], a) : 0;
 
       for (int i = 0; i < AROUND_NORMALS; i++) at[i] += piece->normal[i / 3][i % 3];
       at[AROUND_NORMALS] += piece->side;
+      for (int d = 0; d < 3; d++) at[AROUND_RIDGE + d] += angle * piece->normal[1][d];
     }
   }
   PetscCall(SumPoints(side, AROUND, sum));
   for (PetscInt i = 0; i < side->n_points; i++) {
     memcpy(side->points[i].normal, &sum[AROUND * i], AROUND_NORMALS * sizeof(PetscReal));
+    memcpy(side->points[i].ridge, &sum[AROUND * i + AROUND_RIDGE], sizeof(Place));
     side->points[i].side = sum[AROUND * i + AROUND_NORMALS] / side->points[i].number;
   }
   PetscCall(PetscFree(sum));
@@ -328,8 +336,12 @@ PetscErrorCode SideMove(Side side, const PetscReal *const u[2], const PetscReal 
   for (int state = 0; state < 2; state++) {
     if (side->surface->rigid) ToolsPlace(side->surface->mesh, u[state], t[state]);
     PlacePoints(side, state, u[state], t[state]);
-    for (PetscInt i = 0; i < side->n_points && side->surface->rigid; i++)
-      LoadsRigidTurn(side->loads, side->surface->body, t[state], side->points[i].turns, side->points[i].normal[state]);
+    for (PetscInt i = 0; i < side->n_points && side->surface->rigid; i++) {
+      Point *point = &side->points[i];
+
+      LoadsRigidTurn(side->loads, side->surface->body, t[state], point->turns, point->normal[state]);
+      if (state) LoadsRigidTurn(side->loads, side->surface->body, t[state], point->ridge_turns, point->ridge);
+    }
   }
   for (PetscInt k = 0; k < side->n_pieces; k++) {
     Piece *piece = &side->pieces[k];
@@ -371,6 +383,12 @@ PetscErrorCode SideMeasure(Side side, const PetscReal *closed)
 
       piece->closed |= point->closed;
       memcpy(normal[a], point->normal[1], sizeof(Place));
+    }
+    for (int a = 0; a < 3 && side->dim == 3; a++) {
+      const Point *one   = &side->points[side->corner[3 * k + a]],
+                  *other = &side->points[side->corner[3 * k + (a + 1) % 3]];
+
+      PieceAcross((const Place *)piece->x[1], a, one->ridge, other->ridge, piece->across[a]);
     }
     piece->sagitta = PieceHeight(side->dim, (const Place *)piece->x[1], (const Place *)normal, PIECE_COSINE);
   }

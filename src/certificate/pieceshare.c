@@ -11,6 +11,8 @@ static Piece ImageOf(const Piece *piece, const SurfaceImage *image, int dim)
 
     out.tag[a] = piece->tag[b];
     out.tip[a] = piece->tip[b];
+    for (int d = 0; d < dim; d++)
+      out.across[a][d] = image->sign[d] * piece->across[image->reverses ? (3 - a) % 3 : a][d];
     SurfaceReflect(image, dim, piece->X[b], out.X[a]);
     for (int state = 0; state < 2; state++) SurfaceReflect(image, dim, piece->x[state][b], out.x[state][a]);
   }

@@ -130,7 +130,7 @@ void LookAdd(Look *look, const Piece *piece, Crossing at)
     look->events      = events;
     look->room_events = room;
   }
-  look->events[look->n_events++] = (Event){piece, at};
+  look->events[look->n_events++] = (Event){.piece = piece, .at = at};
 }
 
 static int EarlierEvent(const void *a, const void *b)

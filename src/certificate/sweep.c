@@ -144,6 +144,58 @@ double PieceHeight(int dim, const Place x[], const Place normal[], double cosine
   return fabs(height);
 }
 
+/*@
+  PieceAngle - returns the angle of a triangle at one of its vertices (radians).
+
+  Not collective
+
+  Input Parameters:
++ x - its vertices
+- a - number of the vertex
+@*/
+double PieceAngle(const Place x[], int a)
+{
+  double p[3], q[3], c[3];
+
+  Minus(x[(a + 1) % 3], x[a], p);
+  Minus(x[(a + 2) % 3], x[a], q);
+  Cross(p, q, c);
+  return atan2(sqrt(Dot(c, c)), Dot(p, q));
+}
+
+/*@
+  PieceAcross - finds the normal of the surface on the other side of an edge of a triangle.
+
+  Not collective
+
+  Input Parameters:
++ x     - vertices of the triangle
+. a     - number of the edge, from vertex a to the next one
+. one   - direction of the surface at vertex a: normals around it, weighted by their angles there
+- other - at the next one
+
+  Output Parameter:
+. across - unit normal: the triangle's own one, reflected at the mean direction along the edge
+
+  Note:
+  Where the edge goes straight on at its ends, both flanks have the same angles there, and this is exact on any
+  triangles. Where the surface ends at the edge, it is the triangle's own normal.
+@*/
+void PieceAcross(const Place x[], int a, const double one[3], const double other[3], double across[3])
+{
+  const double l = sqrt(Dot(one, one)), m = sqrt(Dot(other, other));
+  double       normal[3], t[3], mean[3], along, own;
+
+  PieceNormal(3, x, normal);
+  Minus(x[(a + 1) % 3], x[a], t);
+  for (int d = 0; d < 3; d++) mean[d] = (l > 0 ? one[d] / l : 0) + (m > 0 ? other[d] / m : 0);
+  along = Dot(mean, t) / fmax(Dot(t, t), 1e-300);
+  for (int d = 0; d < 3; d++) mean[d] -= along * t[d];
+  own = Dot(mean, mean);
+  own = own > 0 ? Dot(normal, mean) / own : 0;
+  for (int d = 0; d < 3; d++) across[d] = own > 0 ? 2 * own * mean[d] - normal[d] : normal[d];
+}
+
 /* Closest point of a segment; returns whether it is between the ends. */
 static int SegmentClosest(const Place a, const Place b, const Place p, Place closest)
 {
@@ -410,13 +462,33 @@ static int LinesClosest(const Place a[2], const Place b[2], double at[2])
   return 1;
 }
 
-/* Are the closest points of two edges inside both of them? */
-static int EdgesOver(const Place a[2], const Place b[2])
-{
-  double at[2];
+/*@
+  EdgesAcross - finds where two edges are closest, if that is inside both of them.
 
-  return LinesClosest(a, b, at) && at[0] >= -SWEEP_BORDER && at[0] <= 1 + SWEEP_BORDER && at[1] >= -SWEEP_BORDER &&
-         at[1] <= 1 + SWEEP_BORDER;
+  Not collective
+
+  Input Parameters:
++ a - ends of the first edge
+- b - of the other one
+
+  Output Parameters:
++ at     - the places on both edges, 0 to 1
+- normal - unit normal of both
+
+  Note:
+  It returns 0 where it is outside of one of them, or where they are parallel.
+@*/
+int EdgesAcross(const Place a[2], const Place b[2], double at[2], double normal[3])
+{
+  double u[3], v[3], length;
+
+  if (!LinesClosest(a, b, at)) return 0;
+  Minus(a[1], a[0], u);
+  Minus(b[1], b[0], v);
+  Cross(u, v, normal);
+  length = sqrt(Dot(normal, normal));
+  for (int d = 0; d < 3; d++) normal[d] /= length;
+  return at[0] >= -SWEEP_BORDER && at[0] <= 1 + SWEEP_BORDER && at[1] >= -SWEEP_BORDER && at[1] <= 1 + SWEEP_BORDER;
 }
 
 /*@
@@ -441,6 +513,7 @@ int SweepEdges(const Place a0[2], const Place a1[2], const Place b0[2], const Pl
 {
   double   u0[3], u1[3], v0[3], v1[3], r0[3], r1[3], c[3][3], normal[3], poly[4];
   Crossing roots[SWEEP_MAX];
+  double   at[2];
   int      n, crossed = 0, first = 1;
 
   Minus(a0[1], a0[0], u0);
@@ -459,12 +532,15 @@ int SweepEdges(const Place a0[2], const Place a1[2], const Place b0[2], const Pl
       Between(a0[i], a1[i], roots[k].s, a[i]);
       Between(b0[i], b1[i], roots[k].s, b[i]);
     }
-    if (!EdgesOver((const double(*)[3])a, (const double(*)[3])b)) continue;
-    if (!crossed++) first = roots[k].inward ? 1 : -1;
+    if (!EdgesAcross((const double(*)[3])a, (const double(*)[3])b, at, normal)) continue;
+    if (!crossed) first = roots[k].inward ? 1 : -1;
+    end->s[crossed] = roots[k].s;
+    for (int d = 0; d < 3; d++) end->towards[crossed][d] = roots[k].inward ? normal[d] : -normal[d];
+    crossed++;
   }
   if (!crossed) return 0;
   Cross(u1, v1, normal);
   end->distance = first * Dot(normal, r1) / fmax(sqrt(Dot(normal, normal)), 1e-300);
-  end->over     = EdgesOver(a1, b1);
+  end->over     = EdgesAcross(a1, b1, at, normal);
   return crossed;
 }

@@ -27,17 +27,22 @@ typedef struct {
   int    inward; /* from the front to the back; of edges: the sign of their distance turns from plus to minus */
 } Crossing;
 
-/* Two edges at the end of their motion */
+/* Two edges at the end of their motion, and when they crossed */
 typedef struct {
-  double distance; /* along their common normal, with the sign that it had before the crossing (length) */
-  int    over;     /* their closest points are inside both */
+  double distance;           /* along their common normal, with the sign that it had before the crossing (length) */
+  int    over;               /* their closest points are inside both */
+  double s[SWEEP_MAX];       /* when they crossed */
+  Place  towards[SWEEP_MAX]; /* common normal then, from the first edge to the other one before they crossed */
 } EdgeEnd;
 
 int    PieceDivide(ElementType, int node[PIECE_MAX][3]);
 void   PieceNormal(int dim, const Place x[], double normal[3]);
 double PieceFront(int dim, const Place x[], const Place p);
 double PieceHeight(int dim, const Place x[], const Place normal[], double cosine);
+double PieceAngle(const Place x[], int a);
+void   PieceAcross(const Place x[], int a, const double one[3], const double other[3], double across[3]);
 int    PieceClosest(int dim, const Place x[], const Place p, Place closest);
 int    PiecePierce(int dim, const Place x[], const double normal[3], const Place edge[2], double *at, int *inward);
 int    SweepPoint(int dim, const Place start[], const Place end[], const Place from, const Place to, Crossing[]);
+int    EdgesAcross(const Place a[2], const Place b[2], double at[2], double normal[3]);
 int    SweepEdges(const Place a0[2], const Place a1[2], const Place b0[2], const Place b1[2], EdgeEnd *);

@@ -145,6 +145,7 @@ PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, Petsc
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
                                 PetscReal lag, PetscBool *hold);
 void           ContactForgetLost(Contact);
+void           ContactWatchOuter(Contact, PetscReal *outer);
 PetscErrorCode ContactLocateLost(Contact, PetscBool *lost, char *text, size_t size);
 /* Residual */
 PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy,

@@ -78,6 +78,12 @@ static PetscErrorCode PairSharedForces(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Do forces from outside act in a pair, of a tool or of mirror images? */
+static PetscBool HasOuter(const ContactPair *pair)
+{
+  return (PetscBool)(!pair->master || pair->master->rigid || pair->n_images > 1);
+}
+
 /* Forces, energy and squared forces of one pair. */
 static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal *f,
                                    PetscReal *energy, PetscReal *force2)
@@ -109,11 +115,26 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   if (pair->friction) PetscCall(FrictionResidual(pair, t, values));
   if (pair->tool) PetscCall(ContactToolForces(pair, values));
   PetscCall(NeighbourListsReduce(pair->lists, values, f));
+  if (contact->outer && HasOuter(pair)) PetscCall(NeighbourListsReduce(pair->lists, values, contact->outer));
   if (pair->formulation.surface) PetscCall(PairSharedForces(pair));
   for (PetscInt c = 0; c < pair->n_nodes && !pair->formulation.surface; c++)
     pair->force[c] = pair->point_force[pair->term_point[pair->term_ptr[c]]];
   PetscCall(PetscFree(values));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactWatchOuter - from now on adds the forces of tools and of pairs with mirror images to a second array as well.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- outer   - [n_nodes*dim], to which ContactResidual() adds as to its own; borrowed. NULL ends it
+@*/
+void ContactWatchOuter(Contact contact, PetscReal *outer)
+{
+  contact->outer = outer;
 }
 
 /*@

@@ -24,17 +24,21 @@ void ContactPairSides(Contact contact, int p, ContactSides *sides)
                           .images   = pair->images};
 }
 
-/* Does a term see the master in a state? A gap at a node says nothing of the faces around it; a mean over these does,
-   where it is open as well. */
-static PetscBool SeesMaster(const ContactPair *pair, const ContactState *state, PetscInt c)
+/* Part of a face within which an open mean gap hides that the other surface stands in the face: an edge of a right
+   angle in its middle stands in it by half of it where the mean gap is 0. */
+#define SIDES_NEAR 0.5
+
+/* Does a term hold the surfaces around it in a state? A gap at a node says nothing of the faces around it; a mean over
+   these does, where it is open as well, as long as parts of the face can be closed. */
+static PetscBool Holds(const ContactPair *pair, const ContactState *state, PetscInt c)
 {
   if (state->status[c] == CONTACT_CLOSED) return PETSC_TRUE;
-  return (PetscBool)(pair->scene->formulation == CONTACT_SURFACE_TO_SURFACE && isfinite((double)state->gap[c]));
+  return (PetscBool)(pair->formulation.surface && state->gap[c] <= SIDES_NEAR * pair->size[c]);
 }
 
 /*@
   ContactPairPressed - marks the slave nodes of a pair that are closed, now or in the accepted state. In surface to
-  surface contact nodes with an open mean gap count, too.
+  surface contact nodes with an open mean gap of up to half a face count, too.
 
   Collective
 
@@ -54,7 +58,7 @@ PetscErrorCode ContactPairPressed(Contact contact, int p, PetscReal *pressed)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_nodes, &mine));
   for (PetscInt c = 0; c < pair->n; c++) {
-    if (SeesMaster(pair, &pair->now, c) || SeesMaster(pair, &pair->accepted, c)) mine[pair->node[c]] = 1;
+    if (Holds(pair, &pair->now, c) || Holds(pair, &pair->accepted, c)) mine[pair->node[c]] = 1;
   }
   PetscCall(MeshSumNodes(mesh, 1, mine));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) pressed[n] += mine[n];

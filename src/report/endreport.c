@@ -135,9 +135,9 @@ static void PrintCertificate(const RunFigures *figures, FILE *stream)
   fprintf(
     stream,
     "certified: nothing passed through anything unseen in %lld steps; faces cross by up to %.2g of a face, %.2g of "
-    "what is allowed; residual %.1e of the forces",
-    (long long)(found->steps - found->refused), (double)found->over_h, (double)found->ratio,
-    (double)figures->last->residual);
+    "what is allowed; outer forces balance to %.1e",
+    (long long)(found->steps - found->refused), (double)found->over_h, (double)found->ratio, (double)found->force);
+  if (figures->scene->geometry != GEOMETRY_AXISYMMETRIC) fprintf(stream, ", moments to %.1e", (double)found->moment);
   if (found->refused) fprintf(stream, "; %lld steps did not hold and were cut", (long long)found->refused);
   fprintf(stream, "\n");
 }

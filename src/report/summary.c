@@ -317,6 +317,9 @@ static void AddCertificate(cJSON *json, const RunFigures *figures)
   AddReal(map, "largest_over_h", figures->certificate.over_h);
   AddReal(map, "largest_over_allowed", figures->certificate.ratio);
   AddReal(map, "residual", figures->last ? figures->last->residual : NAN);
+  AddReal(map, "force_balance", figures->certificate.force);
+  AddReal(map, "moment_balance",
+          figures->scene->geometry == GEOMETRY_AXISYMMETRIC ? NAN : figures->certificate.moment);
   AddReal(map, "dissipated_by_friction", figures->last ? figures->last->contact.dissipated : NAN);
   AddReal(map, "dissipated_by_flow",
           figures->last && SceneIsPlastic(figures->scene) ? figures->last->energy.plastic : NAN);

@@ -367,7 +367,7 @@ const SchemaKey SchemaKeys[] = {
    .help = "fields that are written; the default is all of them"},
   {"output.checkpoint", INTEGER, .range = "[0, inf)", .unit = "steps", .preset = "0",
    .help = "steps between two checkpoints; 0: only when the run ends early"},
-  {"output.certificate", BOOLEAN, .preset = "false",
+  {"output.certificate", BOOLEAN, .preset = "true",
    .help = "true: each step is judged before it is accepted: nothing passed through anything unseen"},
   {"certificate", MAP, .help = "what a step must hold to be certified"},
   {"certificate.penetration", REAL, .range = "(0, inf)", .unit = "face sizes", .preset = "0.1",

@@ -1,6 +1,7 @@
 /* The accepted state of a model: set-up, acceptance, return, and its place in an archive. */
 #include "modelimpl.h"
 #include "smooth/smoother.h"
+#include "solve/forcebalance.h"
 
 const char *const SolveResults[] = {
   "converged",
@@ -227,6 +228,7 @@ PetscErrorCode ModelAccept(Model model)
   ModelWork      *work    = model->work;
   const PetscBool stepped = model->t > work->accepted_t ? PETSC_TRUE : PETSC_FALSE;
   PetscReal       motion;
+  ForceBalance    balance;
   PlasticPath     path;
   PetscBool       ok;
 
@@ -235,7 +237,12 @@ PetscErrorCode ModelAccept(Model model)
   PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t, &path));
   if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u, &path));
   if (SceneBreaks(model->scene, model->t)) ElasticityForgetFlow(model->problem->elasticity);
-  PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
+  if (model->certificate && stepped) {
+    PetscCall(ForceBalanceFind(model->problem, model->u, model->t, &balance, &ok));
+    CertificateBalance(model->certificate, balance.force, balance.moment);
+  } else {
+    PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
+  }
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);
   model->problem->force_so_far = ProblemForceScale(model->problem);

@@ -81,7 +81,7 @@ static Point MakePoint(const double from[3], const double to[3], const double no
   return point;
 }
 
-static Finding JudgePoint(Plate *plate, const Point *point, int walls)
+static Finding JudgePoint(Plate *plate, Point *point, int walls)
 {
   const PieceList list  = {plate->n, plate->n, plate->pieces};
   Look            look  = {.penetration = 0.1, .walls = walls, .slave = {0, 1}};
@@ -96,7 +96,7 @@ static Finding JudgePoint(Plate *plate, const Point *point, int walls)
 static Finding MovePoint(Plate *plate, const double from[3], const double to[3])
 {
   const double down[3] = {0, plate->dim == 2 ? -1 : 0, plate->dim == 3 ? -1 : 0};
-  const Point  point   = MakePoint(from, to, down);
+  Point        point   = MakePoint(from, to, down);
 
   return JudgePoint(plate, &point, 0);
 }
@@ -340,7 +340,7 @@ static Finding JudgePiece(Plate *plate, const double from[3][3], const double to
   PiecePlace(&piece, plate->dim);
   assert_true(LookBegin(plate->dim, &list, &look));
   for (int e = 0; e < (plate->dim == 2 ? 1 : 3); e++)
-    EdgeFinding(&look, &(Edge){{&points[e], &points[(e + 1) % plate->dim]}, {&piece}}, 1, &worst);
+    EdgeFinding(&look, &(Edge){{&points[e], &points[(e + 1) % plate->dim]}, {&piece}, e}, 1, &worst);
   LookDestroy(&look);
   return worst;
 }
@@ -367,6 +367,95 @@ static void PlantedFacesAreFound(void **context)
   plate = (Plate){.dim = 3};
   AddPiece(&plate, (const double[3][3]){{0, -2, 0}, {2, 0, 0}, {0, 2, 0}}, still, AT(0, 0, 0.8), 1000);
   assert_int_equal(JudgePiece(&plate, up, up, 0).kind, FINDING_EDGES);
+}
+
+/* The normal across an edge of a roof, from the directions at its ends, on triangles of any shape. */
+static void NormalsAcrossEdges(void **context)
+{
+  const Place  flank[3] = {{0, 0, 0}, {3, 0, 0}, {-1, 1, -1}};
+  const double ridge[3] = {0, 0, 5}, slope = sqrt(0.5);
+  double       across[3], angles = 0;
+
+  (void)context;
+  for (int a = 0; a < 3; a++) angles += PieceAngle(flank, a);
+  assert_true(fabs(angles - acos(-1)) < 1e-14);
+  PieceAcross(flank, 0, ridge, ridge, across);
+  assert_true(fabs(across[0]) < 1e-14 && fabs(across[1] + slope) < 1e-14 && fabs(across[2] - slope) < 1e-14);
+  PieceAcross(flank, 0, AT(0, slope, slope), AT(0, slope, slope), across); /* the surface ends at the edge */
+  assert_true(fabs(across[1] - slope) < 1e-14 && fabs(across[2] - slope) < 1e-14);
+}
+
+/* A bar of square section along x whose upper edge is at z = 0, with its edges as high and as low as `thickness`. */
+static void Bar(Plate *plate, double thickness)
+{
+  *plate = (Plate){.dim = 3};
+  for (int top = 0; top < 2; top++) {
+    for (int flank = 0; flank < 2; flank++) {
+      const double y = (flank - 0.5) * thickness, z = top ? 0 : -thickness, z_mid = -0.5 * thickness;
+      const double turned[3][3] = {{-2, 0, z}, {2, 0, z}, {0, y, z_mid}},
+                   plain[3][3]  = {{2, 0, z}, {-2, 0, z}, {0, y, z_mid}};
+
+      AddPiece(plate, top == flank ? turned : plain, still, still, 1000 + 100 * top + 10 * flank);
+    }
+    for (int flank = 0; flank < 2; flank++)
+      memcpy(plate->pieces[plate->n - 1 - flank].across[0], plate->pieces[plate->n - 2 + flank].normal[1],
+             sizeof(Place));
+  }
+}
+
+/* Judges the lower edge of a wedge along y that moves between two places, whose flanks are pressed. */
+static Finding MoveWedge(Plate *plate, const double from[3], const double to[3])
+{
+  const PieceList list      = {plate->n, plate->n, plate->pieces};
+  Look            look      = {.penetration = 0.1, .slave = {1, 0}};
+  Finding         worst     = {.kind = FINDING_NONE};
+  Piece           flanks[2] = {{.size = 1}, {.size = 1}};
+  Point           ends[2];
+
+  for (int i = 0; i < 2; i++) {
+    const double y = i ? 2 : -2;
+
+    ends[i]        = MakePoint(AT(from[0], from[1] + y, from[2]), AT(to[0], to[1] + y, to[2]), AT(0, 0, -1));
+    ends[i].tag    = 50 + i;
+    ends[i].tip    = 1;
+    ends[i].closed = 1;
+  }
+  for (int k = 0; k < 2; k++) {
+    flanks[k] = (Piece){.size = 1, .height = 1, .order = 1, .side = 1, .body = 2, .closed = 1, .tag = {50, 51, 52 + k}};
+    for (int state = 0; state < 2; state++) {
+      for (int i = 0; i < 2; i++) memcpy(flanks[k].x[state][k ? i : 1 - i], ends[i].x[state], sizeof(Place));
+      for (int d = 0; d < 3; d++)
+        flanks[k].x[state][2][d] = 0.5 * (ends[0].x[state][d] + ends[1].x[state][d]) + AT(2 * k - 1, 0, 1)[d];
+    }
+    PiecePlace(&flanks[k], 3);
+  }
+  for (int k = 0; k < 2; k++) memcpy(flanks[k].across[0], flanks[1 - k].normal[1], sizeof(Place));
+  assert_true(flanks[0].normal[1][2] < 0 && flanks[1].normal[1][2] < 0);
+  assert_true(LookBegin(3, &list, &look));
+  EdgeFinding(&look, &(Edge){{&ends[0], &ends[1]}, {&flanks[0], &flanks[1]}, 0}, 1, &worst);
+  LookDestroy(&look);
+  return worst;
+}
+
+/* Edges across edges, in space: 20 to 22. What explains that an edge stands in a face between its points, a tip where
+   contact presses, does not explain that it stands across an edge. */
+static void EdgesAcrossEdgesAreFound(void **context)
+{
+  static Plate plate;
+  Finding      finding;
+
+  (void)context;
+  Bar(&plate, 1);
+  assert_int_equal(MoveWedge(&plate, AT(0, 0, 0.5), AT(0, 0, 0.01)).kind, FINDING_NONE);
+  assert_int_equal(MoveWedge(&plate, AT(0, 0, 0.5), AT(0, 0, -0.05)).kind, FINDING_NONE);
+  finding = MoveWedge(&plate, AT(0, 0, 0.5), AT(0, 0, -0.2)); /* 20: in one step */
+  assert_int_equal(finding.kind, FINDING_EDGES);
+  assert_true(fabs(finding.depth - 0.2) < 1e-12);
+  assert_int_equal(MoveWedge(&plate, AT(0, 0, -0.09), AT(0, 0, -0.11)).kind, FINDING_EDGES); /* 21: by and by */
+  assert_int_equal(MoveWedge(&plate, AT(3, 0, 0.5), AT(3, 0, -0.5)).kind, FINDING_NONE);    /* beside the bar */
+  Bar(&plate, 0.05); /* 22: through a thin bar, and out beyond its end */
+  assert_int_equal(MoveWedge(&plate, AT(0, 0, 1), AT(3.5, 0, -1)).kind, FINDING_PASSED);
+  assert_int_equal(MoveWedge(&plate, AT(1.8, 0, 1), AT(3.5, 0, -1)).kind, FINDING_NONE);
 }
 
 /* Analytic tools: 12 to 14. The numbers go on with solids. */
@@ -413,6 +502,8 @@ int main(void)
     cmocka_unit_test(ManyCrossingsAreFollowed),
     cmocka_unit_test(EdgesExplainTheirChords),
     cmocka_unit_test(PlantedFacesAreFound),
+    cmocka_unit_test(NormalsAcrossEdges),
+    cmocka_unit_test(EdgesAcrossEdgesAreFound),
     cmocka_unit_test(PlantedToolsAreFound),
   };
 

@@ -21,25 +21,28 @@ typedef struct {
   Place     X[3], x[2][3], normal[2]; /* vertices: reference, and at the two states; unit normals */
   Box       box;                      /* that it sweeps */
   long      tag[3], face;             /* gmsh's tags of nodes and face */
-  double    size, height;          /* of its face, of the element below it (0: none) (length) */
-  double    sagitta;               /* PieceHeight() at the end (length) */
-  double    side;                  /* its longest side at the end (length) */
-  int       order;                 /* of its face, which is about as many pieces wide */
-  double    tip[3];                /* of its vertices */
-  FaceMarks marks;                 /* pairs by name that treat its face, see facemarks.h */
-  int       body;                  /* in the scene; bodies of tools have no cells */
-  int       closed;                /* contact pressed at one of its vertices */
+  double    size, height;             /* of its face, of the element below it (0: none) (length) */
+  double    sagitta;                  /* PieceHeight() at the end (length) */
+  double    side;                     /* its longest side at the end (length) */
+  int       order;                    /* of its face, which is about as many pieces wide */
+  double    tip[3];                   /* of its vertices */
+  Place     across[3];                /* in space: unit normal across each edge at the end; its own where it ends */
+  FaceMarks marks;                    /* pairs by name that treat its face, see facemarks.h */
+  int       body;                     /* in the scene; bodies of tools have no cells */
+  int       closed;                   /* contact pressed at one of its vertices */
 } Piece;
 
 /* A vertex of pieces */
 typedef struct {
   Place     X, x[2], normal[2]; /* reference, the two states, and directions of the surface there, of any length */
-  Place     turns;              /* of a tool: that direction in the reference state */
+  Place     ridge;              /* direction at the end, with each normal around weighted by its angle there */
+  Place     turns, ridge_turns; /* of a tool: these directions in the reference state */
   long      tag;
   double    size, height; /* means of the faces around (length) */
   FaceMarks marks;        /* of all faces around */
   int       body;
   int       closed; /* contact pressed there at one of the states */
+  int       inside; /* it stands in the other side at the end, PointFinding() */
   double    number; /* of the pieces around */
   double    side;   /* mean of their longest sides at the end (length) */
   int       order;  /* of their faces */
@@ -49,7 +52,8 @@ typedef struct {
 /* An edge of pieces. In the plane it is the piece itself. */
 typedef struct {
   const Point *end[2];
-  const Piece *of[2]; /* around it on this rank; the second is NULL where there is one */
+  const Piece *of[2];  /* around it on this rank; the second is NULL where there is one */
+  int          number; /* of the edge in the first of these */
 } Edge;
 
 typedef struct {

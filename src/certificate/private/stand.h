@@ -2,7 +2,8 @@
 
    LookAt() gathers the pieces that a point or an edge may meet, PointStand() finds the closest one at one of the two
    states, JudgeDepth() judges that. PointFinding() follows a point along the step, EdgeFinding() judges an edge,
-   against the faces and, if asked, the edges of the other side. Each keeps the worst of what was found. */
+   against the faces and, if asked, the edges of the other side. EdgeOnEdges() judges an edge that stands across edges,
+   EdgePassage() one that has crossed a body in the step. Each keeps the worst of what was found. */
 #pragma once
 #include "base/boxtree.h"
 #include "pieces.h"
@@ -23,6 +24,9 @@
 #define STAND_REACH 0.5
 /* Normals whose cosine is below this belong to the two sides of a wall, not of a corner. */
 #define STAND_OPPOSED (-0.5)
+/* Cosine of the angle up to which an edge lies along a face and not across it, 30 degrees: half a face behind a point
+   that the face holds, it is a quarter of a face off. */
+#define STAND_ALONG 0.866
 /* Depths below this part of a face are round-off. */
 #define STAND_ROUND_OFF 1e-6
 
@@ -52,6 +56,7 @@ typedef struct {
 typedef struct {
   const Piece *piece;
   Crossing     at;
+  int          edge; /* number of the edge in the piece that an edge crosses */
 } Event;
 
 /* The pieces of the other side. What is allocated serves again in the next step. */
@@ -83,5 +88,11 @@ double ExplainedDepth(const Look *, const Point *, const Piece *, double depth);
 void   JudgeDepth(const Look *, const Point *, const Stand *, const long tag[2], Finding *worst);
 void   FindingKeep(const Finding *, Finding *worst);
 int    FindingWorse(const Finding *, const Finding *than);
-void   PointFinding(Look *, const Point *, Finding *worst);
+void   PointFinding(Look *, Point *, Finding *worst);
+Point  EdgePoint(const Edge *edge, const Piece *piece, double s);
+int    EdgeLeavesOut(const Look *, const Edge *, const Piece *);
+void   EdgeOnEdges(Look *, const Edge *, double in, double out, Finding *worst);
+void   EdgePassage(Look *, const Edge *, const Box, Finding *worst);
+void   PassageFinding(const Look *, const Point *, long second, const Event *in, const Event *out, double depth,
+                      Finding *worst);
 void   EdgeFinding(Look *, const Edge *, int crossings, Finding *worst);

@@ -140,6 +140,7 @@ struct _n_Contact {
   ContactVectors  border;  /* the first variations of its terms */
   ContactVectors  one;     /* room for one of them */
   ContactProduct *product; /* of each pair; NULL: no product is asked for */
+  PetscReal      *outer;   /* forces of tools and mirror images are added here; NULL: nobody asks */
   PetscLogEvent   event_search, event_project, event_residual, event_tangent;
   PetscLogEvent   event_fit, event_offset, event_adjust, event_touch; /* only where the scene calls for the effect */
 };

@@ -1,0 +1,29 @@
+"""Runs judge their steps by default: a needle in a film and beams that cross edge on edge are refused with node, edge and
+place, on any number of ranks; cubes that overhang each other are not, and outer forces and moments balance."""
+import re
+
+from harness import Check, arguments, run, SCENES
+
+BALANCE = 1e-12  # of the outer forces
+ARMS = 1e-3  # of their moments: surfaces that press stand a little in each other
+
+args = arguments(("case", "needle, beams or blocks"))
+check = Check()
+if args.case == "needle":
+    film = run(args, SCENES / "film.yaml", out="film", must=2)
+    check.holds("the needle is named", re.search(r"cannot be certified; contact 'prick': node \d+ ", film.text))
+    swapped = run(args, SCENES / "film.yaml", out="swapped", must=2,
+                  overrides=["contact.0.slave=flanks", "contact.0.master=top", "contact.0.penalty.scale=1e-3"])
+    check.holds("so is one that the film does not resist", "cannot be certified" in swapped.text)
+elif args.case == "beams":
+    for gap in (0.1, 0.5):
+        beams = run(args, SCENES / "crossed_beams.yaml", out=f"beams{gap}", must=2,
+                    overrides=[f"mesh.parameters.gap={gap}", "stepping={control: fixed, initial: 0.5, dt_min: 0.2}"])
+        check.holds(f"gap {gap}: the edges are named", re.search(r"the edge of the nodes \d+ and \d+ ", beams.text))
+else:
+    summary = run(args, SCENES / "offset_blocks.yaml", out="blocks").summary()
+    certificate = summary["certificate"]
+    check.holds("certified", summary["certified"] is True, str(certificate))
+    check.holds("forces balance", certificate["force_balance"] < BALANCE, str(certificate["force_balance"]))
+    check.holds("moments balance", certificate["moment_balance"] < ARMS, str(certificate["moment_balance"]))
+check.finish()
