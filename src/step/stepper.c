@@ -306,6 +306,14 @@ static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Past a breakpoint the loads take another direction, of which the steps before say nothing: the next one is as at the
+   start, unless these have become shorter. */
+static void LoadStepperForget(StepSize *size)
+{
+  size->dt      = PetscMin(size->dt, size->initial);
+  size->last_dt = 0;
+}
+
 /* Accepts a converged step of dt: fills its record, lets the control choose the next dt, which is at most `most` and
    which it must not shrink below dt_min, and accepts the state. */
 static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscReal most, PetscBool clipped,
@@ -321,6 +329,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   if (model->contact) PetscCall(ContactSummarise(model->contact, &record->contact));
   PetscCall(stepper->control->next(model, dt, clipped, solve->newton, &stepper->size));
   stepper->size.dt = PetscMin(stepper->size.dt, most);
+  if (SceneBreaks(model->scene, model->t)) LoadStepperForget(&stepper->size);
   stepper->size.dt = PetscMin(stepper->size.dt_max, PetscMax(stepper->size.dt, PetscMin(dt, stepper->size.dt_min)));
   record->beta     = stepper->size.beta;
   record->tied     = stepper->size.tied;
