@@ -317,7 +317,7 @@ static void test_damped(void **state)
   int damped;
 
   (void)state;
-  assert_near(Answer(2, 6, &damped), 0, 1e-6);
+  assert_near(Answer(2, 8, &damped), 0, 1e-6);
   assert_true(damped >= 2);
   assert_near(Answer(0.05, 3, &damped), 0, 1e-4);
   assert_int_equal(damped, 0);
