@@ -287,11 +287,12 @@ static double OffsetsSum(void)
   return sum;
 }
 
-/* A body that answers to a change of its offsets by `gain` times as much the other way, from a bend of 0.1. Returns its
-   bend after some solutions; damped: how many of them had damped offsets. */
+/* A body under a load that bends it by 0.1 answers to a change of its offsets by `gain` times as much the other way.
+   Returns by how much its bend after some solutions differs from the next one; damped: how many of them had damped
+   offsets. */
 static double Answer(double gain, int solutions, int *damped)
 {
-  double rest;
+  double rest, end;
 
   Create(ToCircle, "", ", smoother: diffuse, formulation: surface_to_surface, offset: held");
   OK(ContactGather(parts.problem->contact, parts.u, 0, 0, 0));
@@ -305,10 +306,13 @@ static double Answer(double gain, int solutions, int *damped)
     OK(OffsetsTake(Pair()->master_offsets, parts.u, k + 1));
     OK(OffsetsDamp(Pair()->master_offsets, &changed));
     *damped += changed;
-    bend = -gain * (OffsetsSum() / rest - 1);
+    bend = 0.1 - gain * (OffsetsSum() / rest - 1);
   }
+  PartsMove(&parts, Bend);
+  OK(OffsetsTake(Pair()->master_offsets, parts.u, solutions + 1));
+  end = 0.1 - gain * (OffsetsSum() / rest - 1);
   PartsDestroy(&parts);
-  return bend;
+  return bend - end;
 }
 
 /* A body that would turn its offsets to and fro without end settles; one that settles by itself is left alone. */
