@@ -7,16 +7,20 @@ DefineConstant[
   n = {12, Name "elements along a quarter of the cord"}, triangles = {0, Name "1: triangles instead of quadrangles"},
   gap = {0, Name "size of elements at the outer gap between groove and lid; 0: as elsewhere"}
 ];
-R = cord / 2; rm = mean / 2; // the cord rests on the floor at y = 0, in the middle of the groove
-q = 0.45 * Sqrt(2) * R; // half the diagonal of the square in the cord's middle, whose sides are next to those of the skin
+R = cord / 2; rm = mean / 2; c = Sqrt(0.5); // the cord rests on the floor at y = 0, in the middle of the groove
+q = 0.45 * R; // half the diagonal of the square in the cord's middle, whose sides are next to those of the skin
 mouth = 37 * Pi / 180; // where on the cord lies what goes to the outer gap
 fine = (gap > 0 && !triangles); // quadrangles have a corner of the square there, and grow from it by a tenth
 growth = 1.1;
 Point(1) = {rm, R, 0};
 For i In {0 : 3}
-  angle = (fine && i == 0) ? mouth : (2 * i + 1) * Pi / 4;
-  Point(2 + i) = {rm + R * Cos(angle), R + R * Sin(angle), 0};
-  Point(6 + i) = {rm + q * Cos(angle), R + q * Sin(angle), 0};
+  along = (i == 0 || i == 3) ? c : -c;
+  up = (i < 2) ? c : -c;
+  If (fine && i == 0)
+    along = Cos(mouth); up = Sin(mouth);
+  EndIf
+  Point(2 + i) = {rm + R * along, R + R * up, 0};
+  Point(6 + i) = {rm + q / c * along, R + q / c * up, 0};
 EndFor
 For i In {0 : 3}
   Circle(1 + i) = {2 + i, 1, 2 + (i + 1) % 4};
