@@ -2,7 +2,7 @@
 one single step, for elements of both orders and Poisson's ratios from 0.49 to 0.5. Forces are compared with those of
 a finer mesh of second-order quadrilaterals of the same ratio. Then the ring of runs/o_ring_pressure.yaml, squeezed
 and pressed on by a fluid; tight_to is the pressure that its contact would hold. After 20 % a gap is left beside the
-groove's edge; `gap` is the size of the triangles there. Writes runs/records/o_ring.csv, one row for each run; t is
+groove's edge; `gap` is the size of the elements there. Writes runs/records/o_ring.csv, one row for each run; t is
 where a run has ended that is not done.
 
     build/venv/bin/python scripts/o_ring_table.py --burnish build/burnish
@@ -35,7 +35,7 @@ PRESSED = {  # name -> overrides; only a squeeze by 30 % leaves no gap between l
     "20 %, then 10 MPa, gap 0.025": ("mesh.parameters.gap=0.025", )
 }
 PRESSED_SIZES = {name: {"tri6": (12, )} for name in PRESSED}
-PRESSED_SIZES["30 %, then 10 MPa"] = {"quad4": (24, ), "quad9": (12, ), "tri6": (12, )}
+PRESSED_SIZES["30 %, then 10 MPa"] = {"quad4": (24, ), "quad9": (12, ), "tri3": (24, ), "tri6": (12, )}
 WAYS |= PRESSED
 LIMITS = {"20 %": "20 %", "30 %": "30 %", "20 % in one step": "20 %"} | dict.fromkeys(PRESSED)
 NUS = (0.49, 0.499, 0.4999, 0.5)

@@ -125,6 +125,18 @@ static void PairDampFactors(ContactPair *pair)
   }
 }
 
+/* Where solutions turn the offsets of a pair to and fro, the next lists are made with damped ones. */
+static PetscErrorCode PairDampOffsets(ContactPair *pair, const PetscReal *u, PetscReal t)
+{
+  PetscBool slave = PETSC_FALSE, master = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (pair->slave_offsets) PetscCall(OffsetsDamp(pair->slave_offsets, &slave));
+  if (pair->master_offsets) PetscCall(OffsetsDamp(pair->master_offsets, &master));
+  if (slave || master) PetscCall(PairSearch(pair, u, t, pair->next_motion));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Rung on which the fit of a slave point stands; RUNGS: it has none. */
 static int FitRung(NeighbourLists lists, PetscInt q)
 {
@@ -462,6 +474,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;
   for (int p = 0; p < contact->n_pairs && !agree; p++) {
+    PetscCall(PairDampOffsets(&contact->pairs[p], u, t));
     PairDampFactors(&contact->pairs[p]);
     PairKeepRungs(&contact->pairs[p]);
     PetscCall(PairTakeNext(&contact->pairs[p]));

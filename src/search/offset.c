@@ -3,6 +3,10 @@
 #include "search/offset.h"
 #include "searchimpl.h"
 
+/* Offsets that a solve turns back are damped where what is left of their change is more than this part of the change
+   before. Less than that settles by itself. */
+#define OFFSET_SETTLES 0.1
+
 struct _n_Offsets {
   ContactSurface surface;
   ContactSearch  search; /* searches the surface itself */
@@ -17,6 +21,10 @@ struct _n_Offsets {
   /* The offsets that were taken last, with the displacements and the load parameter there. t_last is NAN before the
      first. */
   PetscReal *last, *u_last, t_last;
+  /* Of the step at hand: the offsets with which its lists were made, and of the time when these were replaced last what
+     the solution asked for and by how much that differed. */
+  PetscReal *held, *asked, *change;
+  PetscBool  replaced, turning; /* turning: solutions turn them to and fro */
 };
 
 /*@
@@ -61,6 +69,7 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
   o->t_last = NAN;
   PetscCall(PetscCalloc5(o->n, &o->used, o->n, &o->now, o->n, &o->before, o->n, &o->last, mesh->n_nodes * mesh->dim,
                          &o->u_last));
+  PetscCall(PetscCalloc3(o->n, &o->held, o->n, &o->asked, o->n, &o->change));
   PetscCall(SearchCreate(mesh, scene, loads, surface, surface->max_size, n_images, images, &o->fit, NULL, NULL, NULL,
                          &o->search));
   *out = o;
@@ -82,6 +91,7 @@ PetscErrorCode OffsetsDestroy(Offsets *offsets)
   PetscCall(SearchDestroy(&(*offsets)->search));
   PetscCall(FaceMapsDestroy(&(*offsets)->maps));
   PetscCall(PetscFree5((*offsets)->used, (*offsets)->now, (*offsets)->before, (*offsets)->last, (*offsets)->u_last));
+  PetscCall(PetscFree3((*offsets)->held, (*offsets)->asked, (*offsets)->change));
   PetscCall(PetscFree(*offsets));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -374,7 +384,9 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
     if (value != o->used[i]) *changed = PETSC_TRUE;
     o->used[i] = value;
   }
-  o->taken = PETSC_TRUE;
+  PetscCall(PetscArraycpy(o->held, o->used, o->n));
+  o->replaced = o->turning = PETSC_FALSE;
+  o->taken    = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -395,6 +407,55 @@ PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
   PetscFunctionBeginUser;
   PetscCall(TakeOnce(o, &done));
   if (!done) PetscCall(OffsetsAt(o, u, t, o->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  OffsetsDamp - damps the offsets that were taken at a solution, if the solutions of this step turn them to and fro.
+
+  Collective
+
+  Input Parameter:
+. o - the offsets, after OffsetsTake(); they replace those with which the solution was found
+
+  Output Parameter:
+. changed - the offsets are not those that were taken; the same on all ranks
+
+  Note:
+  A soft body may answer to a change of its offsets by more than that change the other way, as a ring that rolls in its
+  groove. Solutions then never settle. From the first such answer on, the offsets are set on the line through the last
+  two that solutions asked for, where their secant sees no change any more.
+
+  Source: Anderson, Iterative procedures for nonlinear integral equations, J. ACM 12 (1965) 547-560.
+@*/
+PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
+{
+  PetscReal sum[3] = {0, 0, 0}; /* squared change before, change times change before, squared change */
+  PetscReal part;
+
+  PetscFunctionBeginUser;
+  *changed = PETSC_FALSE;
+  if (o->once || o->kind != OFFSETS_HELD) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < o->n; i++) {
+    const PetscReal change = o->used[i] - o->held[i];
+
+    sum[0] += PetscSqr(o->change[i]);
+    sum[1] += change * o->change[i];
+    sum[2] += PetscSqr(change);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, o->search->mesh->comm));
+  o->turning = (PetscBool)(o->turning || (o->replaced && sum[1] < 0 && sum[2] > PetscSqr(OFFSET_SETTLES) * sum[0]));
+  *changed   = (PetscBool)(o->turning && sum[2] > 0);
+  part       = *changed ? PetscMax(-1, (sum[2] - sum[1]) / (sum[2] - 2 * sum[1] + sum[0])) : 0;
+  for (PetscInt i = 0; i < o->n; i++) {
+    const PetscReal asked = o->used[i];
+
+    o->change[i] = asked - o->held[i];
+    o->used[i] -= part * (asked - o->asked[i]);
+    o->asked[i] = asked;
+    o->held[i]  = o->used[i];
+  }
+  o->replaced = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

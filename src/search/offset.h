@@ -9,7 +9,7 @@
    and are always held ones.
 
    OffsetsCreate() makes offsets of 0. OffsetsExtrapolate() is called at the beginning of a step and OffsetsTake()
-   when lists are made anew. OffsetsGet() and OffsetsMaps() give the result to the search, and OffsetsArchive()
+   when lists are made anew, and OffsetsDamp() where these replace those of the solve. OffsetsGet() and OffsetsMaps() give the result to the search, and OffsetsArchive()
    writes or reads the state of the extrapolation. */
 #pragma once
 #include "files/archive.h"
@@ -26,6 +26,7 @@ PetscErrorCode   OffsetsCreate(Mesh, Scene, Loads, ContactSurface, int n_images,
 PetscErrorCode   OffsetsDestroy(Offsets *);
 PetscErrorCode   OffsetsExtrapolate(Offsets, const PetscReal *u, PetscReal t, PetscReal t_next, PetscBool *changed);
 PetscErrorCode   OffsetsTake(Offsets, const PetscReal *u, PetscReal t);
+PetscErrorCode   OffsetsDamp(Offsets, PetscBool *changed);
 PetscErrorCode   OffsetsArchive(Offsets, Archive, const char *name);
 const PetscReal *OffsetsGet(Offsets);
 const FaceMaps  *OffsetsMaps(Offsets);

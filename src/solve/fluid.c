@@ -630,6 +630,31 @@ PetscErrorCode FluidStart(Fluids fluids, const PetscReal *u)
 }
 
 /*@
+  FluidBegins - says whether a fluid has no pressure at a breakpoint of the loads, so that it may begin to press there.
+
+  Not collective, the same on all ranks
+
+  Input Parameters:
++ fluids - may be NULL
+- t      - load parameter at which loads change their rate
+
+  Output Parameter:
+. begins - there is such a fluid
+@*/
+PetscErrorCode FluidBegins(Fluids fluids, PetscReal t, PetscBool *begins)
+{
+  PetscFunctionBeginUser;
+  *begins = PETSC_FALSE;
+  for (int i = 0; fluids && i < fluids->n; i++) {
+    PetscReal pressure;
+
+    PetscCall(LoadsPressure(fluids->loads, fluids->fluid[i].number, t, &pressure));
+    *begins = (PetscBool)(*begins || pressure == 0);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   FluidBegin - begins a load step: the fluids are where they were accepted, with their pressures at t.
 
   Collective

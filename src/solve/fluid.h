@@ -28,6 +28,7 @@ typedef struct _n_Fluids *Fluids;
 PetscErrorCode FluidCreate(Mesh, Scene, Loads, Contact, Fluids *);
 PetscErrorCode FluidDestroy(Fluids *);
 PetscErrorCode FluidStart(Fluids, const PetscReal *u);
+PetscErrorCode FluidBegins(Fluids, PetscReal t, PetscBool *begins);
 PetscErrorCode FluidBegin(Fluids, const PetscReal *u, PetscReal t);
 PetscErrorCode FluidMove(Fluids, const PetscReal *u, PetscReal t, PetscBool *moved);
 PetscErrorCode FluidReaches(Fluids, PetscReal t_0, PetscReal t, PetscReal dt_min, PetscBool *reaches,

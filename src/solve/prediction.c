@@ -191,6 +191,29 @@ static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* After a prediction in pieces: sets model->x to the accepted state if the prediction failed, or has inverted an element.
+   Close to a limit of stability a linear step goes far, however little the load changes, and the pieces lead away from
+   every equilibrium. */
+static PetscErrorCode ModelStayBehind(Model model, SolveReport *report)
+{
+  const Problem problem = model->problem;
+  PetscBool     ok      = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProblemSetTrial(problem, model->x, model->t));
+  if (report->result == SOLVE_CONVERGED) PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
+  if (ok) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscInfo(model->snes, "the prediction goes too far: the step starts from the accepted state\n"));
+  PetscCall(VecCopy(model->work->accepted_x, model->x));
+  PetscCall(ProblemSetTrial(problem, model->x, model->t));
+  if (model->contact) PetscCall(ModelReachOn(model, problem->trial, model->t, report));
+  if (model->contact) ContactForgetLost(model->contact);
+  PetscCall(ModelStepFromSolved(model, model->work->accepted_u));
+  problem->inverted = -1;
+  report->result    = SOLVE_CONVERGED;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelPredictFar - repeats the prediction in pieces, where it went too far for one linear step.
 
@@ -210,6 +233,7 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
   const StressReference reference = {model->work->solved, 0, 0};
   const PetscInt        n         = model->mesh->n_nodes * model->mesh->dim;
   PetscReal             t         = model->work->accepted_t, turn, part, *u, *v;
+  PetscInt              pieces    = 0;
   Vec                   from;
 
   PetscFunctionBeginUser;
@@ -219,7 +243,7 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
   PetscCall(PetscCalloc2(n, &u, n, &v));
   PetscCall(PetscArraycpy(u, model->work->accepted_u, n));
   if (model->contact) PetscCall(ContactSoften(model->contact, PREDICTION_SOFT));
-  for (PetscInt piece = 0; piece < PREDICTION_PIECES && report->result == SOLVE_CONVERGED; piece++) {
+  for (; pieces < PREDICTION_PIECES && report->result == SOLVE_CONVERGED; pieces++) {
     PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
     PetscCall(ModelLargestTurn(model, u, v, &turn));
     if (turn <= MODEL_FARTHEST) break;
@@ -232,6 +256,7 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
     PetscCall(ModelStepLoads(model, u, reference.u ? &reference : NULL, t, PETSC_FALSE, PETSC_FALSE, report));
   }
   if (model->contact) PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL));
+  if (pieces) PetscCall(ModelStayBehind(model, report));
   PetscCall(PetscFree2(u, v));
   PetscCall(VecDestroy(&from));
   PetscFunctionReturn(PETSC_SUCCESS);

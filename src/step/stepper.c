@@ -306,6 +306,20 @@ static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where a fluid begins to press, the steps before say nothing of it: it moves bodies that only contact holds, until
+   contact holds them elsewhere. The next step is as at the start, unless steps have become shorter. */
+static PetscErrorCode LoadStepperMeetFluid(Model model, StepSize *size)
+{
+  PetscBool begins = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (SceneBreaks(model->scene, model->t)) PetscCall(FluidBegins(model->problem->fluids, model->t, &begins));
+  if (!begins) PetscFunctionReturn(PETSC_SUCCESS);
+  size->dt      = PetscMin(size->dt, size->initial);
+  size->last_dt = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Accepts a converged step of dt: fills its record, lets the control choose the next dt, which is at most `most` and
    which it must not shrink below dt_min, and accepts the state. */
 static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscReal most, PetscBool clipped,
@@ -321,6 +335,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   if (model->contact) PetscCall(ContactSummarise(model->contact, &record->contact));
   PetscCall(stepper->control->next(model, dt, clipped, solve->newton, &stepper->size));
   stepper->size.dt = PetscMin(stepper->size.dt, most);
+  PetscCall(LoadStepperMeetFluid(model, &stepper->size));
   stepper->size.dt = PetscMin(stepper->size.dt_max, PetscMax(stepper->size.dt, PetscMin(dt, stepper->size.dt_min)));
   record->beta     = stepper->size.beta;
   record->tied     = stepper->size.tied;

@@ -1,6 +1,6 @@
 /* The search finds the facets near a slave point, from whatever rank, in the order of their tags, and says how far
  * lists reach. Free edges are the ends of a surface that no symmetry continues. Offsets of a circle's chords are the
- * heights of its arcs. All answers are the same on 1, 2 and 3 ranks, as they are found by hand. */
+ * heights of its arcs, and are damped where solutions turn them to and fro. All answers are the same on 1, 2 and 3 ranks, as they are found by hand. */
 #include "../parts.h"
 #include "contactimpl.h"
 #include "search/freeedge.h"
@@ -268,12 +268,71 @@ static void test_offsets(void **state)
   PartsDestroy(&parts);
 }
 
+/* The lower block's circle bends on, to a curvature of 1 + bend times its own. */
+static double bend;
+static void Bend(const double X[2], double x[2])
+{
+  x[0] = X[0], x[1] = X[1];
+  if (X[1] < 1.05) x[1] -= bend * PetscSqr(X[0] - 4) / (2 * RADIUS);
+}
+
+/* Sum of the master's offsets over all ranks, along y. */
+static double OffsetsSum(void)
+{
+  const PetscReal *offset = OffsetsGet(Pair()->master_offsets);
+  double           sum    = 0;
+
+  for (PetscInt k = 0; k < Pair()->master->n_faces * FACE_RULE_POINTS; k++) sum += offset[2 * k + 1];
+  OK(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD));
+  return sum;
+}
+
+/* A body under a load that bends it by 0.1 answers to a change of its offsets by `gain` times as much the other way.
+   Returns by how much its bend after some solutions differs from the next one; damped: how many of them had damped
+   offsets. */
+static double Answer(double gain, int solutions, int *damped)
+{
+  double rest, end;
+
+  Create(ToCircle, "", ", smoother: diffuse, formulation: surface_to_surface, offset: held");
+  OK(ContactGather(parts.problem->contact, parts.u, 0, 0, 0));
+  rest    = OffsetsSum();
+  bend    = 0.1;
+  *damped = 0;
+  for (int k = 0; k < solutions; k++) {
+    PetscBool changed;
+
+    PartsMove(&parts, Bend);
+    OK(OffsetsTake(Pair()->master_offsets, parts.u, k + 1));
+    OK(OffsetsDamp(Pair()->master_offsets, &changed));
+    *damped += changed;
+    bend = 0.1 - gain * (OffsetsSum() / rest - 1);
+  }
+  PartsMove(&parts, Bend);
+  OK(OffsetsTake(Pair()->master_offsets, parts.u, solutions + 1));
+  end = 0.1 - gain * (OffsetsSum() / rest - 1);
+  PartsDestroy(&parts);
+  return bend - end;
+}
+
+/* A body that would turn its offsets to and fro without end settles; one that settles by itself is left alone. */
+static void test_damped(void **state)
+{
+  int damped;
+
+  (void)state;
+  assert_near(Answer(2, 8, &damped), 0, 1e-6);
+  assert_true(damped >= 2);
+  assert_near(Answer(0.05, 3, &damped), 0, 1e-4);
+  assert_int_equal(damped, 0);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_lists),    cmocka_unit_test(test_nearest),
                                      cmocka_unit_test(test_distance), cmocka_unit_test(test_hold),
                                      cmocka_unit_test(test_reach),    cmocka_unit_test(test_free_edges),
-                                     cmocka_unit_test(test_offsets)};
+                                     cmocka_unit_test(test_offsets),  cmocka_unit_test(test_damped)};
 
   if (PartsStart(&argc, &argv)) return 1;
   return PartsEnd(cmocka_run_group_tests(tests, NULL, NULL));
