@@ -4,6 +4,7 @@
    its error q_0 - q is dq/d(ln s). One linear solve with the tangent gives du/d(ln s), because the residual depends on
    ln s through the penalty part of the contact forces alone. Forces and pressures are then evaluated a small way along
    this derivative. */
+#include "mesh/pressurenodes.h"
 #include "modelimpl.h"
 
 /* Step along which forces and pressures are compared. Penetrations shrink by about this part of themselves, so that
@@ -193,6 +194,7 @@ static PetscErrorCode ModelLargestChange(Model model, const PetscReal *changed, 
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < model->mesh->n_nodes * model->mesh->dim; i++) {
+    if (IsPressureNode(model->mesh, i / model->mesh->dim)) continue;
     most[0] = PetscMax(most[0], PetscAbsReal(u[i]));
     most[1] = PetscMax(most[1], PetscAbsReal(changed[i] - u[i]) / step);
   }
