@@ -359,6 +359,7 @@ static PetscErrorCode Judge(const Search *s, PetscReal rise)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (paid) {
+    if (s->model->contact) PetscCall(ContactCycleStart(s->model->work->watch)); /* a lower energy is no repetition */
     step->waits    = PETSC_FALSE;
     step->farthest = PetscMin(MODEL_FARTHEST, PetscMax(step->farthest, SEARCH_GROW * step->turn));
   }
