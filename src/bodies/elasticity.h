@@ -56,7 +56,8 @@ PetscErrorCode ElasticityPlasticWork(Elasticity, PetscReal *work, PetscReal *str
 PetscErrorCode ElasticityAugment(Elasticity, const PetscReal *u, PetscBool *holds);
 PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const StressReference *);
 PetscErrorCode ElasticityYield(Elasticity, const PetscReal *u, const PetscReal *next);
-void           ElasticityYieldEnd(Elasticity);
+PetscBool      ElasticityYields(Elasticity);
+void           ElasticityYieldSet(Elasticity, PetscBool yields);
 PetscErrorCode ElasticityAccept(Elasticity);
 PetscErrorCode ElasticityRestore(Elasticity);
 PetscErrorCode ElasticityKeep(Elasticity);

@@ -166,7 +166,7 @@ PetscErrorCode ElasticityFollow(Elasticity e, const PetscReal *u, const StressRe
 }
 
 /*@
-  ElasticityYield - makes the energy one whose minimum can be searched along a step, until ElasticityYieldEnd().
+  ElasticityYield - makes the energy one whose minimum can be searched along a step, until ElasticityYieldSet() ends that.
 
   Not collective
 
@@ -178,7 +178,8 @@ PetscErrorCode ElasticityFollow(Elasticity e, const PetscReal *u, const StressRe
   Note:
   A linear step that keeps the volume changes it by the square of its length, which moduli of the volume make into more
   energy than the step gains. The energy is that of a soft volume about the pressures of the step's linear problem. It
-  has its minimum where the other has it, once the pressures are right, and falls along the step. Residuals remain.
+  has its minimum where the other has it, once the pressures are right. Its slope at the start is not the residual's,
+  since its pressures are not those of the start: it may rise from there on. Residuals remain.
 @*/
 PetscErrorCode ElasticityYield(Elasticity e, const PetscReal *u, const PetscReal *next)
 {
@@ -203,16 +204,30 @@ PetscErrorCode ElasticityYield(Elasticity e, const PetscReal *u, const PetscReal
 }
 
 /*@
-  ElasticityYieldEnd - ends ElasticityYield().
+  ElasticityYields - says whether energies are those that ElasticityYield() made.
 
   Not collective
 
   Input Parameter:
 . e - the elasticity
 @*/
-void ElasticityYieldEnd(Elasticity e)
+PetscBool ElasticityYields(Elasticity e)
 {
-  e->yields = PETSC_FALSE;
+  return e->yields;
+}
+
+/*@
+  ElasticityYieldSet - goes between the energies that ElasticityYield() made and the true ones.
+
+  Not collective
+
+  Input Parameters:
++ e      - the elasticity
+- yields - energies are those that ElasticityYield() made last
+@*/
+void ElasticityYieldSet(Elasticity e, PetscBool yields)
+{
+  e->yields = yields;
 }
 
 /*@

@@ -1,5 +1,6 @@
 /* Extrapolation of accepted states in the load parameter by polynomials, whose degree follows from the last state. */
 #include "extrapolation.h"
+#include "mesh/pressurenodes.h"
 
 /* Highest degree of the polynomials in t. A ring that is pinched in 10 steps takes 31 iterations with 3 and 37 with 2.
    On other scenes the iterations are the same. */
@@ -144,15 +145,18 @@ static void Extrapolate(Extrapolation extrapolation, int first, int degree, Pets
   }
 }
 
-/* Largest difference of a component of two displacements, of all ranks. */
+/* Largest difference of a component of two displacements, of all ranks. Pressures at nodes do not count: they have
+   another unit. */
 static PetscErrorCode StateDistance(Extrapolation extrapolation, const PetscReal *u, const PetscReal *v,
                                     PetscReal *distance)
 {
+  const Mesh mesh = extrapolation->mesh;
+
   PetscFunctionBeginUser;
   *distance = 0;
-  for (PetscInt k = 0; k < extrapolation->mesh->n_nodes * extrapolation->mesh->dim; k++)
-    *distance = PetscMax(*distance, PetscAbsReal(u[k] - v[k]));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, distance, 1, MPIU_REAL, MPI_MAX, extrapolation->mesh->comm));
+  for (PetscInt k = 0; k < mesh->n_nodes * mesh->dim; k++)
+    if (!IsPressureNode(mesh, k / mesh->dim)) *distance = PetscMax(*distance, PetscAbsReal(u[k] - v[k]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, distance, 1, MPIU_REAL, MPI_MAX, mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

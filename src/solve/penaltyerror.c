@@ -8,6 +8,7 @@
    The penalty of what sticks leaves an error in the same way: surfaces that stick give way by an elastic slip, as they
    give way by penetrations. Its estimate is the same with tractions of friction where it sticks in the place of the
    contact forces. What has slipped is free of it. */
+#include "mesh/pressurenodes.h"
 #include "modelimpl.h"
 
 /* Step along which forces and pressures are compared. Penetrations shrink by about this part of themselves, so that
@@ -226,6 +227,7 @@ static PetscErrorCode ModelLargestChange(Model model, const PetscReal *changed, 
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < model->mesh->n_nodes * model->mesh->dim; i++) {
+    if (IsPressureNode(model->mesh, i / model->mesh->dim)) continue;
     most[0] = PetscMax(most[0], PetscAbsReal(u[i]));
     most[1] = PetscMax(most[1], PetscAbsReal(changed[i] - u[i]) / step);
   }

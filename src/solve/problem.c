@@ -382,7 +382,7 @@ PetscErrorCode ProblemRoundOff(Problem problem, PetscReal *force)
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < problem->mesh->n_nodes * problem->mesh->dim; i++)
-    most = PetscMax(most, PetscAbsReal(problem->trial[i]));
+    if (!IsPressureNode(problem->mesh, i / problem->mesh->dim)) most = PetscMax(most, PetscAbsReal(problem->trial[i]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, problem->mesh->comm));
   *force = PROBLEM_ROUND_OFF * PETSC_MACHINE_EPSILON * problem->stiffness * most;
   PetscFunctionReturn(PETSC_SUCCESS);

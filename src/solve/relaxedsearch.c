@@ -17,6 +17,8 @@
    is indefinite. More than this multiple of the promise is no work, but the residual of an element that is all but
    inverted at a point of Simpson's rule. */
 #define SEARCH_PROMISE 10
+/* Part of a step over which smooth quantities do not change noticeably */
+#define SEARCH_TRIFLE 1e-3
 /* Without an energy a step is shortened this many times, each time to between a tenth and a half. */
 #define SEARCH_CUTS 20
 
@@ -82,8 +84,8 @@ static PetscErrorCode Try(const Search *s, PetscReal lambda, PetscBool *ok)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rise of the energy between two iterates, PETSC_MAX_REAL where an element is inverted at the second. */
-static PetscErrorCode EnergyRise(const Search *s, Vec from, Vec to, PetscReal *rise)
+/* The rise of the energy in use between two iterates, PETSC_MAX_REAL where an element is inverted at the second. */
+static PetscErrorCode OneRise(const Search *s, Vec from, Vec to, PetscReal *rise)
 {
   PetscReal before, after;
 
@@ -91,6 +93,23 @@ static PetscErrorCode EnergyRise(const Search *s, Vec from, Vec to, PetscReal *r
   PetscCall(SNESComputeObjective(s->snes, from, &before));
   PetscCall(SNESComputeObjective(s->snes, to, &after));
   *rise = after >= MODEL_INVERTED ? PETSC_MAX_REAL : after - before;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The lesser rise of two energies: that of volumes that yield, which forgives a change of volume that the next step
+   makes up for, and the true one. Along a soft motion whose pressures change, the first may rise all the way. */
+static PetscErrorCode EnergyRise(const Search *s, Vec from, Vec to, PetscReal *rise)
+{
+  const Elasticity elasticity = s->model->problem->elasticity;
+  PetscReal        real;
+
+  PetscFunctionBeginUser;
+  PetscCall(OneRise(s, from, to, rise));
+  if (!ElasticityYields(elasticity) || *rise == PETSC_MAX_REAL) PetscFunctionReturn(PETSC_SUCCESS);
+  ElasticityYieldSet(elasticity, PETSC_FALSE);
+  PetscCall(OneRise(s, from, to, &real));
+  ElasticityYieldSet(elasticity, PETSC_TRUE);
+  *rise = PetscMin(*rise, real);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -151,6 +170,20 @@ static PetscErrorCode Take(const Search *s, PetscReal lambda)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Lets the energy in use be the true one if that of volumes that yield rises from the start of the step on. */
+static PetscErrorCode ChooseFalling(const Search *s)
+{
+  const Elasticity elasticity = s->model->problem->elasticity;
+  PetscReal        rise;
+
+  PetscFunctionBeginUser;
+  if (!ElasticityYields(elasticity)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecWAXPY(s->w, -SEARCH_TRIFLE, s->y, s->x));
+  PetscCall(OneRise(s, s->x, s->w, &rise));
+  if (rise > 0) ElasticityYieldSet(elasticity, PETSC_FALSE);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Ends the search as PETSc's backtracking does. */
 static PetscErrorCode Backtrack(const Search *s)
 {
@@ -204,6 +237,7 @@ static PetscErrorCode Shorten(const Search *s)
 
   PetscFunctionBeginUser;
   if (ProblemConservative(s->model->problem)) {
+    PetscCall(ChooseFalling(s));
     PetscCall(Backtrack(s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -310,23 +344,26 @@ static PetscErrorCode Return(const Search *s)
 static PetscErrorCode Judge(const Search *s, PetscReal rise)
 {
   RelaxedStep *step  = &s->model->work->relaxed;
-  PetscReal    since = step->rise;
+  PetscReal    since = step->rise + rise;
   PetscBool    paid, reached = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  if (ProblemConservative(s->model->problem)) /* multipliers have changed since, and the energy with them */
-    PetscCall(EnergyRise(s, step->x, s->x, &since));
-  paid = (PetscBool)(rise < PETSC_MAX_REAL && since + rise <= -SEARCH_FALL * step->slope);
+  if (ProblemConservative(s->model->problem) && rise < PETSC_MAX_REAL) {
+    PetscCall(VecWAXPY(s->w, -1, s->y, s->x)); /* multipliers have changed since, and the energy with them */
+    PetscCall(EnergyRise(s, step->x, s->w, &since));
+  }
+  paid = (PetscBool)(rise < PETSC_MAX_REAL && since <= -SEARCH_FALL * step->slope);
   if (!paid && rise < PETSC_MAX_REAL && ++step->times < SEARCH_PATIENCE) PetscCall(Try(s, 1, &reached));
   if (!paid && !reached) {
     PetscCall(Return(s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (paid) {
+    if (s->model->contact) PetscCall(ContactCycleStart(s->model->work->watch)); /* a lower energy is no repetition */
     step->waits    = PETSC_FALSE;
     step->farthest = PetscMin(MODEL_FARTHEST, PetscMax(step->farthest, SEARCH_GROW * step->turn));
   }
-  step->rise = since + rise;
+  step->rise = since;
   PetscCall(Take(s, 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -371,7 +408,7 @@ static PetscErrorCode SearchByEnergy(const Search *s, PetscReal slope)
     PetscCall(Relax(s, rise, slope, &taken));
     if (!taken) PetscCall(Shorten(s));
   }
-  ElasticityYieldEnd(s->model->problem->elasticity);
+  ElasticityYieldSet(s->model->problem->elasticity, PETSC_FALSE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

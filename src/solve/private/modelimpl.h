@@ -107,6 +107,7 @@ typedef struct _n_ModelWork {
   PetscBool   cycling;            /* the solve ended because the contact set repeats itself with shorter steps too */
   PetscInt    cuts[CUT_CAUSES];   /* iterations that the line search shortened, by their cause */
   PetscInt    turned;             /* iterations whose step led uphill and was turned round */
+  PetscInt    crawls;             /* steps in a row of which the line search left next to nothing */
 } ModelWork;
 
 /* linearcontact.c */
