@@ -20,7 +20,7 @@ import shutil
 import subprocess
 
 from harness import Check, arguments, SCENES
-from readme_commands import FULL, LIKE, NOT_HERE
+from readme_commands import CHECKED, FULL, LIKE, NOT_HERE
 
 ROOT = SCENES.parent.parent
 TUTORIAL = ROOT / "doc/pages/tutorial.md"
@@ -138,7 +138,8 @@ class Workplace:
         if command in LIKE:
             return LIKE[command]
         if command not in FULL and command not in NOT_HERE:
-            return command
+            more = [words for start, words in CHECKED.items() if command.startswith(start)]
+            return " ".join([command, *more]) if self.args.part == "quick" else command
         if self.args.part == "quick":
             return None
         return NOT_HERE[command][1] if command in NOT_HERE else FULL[command] or command

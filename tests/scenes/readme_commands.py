@@ -36,6 +36,14 @@ LIKE = {
     "mpicc tests/library/library.c $(pkg-config --cflags --libs burnish) -o library",
 }
 
+# Runs whose output no page shows: in the quick set these words behind them, which solve nothing, in the full set as they
+# stand. The words before the command tell which.
+CHECKED = {
+    "build/burnish tests/jobs/": "-check",
+    "build/burnish tests/scenes/pin_pressed.yaml": "-check",
+    **{f"{ROLLER} out/{name}": "-check" for name in ("soft", "stiffest", "tilted", "interference")},
+}
+
 # Run in the full set only: as the page shows them (None), or with less to do
 FULL = {
     f"{PYTHON} scripts/render.py out/roller --mirror x": None,
