@@ -191,9 +191,9 @@ static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After a prediction in pieces: sets model->x to the accepted state if the prediction failed, or has inverted an element.
-   Close to a limit of stability a linear step goes far, however little the load changes, and the pieces lead away from
-   every equilibrium. */
+/* After a prediction in pieces, with contact: sets model->x to the accepted state if the prediction failed, or has
+   inverted an element. Close to a limit of the stability that contact gives a linear step goes far, however little the
+   load changes, and the pieces lead away from every equilibrium. */
 static PetscErrorCode ModelStayBehind(Model model, SolveReport *report)
 {
   const Problem problem = model->problem;
@@ -206,8 +206,8 @@ static PetscErrorCode ModelStayBehind(Model model, SolveReport *report)
   PetscCall(PetscInfo(model->snes, "the prediction goes too far: the step starts from the accepted state\n"));
   PetscCall(VecCopy(model->work->accepted_x, model->x));
   PetscCall(ProblemSetTrial(problem, model->x, model->t));
-  if (model->contact) PetscCall(ModelReachOn(model, problem->trial, model->t, report));
-  if (model->contact) ContactForgetLost(model->contact);
+  PetscCall(ModelReachOn(model, problem->trial, model->t, report));
+  ContactForgetLost(model->contact);
   PetscCall(ModelStepFromSolved(model, model->work->accepted_u));
   problem->inverted = -1;
   report->result    = SOLVE_CONVERGED;
@@ -256,7 +256,7 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
     PetscCall(ModelStepLoads(model, u, reference.u ? &reference : NULL, t, PETSC_FALSE, PETSC_FALSE, report));
   }
   if (model->contact) PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL));
-  if (pieces) PetscCall(ModelStayBehind(model, report));
+  if (pieces && model->contact) PetscCall(ModelStayBehind(model, report));
   PetscCall(PetscFree2(u, v));
   PetscCall(VecDestroy(&from));
   PetscFunctionReturn(PETSC_SUCCESS);
