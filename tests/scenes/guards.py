@@ -34,7 +34,8 @@ check.near("soft: force over penetration",
 check.holds("soft: warns of the depth", "6.5 face sizes behind its master" in soft.text)
 
 # The same over a floor that belongs to the master: below the middle between them the floor is nearer.
-lost = run(args, stack, out="lost", overrides=(*FLOOR, "loads.0.uy=-1.5", "stepping.initial=0.1", UNJUDGED), must=None)
+lost = run(args, stack, out="lost", must=None,
+           overrides=(*FLOOR, "loads.0.uy=-1.5", "stepping.initial=0.1", UNJUDGED))
 ends("lost", lost, 2, "contact was lost behind a master", "'joint': node ", "0.8 behind its master")
 check.near("lost: t of the last good state", lost.summary()["t"], 0.7, 1e-3)
 leap = run(args, stack, out="leap",
