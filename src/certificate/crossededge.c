@@ -94,6 +94,12 @@ static double EdgeAllowed(const Look *look, const Edge *edge, const Piece *piece
   return allowed;
 }
 
+/* Does an edge first come out of the body around an edge of a piece? Edges that touch may be crossed by round-off. */
+static int GoesOut(const EdgeEnd *end, const Piece *piece, int e)
+{
+  return Dot(end->towards[0], piece->normal[1]) + Dot(end->towards[0], piece->across[e]) > 0;
+}
+
 /* Judges an edge, with the box that it sweeps, that crosses the edges of a piece. a: its ends at both states. */
 static void JudgeCrossings(const Look *look, const Edge *edge, Place a[2][2], const Box box, const Piece *piece,
                            Finding *worst)
@@ -102,7 +108,7 @@ static void JudgeCrossings(const Look *look, const Edge *edge, Place a[2][2], co
     Place   b[2][2];
     Box     other;
     EdgeEnd last;
-    double  allowed;
+    double  allowed, depth;
     Finding finding;
 
     for (int state = 0; state < 2; state++)
@@ -111,12 +117,13 @@ static void JudgeCrossings(const Look *look, const Edge *edge, Place a[2][2], co
     if (!BoxesMeet(box, other, 0)) continue;
     if (!SweepEdges((const Place *)a[0], (const Place *)a[1], (const Place *)b[0], (const Place *)b[1], &last))
       continue;
-    if (!last.over || last.distance >= 0) continue;
-    allowed = EdgeAllowed(look, edge, piece, -last.distance);
-    if (!(-last.distance > allowed)) continue;
+    depth = GoesOut(&last, piece, e) ? last.distance : -last.distance;
+    if (!last.over || depth <= 0) continue;
+    allowed = EdgeAllowed(look, edge, piece, depth);
+    if (!(depth > allowed)) continue;
     finding = (Finding){.kind    = FINDING_EDGES,
-                        .ratio   = -last.distance / allowed,
-                        .depth   = -last.distance,
+                        .ratio   = depth / allowed,
+                        .depth   = depth,
                         .allowed = allowed,
                         .tag     = {edge->end[0]->tag, edge->end[1]->tag},
                         .face    = piece->face,

@@ -1,5 +1,5 @@
-"""Runs judge their steps by default: a needle in a film and beams that cross edge on edge are refused with node, edge and
-place, on any number of ranks; cubes that overhang each other are not, and outer forces and moments balance."""
+"""Runs judge their steps by default: a needle in a film and beams that cross edge on edge are refused with node, edge
+and place, on any number of ranks; cubes that overhang each other are not, and outer forces and moments balance."""
 import re
 
 from harness import Check, arguments, run, SCENES

@@ -1,6 +1,7 @@
 // A needle over a thin film whose ends are held. Lengths in mm.
 DefineConstant[
-  n = {10, Name "elements along the film"}, thickness = {0.1, Name "of the film"}, tip = {0.3, Name "place of the needle"},
+  n = {10, Name "elements along the film"}, thickness = {0.1, Name "of the film"},
+  tip = {0.3, Name "place of the needle"},
   gap = {0.1, Name "between film and needle"}, width = {0.4, Name "of the needle's head"}
 ];
 Point(1) = {-5, -thickness, 0};

@@ -11,6 +11,7 @@ FLOOR = ("mesh.parameters={floor: 1.5, thickness: 0.1}",
          f"bodies=[{{volume: lower, {SVK}}}, {{volume: floor, {SVK}}}, {{volume: upper, {SVK}}}]",
          "supports=[{surface: lower_bottom, ux: 0, uy: 0}, {surface: floor_bottom, ux: 0, uy: 0}]",
          "contact.0.master=tops", "contact.0.penalty.scale=1e-4")
+UNJUDGED = "output.certificate=false"
 FREE = ("supports=[{surface: lower_bottom, ux: 0, uy: 0}]", "loads=[{surface: upper_top, pressure: 10}]")
 
 
@@ -21,15 +22,20 @@ def ends(name, run, status, *words):
     check.holds(f"{name}: says why", all(word in message for word in words), message)
 
 
-# A soft penalty: the body goes right through the other one, 6.5 faces deep, and contact still acts as the law says.
+# A soft penalty: the body goes right through the other one, 6.5 faces deep, and contact still acts as the law says. A
+# run that judges its steps stops.
+judged = run(args, stack, out="judged",
+             overrides=("contact.0.penalty.scale=1e-4", "loads.0.uy=-3.5", "stepping.initial=0.1"), must=None)
+ends("judged", judged, 2, "cannot be certified", "'joint': node ", " deep, at face ")
 soft = run(args, stack, out="soft",
-           overrides=("contact.0.penalty.scale=1e-4", "loads.0.uy=-3.5", "stepping.initial=0.1"))
+           overrides=("contact.0.penalty.scale=1e-4", "loads.0.uy=-3.5", "stepping.initial=0.1", UNJUDGED))
 check.near("soft: force over penetration",
            soft.summary()["probes"]["force"] / soft.summary()["max_penetration"], 0.4, 0.004)
 check.holds("soft: warns of the depth", "6.5 face sizes behind its master" in soft.text)
 
 # The same over a floor that belongs to the master: below the middle between them the floor is nearer.
-lost = run(args, stack, out="lost", overrides=(*FLOOR, "loads.0.uy=-1.5", "stepping.initial=0.1"), must=None)
+lost = run(args, stack, out="lost", must=None,
+           overrides=(*FLOOR, "loads.0.uy=-1.5", "stepping.initial=0.1", UNJUDGED))
 ends("lost", lost, 2, "contact was lost behind a master", "'joint': node ", "0.8 behind its master")
 check.near("lost: t of the last good state", lost.summary()["t"], 0.7, 1e-3)
 leap = run(args, stack, out="leap",

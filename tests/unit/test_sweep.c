@@ -350,6 +350,7 @@ static void PlantedFacesAreFound(void **context)
 {
   const double up[3][3]     = {{-2, 0.1, 0.5}, {0.2, 2, 0.5}, {2, 0.1, 0.5}},
                down[3][3]   = {{-2, 0.1, -0.3}, {0.2, 2, -0.3}, {2, 0.1, -0.3}};
+  const double in[3][3]     = {{-2, 0.1, -1e-12}, {0.2, 2, -1e-12}, {2, 0.1, -1e-12}};
   const double above[3][3]  = {{-2, 0.5, 0}, {2, 0.5, 0}, {0}};
   const double across[3][3] = {{-2, -0.3, 0}, {2, -0.3, 0}, {0}};
   Plate        plate        = {.dim = 2};
@@ -363,6 +364,7 @@ static void PlantedFacesAreFound(void **context)
   AddPiece(&plate, (const double[3][3]){{0, -2, 0}, {2, 0, 0}, {0, 2, 0}}, still, still, 1000);
   assert_int_equal(JudgePiece(&plate, up, up, 0).kind, FINDING_NONE);
   assert_int_equal(JudgePiece(&plate, up, down, 0).kind, FINDING_EDGES);
+  assert_int_equal(JudgePiece(&plate, in, up, 0).kind, FINDING_NONE); /* it touched, and goes off */
   /* 11: the same where the other one moves */
   plate = (Plate){.dim = 3};
   AddPiece(&plate, (const double[3][3]){{0, -2, 0}, {2, 0, 0}, {0, 2, 0}}, still, AT(0, 0, 0.8), 1000);
