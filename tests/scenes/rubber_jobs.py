@@ -1,16 +1,19 @@
 """Rubber that keeps its volume takes about as many steps as rubber that does not. A load that bends elements far in one
 step is predicted in pieces; the pressures of the states between them, which are not in equilibrium, must not get into
-the tangent."""
+the tangent. A search that judges steps by the energy of volumes that yield alone fails in steps where rubber snaps
+over an edge."""
 from harness import Check, arguments, run, SCENES
 
 RATIOS = (0.45, 0.499)
 MORE = 1.5  # times the steps of the lower ratio
 # With the pressures of these states the first takes 7 steps, 1 failed, the second 8, 2 failed.
-JOBS = ("bush_bonded", "tube_flattened")
+JOBS = ["bush_bonded", "tube_flattened"]
+# With that search the first takes 10 steps, 1 failed, instead of 6, the second 8, 2 failed, instead of 5.
+SNAPS = ["lip_inverted", "plug_orifice"]
 
-args = arguments()
+args = arguments(("cases", "jobs in which nothing snaps, or others too", ("few", "all")))
 check = Check()
-for job in JOBS:
+for job in JOBS + (SNAPS if args.cases == "all" else []):
     low, high = (run(args, SCENES.parent / f"jobs/{job}.yaml", out=f"{job}_{nu}",
                      overrides=(f"bodies.0.material.nu={nu}", "output.every=0")).summary() for nu in RATIOS)
     check.holds(f"{job}: steps", high["steps"] <= MORE * low["steps"], f"{high['steps']} instead of {low['steps']}")
