@@ -1,15 +1,21 @@
 /* Which contact terms press at the end of a linear step: Newton's method on the step's own contact problem. */
-#include "contact/activeset.h"
+#include "activesetimpl.h"
 
 /* Most active sets that are tried with the columns that are known. Each set follows from the gaps of the one before.
    Sets that have not converged by then repeat themselves. */
 #define ACTIVE_SET_MAX_SETS 30
 
-/* Most steps of the search that follows then. Each lowers the energy, and a set does not come twice. */
-#define ACTIVE_SET_MAX_SEARCHES 100
-
 /* Rounding of a pressure, as a part of it. */
 #define ACTIVE_SET_ROUND_OFF 1e-12
+
+/* With friction sets that repeat themselves are left for relaxation: so many rounds of so many sweeps, after each of
+   which this number of sets is tried. */
+#define ACTIVE_SET_RELAX_ROUNDS 4
+#define ACTIVE_SET_RELAX_SWEEPS 200
+#define ACTIVE_SET_RELAX_SETS   10
+
+/* Most steps of the search that follows then. Each lowers the energy, and a set does not come twice. */
+#define ACTIVE_SET_MAX_SEARCHES 100
 
 /* A slope of the energy is zero if it is this part of that where the search begins. */
 #define ACTIVE_SET_SLOPE 1e-9
@@ -18,22 +24,6 @@
    largest traction that any term can bear. Newton's method takes such differences in its stride, and columns for all
    terms whose direction of slip turns a little would cost more than they save. */
 #define ACTIVE_SET_FRICTION 0.01
-
-struct _n_Pressing {
-  PetscInt       n, parts, m, most;
-  ActiveSetTerm *terms;
-  PetscReal     *travel, *end; /* parts*n; end: with the excess at hand */
-  PetscBool     *pressed;      /* n: the set at hand */
-  PetscInt      *column;       /* parts*n; -1: none */
-  PetscInt      *term;         /* component of each column */
-  PetscReal     *G, *excess;   /* m*parts*n, m */
-  PetscReal     *change;       /* m: of the excess, by the last iteration */
-  PetscBool      searches;     /* sets have repeated themselves: each step ends where the energy is least along it */
-  PetscBool     *slipped;      /* n: the term slipped where friction was looked at last */
-  PetscBool     *sticks;       /* n: its slip has turned round since, so that it is to stick in the next set */
-  PetscReal     *slip;         /* 2*n: its slip there (length) */
-  PetscBool      plain;        /* friction stays as residual and tangent have it */
-};
 
 /* Slip of a term along a tangent at the end, elastic slip where the step begins included. */
 static PetscReal EndSlip(const ActiveSet p, PetscInt i, PetscInt a)
@@ -185,7 +175,7 @@ static void Excess(const ActiveSetTerm *term, PetscBool pressed, PetscReal *star
 
 /* What residual and tangent make of a component at the end, less what the laws say of it, and the derivatives of this
    excess by the travel of the parts of its term. */
-static PetscReal ComponentExcess(ActiveSet p, PetscInt component, PetscReal by[ACTIVE_SET_PARTS])
+PetscReal ActiveSetExcess(ActiveSet p, PetscInt component, PetscReal by[ACTIVE_SET_PARTS])
 {
   const PetscInt           i = component % p->n, part = component / p->n, a = part - 1;
   const ActiveSetTerm     *term     = &p->terms[i];
@@ -219,7 +209,7 @@ static PetscReal ComponentExcess(ActiveSet p, PetscInt component, PetscReal by[A
 }
 
 /* Largest traction that is no matter to friction. */
-static PetscReal Negligible(ActiveSet p)
+PetscReal ActiveSetNegligible(ActiveSet p)
 {
   PetscReal most = 0;
 
@@ -249,7 +239,7 @@ static PetscInt Missing(ActiveSet p, PetscInt *which)
    many, none is asked for. */
 static PetscInt MissingFriction(ActiveSet p, PetscInt *which)
 {
-  const PetscReal negligible = Negligible(p);
+  const PetscReal negligible = ActiveSetNegligible(p);
   PetscReal       by[ACTIVE_SET_PARTS];
   PetscInt        m = 0;
 
@@ -258,7 +248,7 @@ static PetscInt MissingFriction(ActiveSet p, PetscInt *which)
 
     for (PetscInt part = 1; part < p->parts; part++)
       matters = (PetscBool)(matters || (p->column[part * p->n + i] < 0 &&
-                                        PetscAbsReal(ComponentExcess(p, part * p->n + i, by)) > negligible));
+                                        PetscAbsReal(ActiveSetExcess(p, part * p->n + i, by)) > negligible));
     for (PetscInt part = 1; part < p->parts && matters; part++)
       if (p->column[part * p->n + i] < 0) which[m++] = part * p->n + i;
   }
@@ -317,7 +307,7 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
     PetscReal *d    = &by[ACTIVE_SET_PARTS * k];
     PetscBool  free = PETSC_FALSE;
 
-    p->change[j] = ComponentExcess(p, p->term[j], d) - p->excess[j];
+    p->change[j] = ActiveSetExcess(p, p->term[j], d) - p->excess[j];
     for (int part = 0; part < ACTIVE_SET_PARTS; part++) free = (PetscBool)(free || d[part] != 0);
     if (free) unknown[k++] = j;
   }
@@ -362,9 +352,9 @@ static PetscBool Follow(ActiveSet p)
     p->pressed[i] = pressed;
   }
   LookAtSlips(p);
-  negligible = Negligible(p);
+  negligible = ActiveSetNegligible(p);
   for (PetscInt j = 0; j < p->m; j++)
-    if (p->term[j] >= p->n && PetscAbsReal(ComponentExcess(p, p->term[j], by) - p->excess[j]) > negligible)
+    if (p->term[j] >= p->n && PetscAbsReal(ActiveSetExcess(p, p->term[j], by) - p->excess[j]) > negligible)
       changed = PETSC_TRUE;
   return changed;
 }
@@ -452,6 +442,30 @@ static PetscErrorCode FollowSets(ActiveSet p, PetscInt most, PetscInt *m, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* After sets with friction that have repeated themselves: relaxes the terms, and follows the sets from where that leads
+   to. *converged as ActiveSetSolve() says. */
+static PetscErrorCode Relax(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool *converged)
+{
+  PetscBool settled = PETSC_FALSE, regular, changed;
+
+  PetscFunctionBeginUser;
+  for (PetscInt round = 0; round < ACTIVE_SET_RELAX_ROUNDS && !*m && !*converged; round++) {
+    PetscCall(ActiveSetRelax(p, ACTIVE_SET_RELAX_SWEEPS, &settled));
+    LookAtSlips(p);
+    *m = Missing(p, which);
+    if (!*m) *m = MissingFriction(p, which);
+    if (*m) break;
+    if (settled) {
+      *converged = PETSC_TRUE;
+      break;
+    }
+    PetscCall(FollowSets(p, ACTIVE_SET_RELAX_SETS, m, which, &regular, &changed));
+    *converged = (PetscBool)(!*m && regular && !changed);
+    for (PetscInt i = 0; i < p->n; i++) p->sticks[i] = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* After sets that have repeated themselves: searches from where they have led to; with friction begins again with the
    friction that residual and tangent have. */
 static PetscErrorCode ChangeWay(ActiveSet p)
@@ -504,6 +518,7 @@ PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBo
     if (*m || !p->m) PetscFunctionReturn(PETSC_SUCCESS);
     for (PetscInt i = 0; i < p->n && p->parts > 1; i++) p->sticks[i] = PETSC_FALSE;
     if (regular) *m = MissingFriction(p, which);
+    if (!*m && !*converged && p->parts > 1) PetscCall(Relax(p, m, which, converged));
     if (*m || *converged || p->plain || (p->parts == 1 && (p->searches || !regular)))
       PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(ChangeWay(p));
