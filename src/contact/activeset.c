@@ -5,9 +5,6 @@
    Sets that have not converged by then repeat themselves. */
 #define ACTIVE_SET_MAX_SETS 30
 
-/* Rounding of a pressure, as a part of it. */
-#define ACTIVE_SET_ROUND_OFF 1e-12
-
 /* With friction sets that repeat themselves are left for relaxation: so many rounds of so many sweeps, after each of
    which this number of sets is tried. */
 #define ACTIVE_SET_RELAX_ROUNDS 4
@@ -19,11 +16,6 @@
 
 /* A slope of the energy is zero if it is this part of that where the search begins. */
 #define ACTIVE_SET_SLOPE 1e-9
-
-/* What friction's law says of a traction at the end may differ from what residual and tangent do by this part of the
-   largest traction that any term can bear. Newton's method takes such differences in its stride, and columns for all
-   terms whose direction of slip turns a little would cost more than they save. */
-#define ACTIVE_SET_FRICTION 0.01
 
 /* Slip of a term along a tangent at the end, elastic slip where the step begins included. */
 static PetscReal EndSlip(const ActiveSet p, PetscInt i, PetscInt a)
@@ -163,64 +155,6 @@ PetscErrorCode ActiveSetAddColumns(ActiveSet p, PetscInt m, const PetscInt *whic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Residual and tangent give a term a pressure that is linear in its travel. The difference between this pressure and
-   that of the law is start + rate * travel. Both numbers are zero where residual and tangent treat the term as the law
-   does. */
-static void Excess(const ActiveSetTerm *term, PetscBool pressed, PetscReal *start, PetscReal *rate)
-{
-  *start = term->pressure + (pressed ? term->penalty * term->opening : 0);
-  *rate  = (pressed ? term->penalty : 0) - term->stiffness;
-  if (PetscAbsReal(*start) <= ACTIVE_SET_ROUND_OFF * PetscAbsReal(term->pressure)) *start = 0;
-}
-
-/* What residual and tangent make of a component at the end, less what the laws say of it, and the derivatives of this
-   excess by the travel of the parts of its term. */
-PetscReal ActiveSetExcess(ActiveSet p, PetscInt component, PetscReal by[ACTIVE_SET_PARTS])
-{
-  const PetscInt           i = component % p->n, part = component / p->n, a = part - 1;
-  const ActiveSetTerm     *term     = &p->terms[i];
-  const ActiveSetFriction *friction = &term->friction;
-  FrictionInput            in       = friction->law;
-  FrictionTraction         out;
-  PetscReal                excess, start, rate;
-
-  for (int l = 0; l < ACTIVE_SET_PARTS; l++) by[l] = 0;
-  if (!part) {
-    Excess(term, p->pressed[i], &start, &rate);
-    by[0] = rate;
-    return start + rate * p->end[i];
-  }
-  if (in.stiffness == 0 || p->plain) return 0;
-  excess = friction->traction[a] + friction->by_gap[a] * p->end[i];
-  by[0]  = friction->by_gap[a];
-  for (PetscInt l = 1; l < p->parts; l++) {
-    excess += friction->by_slip[a][l - 1] * p->end[l * p->n + i];
-    by[l] = friction->by_slip[a][l - 1];
-    in.slip[l - 1] += p->end[l * p->n + i];
-  }
-  if (!p->pressed[i]) return excess;
-  in.pressure = -term->penalty * (term->opening + p->end[i]);
-  in.rate     = term->penalty;
-  in.state    = p->sticks[i] ? FRICTION_STICKS : FRICTION_DECIDES;
-  FrictionEvaluate(&in, &out);
-  by[0] -= out.by_gap[a];
-  for (PetscInt l = 1; l < p->parts; l++) by[l] -= out.by_slip[a][l - 1];
-  return excess - out.traction[a];
-}
-
-/* Largest traction that is no matter to friction. */
-PetscReal ActiveSetNegligible(ActiveSet p)
-{
-  PetscReal most = 0;
-
-  for (PetscInt i = 0; i < p->n && p->parts > 1; i++) {
-    const PetscReal pressure = -p->terms[i].penalty * (p->terms[i].opening + p->end[i]);
-
-    if (p->pressed[i]) most = PetscMax(most, FrictionBound(&p->terms[i].friction.law, pressure));
-  }
-  return ACTIVE_SET_FRICTION * most;
-}
-
 /* Terms of the set at hand that need a column and have none. */
 static PetscInt Missing(ActiveSet p, PetscInt *which)
 {
@@ -229,7 +163,7 @@ static PetscInt Missing(ActiveSet p, PetscInt *which)
   for (PetscInt i = 0; i < p->n; i++) {
     PetscReal start, rate;
 
-    Excess(&p->terms[i], p->pressed[i], &start, &rate);
+    ActiveSetPressureExcess(&p->terms[i], p->pressed[i], &start, &rate);
     if (p->column[i] < 0 && (start != 0 || rate != 0)) which[m++] = i;
   }
   return m;
@@ -369,7 +303,7 @@ static PetscReal Slope(const ActiveSet p, const PetscReal *closing, PetscReal pa
     const PetscReal end = p->end[i] - part * closing[i];
     const PetscInt  j   = p->column[i];
 
-    Excess(&p->terms[i], (PetscBool)(p->terms[i].opening + end < 0), &start, &rate);
+    ActiveSetPressureExcess(&p->terms[i], (PetscBool)(p->terms[i].opening + end < 0), &start, &rate);
     slope += p->terms[i].area * closing[i] * ((j < 0 ? 0 : p->excess[j] + part * p->change[j]) - start - rate * end);
   }
   return slope;

@@ -18,7 +18,8 @@ struct _n_Pressing {
   PetscBool      plain;        /* friction stays as residual and tangent have it */
 };
 
-/* activeset.c */
+/* activesetlaw.c */
+void      ActiveSetPressureExcess(const ActiveSetTerm *, PetscBool pressed, PetscReal *start, PetscReal *rate);
 PetscReal ActiveSetExcess(ActiveSet, PetscInt component, PetscReal by[ACTIVE_SET_PARTS]);
 PetscReal ActiveSetNegligible(ActiveSet);
 /* activesetrelax.c */
