@@ -1,39 +1,21 @@
 /* Which contact terms press at the end of a linear step: Newton's method on the step's own contact problem. */
-#include "contact/activeset.h"
+#include "activesetimpl.h"
 
 /* Most active sets that are tried with the columns that are known. Each set follows from the gaps of the one before.
    Sets that have not converged by then repeat themselves. */
 #define ACTIVE_SET_MAX_SETS 30
 
+/* With friction sets that repeat themselves are left for relaxation: so many rounds of so many sweeps, after each of
+   which this number of sets is tried. */
+#define ACTIVE_SET_RELAX_ROUNDS 4
+#define ACTIVE_SET_RELAX_SWEEPS 200
+#define ACTIVE_SET_RELAX_SETS   10
+
 /* Most steps of the search that follows then. Each lowers the energy, and a set does not come twice. */
 #define ACTIVE_SET_MAX_SEARCHES 100
 
-/* Rounding of a pressure, as a part of it. */
-#define ACTIVE_SET_ROUND_OFF 1e-12
-
 /* A slope of the energy is zero if it is this part of that where the search begins. */
 #define ACTIVE_SET_SLOPE 1e-9
-
-/* What friction's law says of a traction at the end may differ from what residual and tangent do by this part of the
-   largest traction that any term can bear. Newton's method takes such differences in its stride, and columns for all
-   terms whose direction of slip turns a little would cost more than they save. */
-#define ACTIVE_SET_FRICTION 0.01
-
-struct _n_Pressing {
-  PetscInt       n, parts, m, most;
-  ActiveSetTerm *terms;
-  PetscReal     *travel, *end; /* parts*n; end: with the excess at hand */
-  PetscBool     *pressed;      /* n: the set at hand */
-  PetscInt      *column;       /* parts*n; -1: none */
-  PetscInt      *term;         /* component of each column */
-  PetscReal     *G, *excess;   /* m*parts*n, m */
-  PetscReal     *change;       /* m: of the excess, by the last iteration */
-  PetscBool      searches;     /* sets have repeated themselves: each step ends where the energy is least along it */
-  PetscBool     *slipped;      /* n: the term slipped where friction was looked at last */
-  PetscBool     *sticks;       /* n: its slip has turned round since, so that it is to stick in the next set */
-  PetscReal     *slip;         /* 2*n: its slip there (length) */
-  PetscBool      plain;        /* friction stays as residual and tangent have it */
-};
 
 /* Slip of a term along a tangent at the end, elastic slip where the step begins included. */
 static PetscReal EndSlip(const ActiveSet p, PetscInt i, PetscInt a)
@@ -173,64 +155,6 @@ PetscErrorCode ActiveSetAddColumns(ActiveSet p, PetscInt m, const PetscInt *whic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Residual and tangent give a term a pressure that is linear in its travel. The difference between this pressure and
-   that of the law is start + rate * travel. Both numbers are zero where residual and tangent treat the term as the law
-   does. */
-static void Excess(const ActiveSetTerm *term, PetscBool pressed, PetscReal *start, PetscReal *rate)
-{
-  *start = term->pressure + (pressed ? term->penalty * term->opening : 0);
-  *rate  = (pressed ? term->penalty : 0) - term->stiffness;
-  if (PetscAbsReal(*start) <= ACTIVE_SET_ROUND_OFF * PetscAbsReal(term->pressure)) *start = 0;
-}
-
-/* What residual and tangent make of a component at the end, less what the laws say of it, and the derivatives of this
-   excess by the travel of the parts of its term. */
-static PetscReal ComponentExcess(ActiveSet p, PetscInt component, PetscReal by[ACTIVE_SET_PARTS])
-{
-  const PetscInt           i = component % p->n, part = component / p->n, a = part - 1;
-  const ActiveSetTerm     *term     = &p->terms[i];
-  const ActiveSetFriction *friction = &term->friction;
-  FrictionInput            in       = friction->law;
-  FrictionTraction         out;
-  PetscReal                excess, start, rate;
-
-  for (int l = 0; l < ACTIVE_SET_PARTS; l++) by[l] = 0;
-  if (!part) {
-    Excess(term, p->pressed[i], &start, &rate);
-    by[0] = rate;
-    return start + rate * p->end[i];
-  }
-  if (in.stiffness == 0 || p->plain) return 0;
-  excess = friction->traction[a] + friction->by_gap[a] * p->end[i];
-  by[0]  = friction->by_gap[a];
-  for (PetscInt l = 1; l < p->parts; l++) {
-    excess += friction->by_slip[a][l - 1] * p->end[l * p->n + i];
-    by[l] = friction->by_slip[a][l - 1];
-    in.slip[l - 1] += p->end[l * p->n + i];
-  }
-  if (!p->pressed[i]) return excess;
-  in.pressure = -term->penalty * (term->opening + p->end[i]);
-  in.rate     = term->penalty;
-  in.state    = p->sticks[i] ? FRICTION_STICKS : FRICTION_DECIDES;
-  FrictionEvaluate(&in, &out);
-  by[0] -= out.by_gap[a];
-  for (PetscInt l = 1; l < p->parts; l++) by[l] -= out.by_slip[a][l - 1];
-  return excess - out.traction[a];
-}
-
-/* Largest traction that is no matter to friction. */
-static PetscReal Negligible(ActiveSet p)
-{
-  PetscReal most = 0;
-
-  for (PetscInt i = 0; i < p->n && p->parts > 1; i++) {
-    const PetscReal pressure = -p->terms[i].penalty * (p->terms[i].opening + p->end[i]);
-
-    if (p->pressed[i]) most = PetscMax(most, FrictionBound(&p->terms[i].friction.law, pressure));
-  }
-  return ACTIVE_SET_FRICTION * most;
-}
-
 /* Terms of the set at hand that need a column and have none. */
 static PetscInt Missing(ActiveSet p, PetscInt *which)
 {
@@ -239,7 +163,7 @@ static PetscInt Missing(ActiveSet p, PetscInt *which)
   for (PetscInt i = 0; i < p->n; i++) {
     PetscReal start, rate;
 
-    Excess(&p->terms[i], p->pressed[i], &start, &rate);
+    ActiveSetPressureExcess(&p->terms[i], p->pressed[i], &start, &rate);
     if (p->column[i] < 0 && (start != 0 || rate != 0)) which[m++] = i;
   }
   return m;
@@ -249,7 +173,7 @@ static PetscInt Missing(ActiveSet p, PetscInt *which)
    many, none is asked for. */
 static PetscInt MissingFriction(ActiveSet p, PetscInt *which)
 {
-  const PetscReal negligible = Negligible(p);
+  const PetscReal negligible = ActiveSetNegligible(p);
   PetscReal       by[ACTIVE_SET_PARTS];
   PetscInt        m = 0;
 
@@ -258,7 +182,7 @@ static PetscInt MissingFriction(ActiveSet p, PetscInt *which)
 
     for (PetscInt part = 1; part < p->parts; part++)
       matters = (PetscBool)(matters || (p->column[part * p->n + i] < 0 &&
-                                        PetscAbsReal(ComponentExcess(p, part * p->n + i, by)) > negligible));
+                                        PetscAbsReal(ActiveSetExcess(p, part * p->n + i, by)) > negligible));
     for (PetscInt part = 1; part < p->parts && matters; part++)
       if (p->column[part * p->n + i] < 0) which[m++] = part * p->n + i;
   }
@@ -317,7 +241,7 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
     PetscReal *d    = &by[ACTIVE_SET_PARTS * k];
     PetscBool  free = PETSC_FALSE;
 
-    p->change[j] = ComponentExcess(p, p->term[j], d) - p->excess[j];
+    p->change[j] = ActiveSetExcess(p, p->term[j], d) - p->excess[j];
     for (int part = 0; part < ACTIVE_SET_PARTS; part++) free = (PetscBool)(free || d[part] != 0);
     if (free) unknown[k++] = j;
   }
@@ -362,9 +286,9 @@ static PetscBool Follow(ActiveSet p)
     p->pressed[i] = pressed;
   }
   LookAtSlips(p);
-  negligible = Negligible(p);
+  negligible = ActiveSetNegligible(p);
   for (PetscInt j = 0; j < p->m; j++)
-    if (p->term[j] >= p->n && PetscAbsReal(ComponentExcess(p, p->term[j], by) - p->excess[j]) > negligible)
+    if (p->term[j] >= p->n && PetscAbsReal(ActiveSetExcess(p, p->term[j], by) - p->excess[j]) > negligible)
       changed = PETSC_TRUE;
   return changed;
 }
@@ -379,7 +303,7 @@ static PetscReal Slope(const ActiveSet p, const PetscReal *closing, PetscReal pa
     const PetscReal end = p->end[i] - part * closing[i];
     const PetscInt  j   = p->column[i];
 
-    Excess(&p->terms[i], (PetscBool)(p->terms[i].opening + end < 0), &start, &rate);
+    ActiveSetPressureExcess(&p->terms[i], (PetscBool)(p->terms[i].opening + end < 0), &start, &rate);
     slope += p->terms[i].area * closing[i] * ((j < 0 ? 0 : p->excess[j] + part * p->change[j]) - start - rate * end);
   }
   return slope;
@@ -452,6 +376,30 @@ static PetscErrorCode FollowSets(ActiveSet p, PetscInt most, PetscInt *m, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* After sets with friction that have repeated themselves: relaxes the terms, and follows the sets from where that leads
+   to. *converged as ActiveSetSolve() says. */
+static PetscErrorCode Relax(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool *converged)
+{
+  PetscBool settled = PETSC_FALSE, regular, changed;
+
+  PetscFunctionBeginUser;
+  for (PetscInt round = 0; round < ACTIVE_SET_RELAX_ROUNDS && !*m && !*converged; round++) {
+    PetscCall(ActiveSetRelax(p, ACTIVE_SET_RELAX_SWEEPS, &settled));
+    LookAtSlips(p);
+    *m = Missing(p, which);
+    if (!*m) *m = MissingFriction(p, which);
+    if (*m) break;
+    if (settled) {
+      *converged = PETSC_TRUE;
+      break;
+    }
+    PetscCall(FollowSets(p, ACTIVE_SET_RELAX_SETS, m, which, &regular, &changed));
+    *converged = (PetscBool)(!*m && regular && !changed);
+    for (PetscInt i = 0; i < p->n; i++) p->sticks[i] = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* After sets that have repeated themselves: searches from where they have led to; with friction begins again with the
    friction that residual and tangent have. */
 static PetscErrorCode ChangeWay(ActiveSet p)
@@ -504,6 +452,7 @@ PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBo
     if (*m || !p->m) PetscFunctionReturn(PETSC_SUCCESS);
     for (PetscInt i = 0; i < p->n && p->parts > 1; i++) p->sticks[i] = PETSC_FALSE;
     if (regular) *m = MissingFriction(p, which);
+    if (!*m && !*converged && p->parts > 1) PetscCall(Relax(p, m, which, converged));
     if (*m || *converged || p->plain || (p->parts == 1 && (p->searches || !regular)))
       PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(ChangeWay(p));

@@ -594,14 +594,13 @@ PetscErrorCode FrictionAnchorLate(ContactPair *pair, PetscReal t, PetscBool *mad
 }
 
 /* Evaluates the law of a term. In a linear step what sticks goes on sticking and what slips goes on slipping, as what
-   is in contact stays so. A term that only touches sticks, because it may be what holds a body. */
+   is in contact stays so. A term that only touches sticks, because it may be what holds a body; it presses nothing, and
+   the law would take it for one that has not touched yet. */
 static void TermEvaluate(const ContactPair *pair, PetscInt c, FrictionInput *in, FrictionTraction *out)
 {
-  const ContactState *now = &pair->now;
-
   in->state = FRICTION_DECIDES;
-  if (pair->holding) in->state = now->slips[c] ? FRICTION_SLIPS : FRICTION_STICKS;
-  if (pair->holding && now->status[c] == CONTACT_OPEN) in->began = 0;
+  if (pair->holding) in->state = pair->now.slips[c] ? FRICTION_SLIPS : FRICTION_STICKS;
+  if (pair->holding && !(in->pressure > 0)) in->began = 0;
   FrictionEvaluate(in, out);
 }
 

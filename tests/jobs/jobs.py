@@ -185,6 +185,20 @@ JOBS = [
     Job("wedge_in_slot", "wedge pressed into a slot and left there", [
         Answer("apart", 0.1492, 0.5, "limit"),
     ], steps=12),
+    Job("rope_on_bollard", "rope pulled over a bollard, mu 0.8", [
+        Answer("pull", -16.612, 0.02, "limit"),
+        Answer("torque", 311.2, 0.03, "limit"),
+    ], steps=12),
+    Job("shaft_pressed", "shaft pressed into a hub", [
+        Answer("push", -28056, 0.6, "limit"),
+    ], steps=10, picture=["--mirror", "x"]),
+    Job("clip_on_rod", "clip pushed over a rod and pulled back", [
+        Answer("push", 2.098, 2.1, "limit"),  # it varies by that with the mesh
+    ], steps=12),
+    Job("cam_follower", "cam lifts a follower", [
+        Answer("lift", 3.344, 0.06, "limit"),
+        Answer("torque", -161.8, 0.05, "limit"),
+    ], steps=14),
     # Steel that yields
     Job("autofrettage", "hollow ball yields under pressure and is released", [
         Answer("grown", 0.00220375, 0.001, "Hill"),

@@ -1,0 +1,26 @@
+/* What the parts of an active set share: its data, and what the laws say of a component. */
+#pragma once
+#include "contact/activeset.h"
+
+struct _n_Pressing {
+  PetscInt       n, parts, m, most;
+  ActiveSetTerm *terms;
+  PetscReal     *travel, *end; /* parts*n; end: with the excess at hand */
+  PetscBool     *pressed;      /* n: the set at hand */
+  PetscInt      *column;       /* parts*n; -1: none */
+  PetscInt      *term;         /* component of each column */
+  PetscReal     *G, *excess;   /* m*parts*n, m */
+  PetscReal     *change;       /* m: of the excess, by the last iteration */
+  PetscBool      searches;     /* sets have repeated themselves: each step ends where the energy is least along it */
+  PetscBool     *slipped;      /* n: the term slipped where friction was looked at last */
+  PetscBool     *sticks;       /* n: its slip has turned round since, so that it is to stick in the next set */
+  PetscReal     *slip;         /* 2*n: its slip there (length) */
+  PetscBool      plain;        /* friction stays as residual and tangent have it */
+};
+
+/* activesetlaw.c */
+void      ActiveSetPressureExcess(const ActiveSetTerm *, PetscBool pressed, PetscReal *start, PetscReal *rate);
+PetscReal ActiveSetExcess(ActiveSet, PetscInt component, PetscReal by[ACTIVE_SET_PARTS]);
+PetscReal ActiveSetNegligible(ActiveSet);
+/* activesetrelax.c */
+PetscErrorCode ActiveSetRelax(ActiveSet, PetscInt sweeps, PetscBool *settled);
