@@ -631,6 +631,34 @@ LANES_INLINE double HeightAt(const int m, const int degree, const int terms, con
 }
 
 /*@
+  FitDistance2 - computes rho^2 of a point.
+
+  Not collective
+
+  Input Parameters:
++ dim    - 2 or 3
+. degree - of the fit
+. metric - as in FitProblem
+. bend   - as in FitProblem; read by a fit in bent coordinates only
+- y      - tangent coordinates relative to the slave point, y[2] (length); in 2D y[1] is the distance along the hoop
+
+  Note:
+  Plain C.
+@*/
+double FitDistance2(int dim, int degree, const double (*metric)[2], const FitBend *bend, const double *y)
+{
+  double at[3] = {0}, x[2] = {y[0], y[1]};
+
+  if (dim == 2) return metric[0][0] * (y[0] * y[0] + y[1] * y[1]);
+  if (IsBent(degree)) {
+    BendAt(bend, bend->along[0] * y[0] + bend->along[1] * y[1], at);
+    x[0] += bend->along[1] * at[0];
+    x[1] -= bend->along[0] * at[0];
+  }
+  return metric[0][0] * x[0] * x[0] + (2 * metric[0][1] * x[0] + metric[1][1] * x[1]) * x[1];
+}
+
+/*@
   FitSurfaceHeight - computes the height of the fitted surface over the slave point's tangent plane (length).
 
   Not collective

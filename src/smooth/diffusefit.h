@@ -152,5 +152,6 @@ int    FitPointsWanted(int dim, int degree);
 long   FitWorkspace(int dim, int degree, int n);
 int    DiffuseFitEvaluate(const FitProblem *, FitWant, double *workspace, FitResult *);
 int    DiffuseFitEvaluateBatch(int n, const FitProblem *, FitWant, double *workspace, FitResult *);
+double FitDistance2(int dim, int degree, const double (*metric)[2], const FitBend *, const double *y);
 double FitSurfaceHeight(const FitSurface *, const double *y, double *gradient);
 int    FitShape(const FitProblem *, int n, const double *y, const double *factor, double *workspace, double *shape);
