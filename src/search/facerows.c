@@ -274,8 +274,8 @@ static void Spread(FaceRows rows, PetscInt start, PetscInt f, PetscInt *tail)
 /* Walks over the faces around a foot, one ring of links after the other, so that the ways to a face do not depend on
    the order of the faces. The stamp of a face is negative until its ring is complete. radius: of the support across and
    along the row (length). */
-static void Walk(FaceRows rows, PetscInt start, const PetscReal foot[3], const PetscReal *along, const PetscReal *across,
-                 const PetscReal radius[2], RowSums *sums)
+static void Walk(FaceRows rows, PetscInt start, const PetscReal foot[3], const PetscReal *along,
+                 const PetscReal *across, const PetscReal radius[2], RowSums *sums)
 {
   PetscInt head = 0, end = 1, tail = 1;
 

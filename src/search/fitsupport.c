@@ -320,10 +320,9 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
                           .hoop       = fit->hoop};
   FootSpacing(fit, at->facet, at->xi, covariance, &area);
   FitFrameFromNormal(dim, settings->global_frame ? fit->plane : at->outward, problem->frame);
-  if (fit->rows)
-    PetscCall(FaceRowsFollow(fit->rows, at->facet, at->foot, problem->frame[2], support, &row));
-  /* The first pass sees the points along the facet's normal, the second one along the normal of their own plane and with
-     the spacing around them. One is enough where neither is asked for, or where a row of long faces knows both. */
+  if (fit->rows) PetscCall(FaceRowsFollow(fit->rows, at->facet, at->foot, problem->frame[2], support, &row));
+  /* The first pass sees the points along the facet's normal, the second one along the normal of their own plane and
+     with the spacing around them. One is enough where neither is asked for, or where a row of long faces knows both. */
   passes = row.share == 1 || (upright && !settings->integral) ? 1 : 2;
   for (int pass = 1; pass <= passes; pass++) {
     if (pass == passes && row.share > 0) FollowRow(&row, at, problem, covariance, &area);

@@ -279,8 +279,8 @@ LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, c
   return 1;
 }
 
-/* Makes scaled coordinates from tangent coordinates y that bend. scale holds their derivatives by y, and second[k] d d^T
-   with d = `along` is the second derivative of coordinate k. */
+/* Makes scaled coordinates from tangent coordinates y that bend. scale holds their derivatives by y. The second
+   derivative of coordinate k is second[k] d d^T with d = `along`. */
 LANES_INLINE void BendCoordinates(const FitSurface *surface, const double *y, double eta[2], double (*scale)[2],
                                   double second[2])
 {

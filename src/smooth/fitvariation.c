@@ -120,8 +120,8 @@ typedef struct {
 } FitBlock;
 
 /* J^ = A p^ + B Dp^, and C likewise. The coefficients are in space already. */
-LANES_INLINE void PointFactors(const int dim, const int degree, const int terms, const FitArrays *a, const FitState *s, FitBundle *b,
-                               int g, FitBlock *out)
+LANES_INLINE void PointFactors(const int dim, const int degree, const int terms, const FitArrays *a, const FitState *s,
+                               FitBundle *b, int g, FitBlock *out)
 {
   const int   m  = dim - 1;
   const Lanes we = b->w * b->e, wl = b->w * b->l;
