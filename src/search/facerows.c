@@ -1,4 +1,5 @@
-/* Follows rows of long faces around a foot: a walk from face to face, and a polynomial for how far the rows bend. */
+/* Follows rows of long faces around a foot: a walk from face to face, and the direction of the row at the foot from a
+   polynomial through the places of the faces. */
 #include "facerows.h"
 #include "base/smoothstep.h"
 
@@ -13,11 +14,11 @@
 #define ROWS_TURN 0.7
 /* Cosine of the largest angle between normals, as for lists of points. */
 #define ROWS_FLANK 0.5
-/* What is added to the normal equations of the bend, over their sum of weights. It decides only where a row has too few
-   faces for all powers, as at the end of a surface; else it changes the bend by less than a thousandth. */
+/* What is added to the normal equations of the row, over their sum of weights. It decides only where a row has too few
+   faces for all powers, as at the end of a surface; else it changes the row by less than a thousandth. */
 #define ROWS_RIDGE 1e-6
 
-enum { POWERS = 5 /* of the bend: 1, t, ..., t^4 */ };
+enum { POWERS = 5 /* of the row: 1, t, ..., t^4 */ };
 
 /* A face with its moments, in the present position. */
 typedef struct {
@@ -44,7 +45,7 @@ struct _n_FaceRows {
 /* Sums over the faces around a foot. */
 typedef struct {
   PetscReal weight, normal[3], length2, width2, area;
-  PetscReal A[POWERS][POWERS], b[POWERS]; /* normal equations of the bend */
+  PetscReal A[POWERS][POWERS], b[POWERS]; /* normal equations of the row */
 } RowSums;
 
 static PetscReal Dot(const PetscReal *a, const PetscReal *b)
@@ -234,8 +235,8 @@ static void AddFace(FaceRows rows, PetscInt f, PetscReal rho2, const PetscReal f
   }
 }
 
-/* Solves the normal equations for the bend by Gauss' elimination; they are positive definite by the ridge. */
-static void SolveBend(RowSums *sums, PetscReal c[POWERS])
+/* Solves the normal equations for the row by Gauss' elimination; they are positive definite by the ridge. */
+static void SolveRow(RowSums *sums, PetscReal c[POWERS])
 {
   for (int k = 1; k < POWERS; k++) sums->A[k][k] += ROWS_RIDGE * sums->weight;
   for (int k = 0; k < POWERS; k++) {
@@ -305,7 +306,7 @@ static void Walk(FaceRows rows, PetscInt start, const PetscReal foot[3], const P
 + rows    - the object
 . start   - face of the foot
 . foot    - the foot (length)
-. upright - unit normal of the tangent plane in which the bend is measured
+. upright - unit normal of the tangent plane in which the row's direction is measured
 - support - radius of the support in spacings
 
   Output Parameter:
@@ -343,9 +344,8 @@ PetscErrorCode FaceRowsFollow(FaceRows rows, PetscInt start, const PetscReal foo
     SmoothStep((PetscSqrtReal(row->length2 / row->width2) - ROWS_FROM) / (PetscReal)(ROWS_WHOLLY - ROWS_FROM));
   length = PetscSqrtReal(Dot(sums.normal, sums.normal));
   for (int d = 0; d < 3; d++) row->normal[d] = sums.normal[d] / length;
-  SolveBend(&sums, c);
+  SolveRow(&sums, c);
   for (int d = 0; d < 3; d++) row->along[d] += c[1] / radius[1] * across[d];
   Flatten(upright, row->along);
-  for (int k = 0; k < 3; k++) row->h[k] = row->share * c[k + 2] / PetscPowRealInt(radius[1], k + 2);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
