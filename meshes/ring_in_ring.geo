@@ -3,6 +3,7 @@
 // on each face. Edges around are arcs, so that second-order nodes lie on the rings too; in 3D with nodes moved one by one they are straight: first order.
 DefineConstant[
   n_inner = {32, Name "elements around the inner ring"}, n_outer = {40, Name "elements around the outer ring"},
+  stretch = {1, Name "length of the faces along z over that around"},
   n_len = {0, Name "elements along z, coarser ring; 0: cross-section only"},
   jitter = {0, Name "largest move of an interface node, in face sizes along each direction"}, seed = {1, Name "of the moves"},
   rows = {0, Name "1: in 3D the nodes of a row move together, around and along: faces of second order stay on the rings"},
@@ -12,7 +13,7 @@ DefineConstant[
 r_bore = 10; r = 20; r_rim = 30;
 n_around[] = {n_inner, n_outer};
 n_coarse = Min(n_inner, n_outer);
-len = n_len * Pi / 2 * r / n_coarse; // faces are square, and elements nearly so
+len = stretch * n_len * Pi / 2 * r / n_coarse; // without a stretch faces are square, and elements nearly so
 cut_x[] = {};
 cut_y[] = {};
 cut_z[] = {};

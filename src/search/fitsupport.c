@@ -134,6 +134,8 @@ PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const Sea
                             lists->point_hoop};
   for (PetscInt i = 0; i < n && first; i++) FaceSpacing(fit, i);
   PetscCall(NeighbourhoodsCreate(&fit->view, &fit->neighbourhoods));
+  if (lists->dim == 3 && !s->fit->global_frame)
+    PetscCall(FaceRowsCreate(&fit->view, fit->neighbourhoods, &fit->rows));
   PetscCall(PetscMalloc7(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier,
                          FIT_MAX_POINTS, &fit->taper,
                          FitWorkspace(lists->dim, FitDegreeCode(s->fit, s->fit->degree), FIT_MAX_POINTS),
@@ -155,6 +157,7 @@ PetscErrorCode FitSupportDestroy(FitSupport *fit)
   PetscReal *x      = (PetscReal *)fit->view.x;
 
   PetscFunctionBeginUser;
+  PetscCall(FaceRowsDestroy(&fit->rows));
   PetscCall(NeighbourhoodsDestroy(&fit->neighbourhoods));
   if (fit->view.first) PetscCall(PetscFree2(fit->view.first, fit->view.count));
   PetscCall(PetscFree5(fit->normals, fit->reference, fit->geometry, facets, x));
@@ -251,6 +254,28 @@ static inline PetscInt TakePoints(const int dim, FitSupport *fit, const FitFoot 
   return inside;
 }
 
+/* Makes spacing and frame of a fit those of a row of long faces, by its share. The frame turns from the plane of the
+   points to the mean normal of the faces, because few points of a narrow support make no plane that holds. */
+static void FollowRow(const FaceRow *row, const FitFoot *at, double frame[3][3], double covariance[3][3], double *area)
+{
+  double normal[3], along[3], across[3], out = 0, length = 0;
+
+  for (int d = 0; d < 3; d++)
+    normal[d] = frame[2][d] + (at->upright ? 0 : row->share) * (row->normal[d] - frame[2][d]);
+  FitFrameFromNormal(3, normal, frame);
+  for (int d = 0; d < 3; d++) out += frame[2][d] * row->along[d];
+  for (int d = 0; d < 3; d++) along[d] = row->along[d] - out * frame[2][d];
+  for (int d = 0; d < 3; d++) length += along[d] * along[d];
+  for (int d = 0; d < 3; d++) along[d] /= sqrt(length);
+  for (int d = 0; d < 3; d++)
+    across[d] = frame[2][(d + 1) % 3] * along[(d + 2) % 3] - frame[2][(d + 2) % 3] * along[(d + 1) % 3];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      covariance[i][j] += row->share * (row->length2 * along[i] * along[j] + row->width2 * across[i] * across[j] -
+                                        covariance[i][j]);
+  *area += row->share * (row->area - *area);
+}
+
 /* Tries one rung of the ladder at a foot and writes points, frame and metric into fit and problem. *holds is true if
    every guard holds. Quadrature points come in clusters, so that their number tells nothing; the pivot is the guard
    for them. */
@@ -262,9 +287,12 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
             degree        = FitDegreeCode(settings, lower ? PetscMin(lower, settings->degree) : settings->degree);
   const int        wanted = settings->integral ? FitTerms(dim, degree) : FitPointsWanted(dim, degree);
   double           covariance[3][3], area;
-  const PetscReal *rho2;
+  const PetscReal *rho2, support = settings->support * Ladder[rung].widen;
+  const PetscBool  upright = (PetscBool)(settings->global_frame || at->upright);
+  FaceRow          row     = {.share = 0};
   PetscReal        space[9];
   PetscInt         n, found, inside;
+  int              passes;
 
   PetscFunctionBeginUser;
   *holds   = PETSC_FALSE;
@@ -277,22 +305,22 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
                           .hoop       = fit->hoop};
   FootSpacing(fit, at->facet, at->xi, covariance, &area);
   FitFrameFromNormal(dim, settings->global_frame ? fit->plane : at->outward, problem->frame);
-  /* The first pass sees the points along the facet's normal, the second one along the normal of their own plane. */
-  for (int pass = 0; pass < 2; pass++) {
-    FitMetricFromCovariance(dim, problem->frame, covariance, area, settings->support * Ladder[rung].widen,
-                            problem->metric);
+  if (fit->rows) PetscCall(FaceRowsFollow(fit->rows, at->facet, at->foot, problem->frame[2], support, &row));
+  /* The first pass sees the points along the facet's normal, the second one along the normal of their own plane and
+     with the spacing around them. One is enough where neither is asked for, or where a row of long faces knows both. */
+  passes = row.share == 1 || (upright && !settings->integral) ? 1 : 2;
+  for (int pass = 1; pass <= passes; pass++) {
+    if (pass == passes && row.share > 0) FollowRow(&row, at, problem->frame, covariance, &area);
+    FitMetricFromCovariance(dim, problem->frame, covariance, area, support, problem->metric);
     MetricInSpace(dim, problem->frame, problem->metric, space);
     PetscCall(NeighbourhoodGather(fit->neighbourhoods, at->facet, at->foot, problem->frame[dim - 1], space,
                                   SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points, &rho2, &n, &found));
     inside     = dim == 3 ? TakePoints(3, fit, at, n, rho2) : TakePoints(2, fit, at, n, rho2);
     problem->n = (int)n;
     if (inside < wanted) PetscFunctionReturn(PETSC_SUCCESS);
-    if (settings->integral && pass == 0) WindowSpacing(fit, n, covariance, &area);
-    if (settings->global_frame || at->upright) {
-      if (settings->integral) continue;
-      break;
-    }
-    if (pass == 0 && !FitFrame(dim, problem->n, fit->x, fit->taper, at->outward, problem->frame))
+    if (pass == passes) break;
+    if (settings->integral) WindowSpacing(fit, n, covariance, &area);
+    if (!upright && !FitFrame(dim, problem->n, fit->x, fit->taper, at->outward, problem->frame) && row.share == 0)
       PetscFunctionReturn(PETSC_SUCCESS);
   }
   *holds =

@@ -172,6 +172,27 @@ PetscBool NeighbourhoodsMeetSharply(Neighbourhoods nb, PetscInt f, PetscInt g)
   return PETSC_TRUE;
 }
 
+/*@
+  NeighbourhoodsLinks - gives the facets across those edges of a facet that are not sharp.
+
+  Not collective
+
+  Input Parameters:
++ nb - the object
+- f  - the facet
+
+  Output Parameter:
+. links - their numbers
+
+  Note:
+  Returns how many there are.
+@*/
+PetscInt NeighbourhoodsLinks(Neighbourhoods nb, PetscInt f, const PetscInt **links)
+{
+  *links = &nb->link[nb->link_ptr[f]];
+  return nb->link_ptr[f + 1] - nb->link_ptr[f];
+}
+
 /* Squared distance of point p from x0 in the metric. */
 static inline PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3], const PetscReal metric[9])
 {

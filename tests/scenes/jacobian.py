@@ -76,6 +76,8 @@ for form, n_arc in (("node_to_surface", 10), ("surface_to_surface", 16)):
     CASES[f"tube on its own mirror image, {form}"] = (
         SCENES / "mirrored_tube.yaml", [f"mesh.parameters.n_arc={n_arc}", f"contact.1.formulation={form}"])
 
+CASES["rings with long faces"] = (SCENES / "cone_rings.yaml", [])
+
 SLIPPING = ["contact.0.friction.mu=0.2"]
 STICKING = ["contact.0.friction.mu=2"]
 # A node that begins a step with a tiny opening has a share of slip (beta) that rises within that opening: too curved

@@ -7,7 +7,7 @@
    surface itself. */
 #pragma once
 #include "base/boxtree.h"
-#include "neighbourhood.h"
+#include "facerows.h"
 #include "search/search.h"
 
 /* A node whose distance to a plane of symmetry is below this fraction of the model's size lies on it and has no
@@ -95,6 +95,7 @@ typedef struct {
   NeighbourLists lists;
   SurfaceView    view;
   Neighbourhoods neighbourhoods;
+  FaceRows       rows; /* NULL in 2D and for a single reference plane */
   PetscReal     *normals, *reference;
   NodeGeometry  *geometry;
   PetscInt      *points; /* of the present slave point, with room for FIT_MAX_POINTS */

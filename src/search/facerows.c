@@ -1,0 +1,351 @@
+/* Follows rows of long faces around a foot: a walk from face to face, and the direction of the row at the foot from a
+   polynomial through the places of the faces. */
+#include "facerows.h"
+#include "base/smoothstep.h"
+
+/* Length over width of the faces at which supports begin to follow their rows, and from which on they do so wholly.
+   Right-angled triangles of equal legs have 1.7, and a support along straight axes does not miss rows of faces of 2. */
+#define ROWS_FROM 2
+#define ROWS_WHOLLY 4
+/* Faces count for a row up to this rho^2, as for lists of points. */
+#define ROWS_MARGIN 1.7
+/* Cosine of the largest angle between the longest directions of neighbours that are of one row: 45 degrees. Beyond it
+   the mesh changes its direction, and the row goes on straight. */
+#define ROWS_TURN 0.7
+/* Cosine of the largest angle between normals, as for lists of points. */
+#define ROWS_FLANK 0.5
+/* What is added to the normal equations of the row, over their sum of weights. It decides only where a row has too few
+   faces for all powers, as at the end of a surface; else it changes the row by less than a thousandth. */
+#define ROWS_RIDGE 1e-6
+
+enum { POWERS = 5 /* of the row: 1, t, ..., t^4 */ };
+
+/* A face with its moments, in the present position. */
+typedef struct {
+  PetscReal area, centre[3], covariance[3][3];
+  PetscReal along[3], length, width; /* longest direction in its plane; extents along and across it */
+  PetscBool known;
+} FaceShape;
+
+/* A face that the walk has reached: sums over the ways to it until it is visited, then their mean. */
+typedef struct {
+  PetscInt  stamp;
+  int       ways;
+  PetscReal s, t, along[3]; /* steps across and along the rows from the foot to its centre (length) */
+} FacePlace;
+
+struct _n_FaceRows {
+  const SurfaceView *view;
+  Neighbourhoods     neighbourhoods;
+  FaceShape         *shape;
+  FacePlace         *place;
+  PetscInt          *queue, stamp;
+};
+
+/* Sums over the faces around a foot. */
+typedef struct {
+  PetscReal weight, normal[3], length2, width2, area;
+  PetscReal A[POWERS][POWERS], b[POWERS]; /* normal equations of the row */
+} RowSums;
+
+static PetscReal Dot(const PetscReal *a, const PetscReal *b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void Cross(const PetscReal *a, const PetscReal *b, PetscReal *c)
+{
+  for (int d = 0; d < 3; d++) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+}
+
+/* Makes a unit vector of the part of v that is square to the unit vector n. */
+static void Flatten(const PetscReal *n, PetscReal *v)
+{
+  const PetscReal out = Dot(n, v);
+  PetscReal       length;
+
+  for (int d = 0; d < 3; d++) v[d] -= out * n[d];
+  length = PetscSqrtReal(Dot(v, v));
+  for (int d = 0; d < 3 && length > 0; d++) v[d] /= length;
+}
+
+/* Root of a face's second moment along a direction. */
+static PetscReal Extent(const FaceShape *shape, const PetscReal *direction)
+{
+  PetscReal sum = 0;
+
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) sum += direction[i] * shape->covariance[i][j] * direction[j];
+  return PetscSqrtReal(PetscMax(sum, 0));
+}
+
+/* Finds the longest direction of a face in its plane. */
+static void FindLongest(const PetscReal *normal, FaceShape *shape)
+{
+  PetscReal e[2][3] = {{0}}, C[2][2] = {{0}}, angle;
+  int       least   = 0;
+
+  for (int d = 1; d < 3; d++)
+    if (PetscAbsReal(normal[d]) < PetscAbsReal(normal[least])) least = d;
+  e[0][least] = 1;
+  Flatten(normal, e[0]);
+  Cross(normal, e[0], e[1]);
+  for (int a = 0; a < 2; a++)
+    for (int b = 0; b < 2; b++)
+      for (int i = 0; i < 9; i++) C[a][b] += e[a][i / 3] * shape->covariance[i / 3][i % 3] * e[b][i % 3];
+  angle = 0.5 * PetscAtan2Real(2 * C[0][1], C[0][0] - C[1][1]);
+  for (int d = 0; d < 3; d++) shape->along[d] = PetscCosReal(angle) * e[0][d] + PetscSinReal(angle) * e[1][d];
+  Cross(normal, shape->along, e[1]);
+  shape->length = Extent(shape, shape->along);
+  shape->width  = Extent(shape, e[1]);
+}
+
+/* The moments of a face, computed when they are asked for first. */
+static const FaceShape *Shape(FaceRows rows, PetscInt f)
+{
+  const SurfaceView *view  = rows->view;
+  const Facet       *facet = &view->facets[f];
+  FaceShape         *shape = &rows->shape[f];
+  const FaceRule    *rule  = FaceRuleGet(facet->type, FACE_RULE_PLAIN);
+  PetscReal          x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS], r[FACE_RULE_POINTS][3] = {{0}};
+
+  if (shape->known) return shape;
+  *shape = (FaceShape){.known = PETSC_TRUE};
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+    for (int d = 0; d < 3; d++) x[a * 3 + d] = view->x[facet->nodes[a] * 3 + d];
+  FaceRuleAreas(rule, facet->type, 3, GEOMETRY_SOLID, x, area, NULL);
+  for (int q = 0; q < rule->n; q++) {
+    shape->area += area[q];
+    for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+      for (int d = 0; d < 3; d++) r[q][d] += rule->N[q][a] * x[a * 3 + d];
+    for (int d = 0; d < 3; d++) shape->centre[d] += area[q] * r[q][d];
+  }
+  for (int d = 0; d < 3; d++) shape->centre[d] /= shape->area;
+  for (int q = 0; q < rule->n; q++)
+    for (int i = 0; i < 9; i++)
+      shape->covariance[i / 3][i % 3] += area[q] / shape->area * (r[q][i / 3] - shape->centre[i / 3]) *
+                                         (r[q][i % 3] - shape->centre[i % 3]);
+  FindLongest(&view->normals[3 * f], shape);
+  return shape;
+}
+
+/*@
+  FaceRowsCreate - prepares walks over the faces of a view.
+
+  Not collective
+
+  Input Parameters:
++ view           - the faces, in 3D; borrowed, they must outlive the object
+- neighbourhoods - their links, likewise
+
+  Output Parameter:
+. out - the object
+@*/
+PetscErrorCode FaceRowsCreate(const SurfaceView *view, Neighbourhoods neighbourhoods, FaceRows *out)
+{
+  FaceRows rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&rows));
+  rows->view           = view;
+  rows->neighbourhoods = neighbourhoods;
+  PetscCall(PetscCalloc2(view->n_facets, &rows->shape, view->n_facets, &rows->place));
+  PetscCall(PetscMalloc1(view->n_facets, &rows->queue));
+  *out = rows;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FaceRowsDestroy - frees the object.
+
+  Not collective
+
+  Input/Output Parameter:
+. rows - the object, NULL on return
+@*/
+PetscErrorCode FaceRowsDestroy(FaceRows *rows)
+{
+  PetscFunctionBeginUser;
+  if (!*rows) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree2((*rows)->shape, (*rows)->place));
+  PetscCall(PetscFree((*rows)->queue));
+  PetscCall(PetscFree(*rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the way from a face to a neighbour, which steps along the mean of their directions. */
+static void AddWay(FaceRows rows, PetscInt from, PetscInt to)
+{
+  const FacePlace *at     = &rows->place[from];
+  const FaceShape *shape  = Shape(rows, to);
+  FacePlace       *next   = &rows->place[to];
+  const PetscReal *normal = &rows->view->normals[3 * to];
+  PetscReal        along[3], across[2][3], step[3], mean[2][3];
+
+  for (int d = 0; d < 3; d++) along[d] = at->along[d];
+  Flatten(normal, along);
+  if (shape->length > ROWS_FROM * shape->width && PetscAbsReal(Dot(along, shape->along)) > ROWS_TURN) {
+    const PetscReal sign = Dot(along, shape->along) > 0 ? 1 : -1;
+
+    for (int d = 0; d < 3; d++) along[d] = sign * shape->along[d];
+  }
+  Cross(&rows->view->normals[3 * from], at->along, across[0]);
+  Cross(normal, along, across[1]);
+  for (int d = 0; d < 3; d++) {
+    step[d]    = shape->centre[d] - rows->shape[from].centre[d];
+    mean[0][d] = across[0][d] + across[1][d];
+    mean[1][d] = at->along[d] + along[d];
+  }
+  next->s += at->s + Dot(step, mean[0]) / PetscSqrtReal(Dot(mean[0], mean[0]));
+  next->t += at->t + Dot(step, mean[1]) / PetscSqrtReal(Dot(mean[1], mean[1]));
+  for (int d = 0; d < 3; d++) next->along[d] += along[d];
+  next->ways++;
+}
+
+/* Takes the mean over the ways to a face. */
+static void TakePlace(FaceRows rows, PetscInt f)
+{
+  FacePlace *place = &rows->place[f];
+
+  place->s /= place->ways;
+  place->t /= place->ways;
+  Flatten(&rows->view->normals[3 * f], place->along);
+}
+
+/* Adds a face to the sums, with its place seen from the foot along and across the row. */
+static void AddFace(FaceRows rows, PetscInt f, PetscReal rho2, const PetscReal foot[3], const PetscReal *along,
+                    const PetscReal *across, PetscReal reach, RowSums *sums)
+{
+  const FaceShape *shape  = &rows->shape[f];
+  const FacePlace *place  = &rows->place[f];
+  const PetscReal *normal = &rows->view->normals[3 * f], weight = PetscSqr(1 - rho2 / ROWS_MARGIN);
+  PetscReal        e[3], x[3], power[POWERS] = {1};
+
+  Cross(normal, place->along, e);
+  for (int d = 0; d < 3; d++) x[d] = shape->centre[d] - foot[d];
+  for (int k = 1; k < POWERS; k++) power[k] = power[k - 1] * Dot(x, along) / reach;
+  sums->weight += weight;
+  sums->length2 += weight * PetscSqr(Extent(shape, place->along));
+  sums->width2 += weight * PetscSqr(Extent(shape, e));
+  sums->area += weight * shape->area / SurfaceNodesPerFace(rows->view->facets[f].type);
+  for (int d = 0; d < 3; d++) sums->normal[d] += weight * shape->area * normal[d];
+  for (int k = 0; k < POWERS; k++) {
+    sums->b[k] += weight * power[k] * (Dot(x, across) - place->s);
+    for (int l = 0; l < POWERS; l++) sums->A[k][l] += weight * power[k] * power[l];
+  }
+}
+
+/* Solves the normal equations for the row by Gauss' elimination; they are positive definite by the ridge. */
+static void SolveRow(RowSums *sums, PetscReal c[POWERS])
+{
+  for (int k = 1; k < POWERS; k++) sums->A[k][k] += ROWS_RIDGE * sums->weight;
+  for (int k = 0; k < POWERS; k++) {
+    for (int i = k + 1; i < POWERS; i++) {
+      const PetscReal share = sums->A[i][k] / sums->A[k][k];
+
+      for (int l = k; l < POWERS; l++) sums->A[i][l] -= share * sums->A[k][l];
+      sums->b[i] -= share * sums->b[k];
+    }
+  }
+  for (int k = POWERS - 1; k >= 0; k--) {
+    c[k] = sums->b[k];
+    for (int l = k + 1; l < POWERS; l++) c[k] -= sums->A[k][l] * c[l];
+    c[k] /= sums->A[k][k];
+  }
+}
+
+/* Adds the ways from a face to its neighbours that were not reached in an earlier ring, and queues new ones. */
+static void Spread(FaceRows rows, PetscInt start, PetscInt f, PetscInt *tail)
+{
+  const PetscReal *normals = rows->view->normals;
+  const PetscInt  *links, n = NeighbourhoodsLinks(rows->neighbourhoods, f, &links);
+
+  for (PetscInt k = 0; k < n; k++) {
+    FacePlace *place = &rows->place[links[k]];
+
+    if (place->stamp == rows->stamp || Dot(&normals[3 * links[k]], &normals[3 * start]) < ROWS_FLANK) continue;
+    if (place->stamp != -rows->stamp) {
+      *place                 = (FacePlace){.stamp = -rows->stamp};
+      rows->queue[(*tail)++] = links[k];
+    }
+    AddWay(rows, f, links[k]);
+  }
+}
+
+/* Walks over the faces around a foot, one ring of links after the other, so that the ways to a face do not depend on
+   the order of the faces. The stamp of a face is negative until its ring is complete. radius: of the support across and
+   along the row (length). */
+static void Walk(FaceRows rows, PetscInt start, const PetscReal foot[3], const PetscReal *along,
+                 const PetscReal *across, const PetscReal radius[2], RowSums *sums)
+{
+  PetscInt head = 0, end = 1, tail = 1;
+
+  rows->queue[0] = start;
+  while (head < end) {
+    for (; head < end; head++) {
+      const PetscInt   f  = rows->queue[head];
+      const FacePlace *at = &rows->place[f];
+      PetscReal        rho2;
+
+      if (f != start) TakePlace(rows, f);
+      rho2 = PetscSqr(at->s / radius[0]) + PetscSqr(at->t / radius[1]);
+      if (rho2 >= ROWS_MARGIN && f != start) continue;
+      if (rho2 < ROWS_MARGIN) AddFace(rows, f, rho2, foot, along, across, radius[1], sums);
+      Spread(rows, start, f, &tail);
+    }
+    for (; end < tail; end++) rows->place[rows->queue[end]].stamp = rows->stamp;
+  }
+}
+
+/*@
+  FaceRowsFollow - finds how the rows of long faces around a foot run.
+
+  Not collective
+
+  Input Parameters:
++ rows    - the object
+. start   - face of the foot
+. foot    - the foot (length)
+. upright - unit normal of the tangent plane in which the row's direction is measured
+- support - radius of the support in spacings
+
+  Output Parameter:
+. row - the rows; their share is 0 where faces are about as long as wide, at no more than the cost of a face's moments
+@*/
+PetscErrorCode FaceRowsFollow(FaceRows rows, PetscInt start, const PetscReal foot[3], const PetscReal upright[3],
+                              PetscReal support, FaceRow *row)
+{
+  const FaceShape *shape = Shape(rows, start);
+  const PetscReal  size  = support * PetscSqrtReal(shape->area / SurfaceNodesPerFace(rows->view->facets[start].type)),
+                  aspect = shape->length / shape->width,
+                  radius[2] = {size / PetscSqrtReal(aspect), size * PetscSqrtReal(aspect)};
+  FacePlace *place = &rows->place[start];
+  RowSums    sums  = {0};
+  PetscReal  v[3], e[3], across[3], c[POWERS], length;
+
+  PetscFunctionBeginUser;
+  row->share = 0;
+  if (!(aspect > ROWS_FROM) || PetscIsInfReal(aspect)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int d = 0; d < 3; d++) {
+    v[d]          = shape->centre[d] - foot[d];
+    row->along[d] = shape->along[d];
+  }
+  Cross(&rows->view->normals[3 * start], shape->along, e);
+  *place = (FacePlace){.stamp = ++rows->stamp, .ways = 1, .s = Dot(v, e), .t = Dot(v, shape->along)};
+  for (int d = 0; d < 3; d++) place->along[d] = shape->along[d];
+  Flatten(upright, row->along);
+  Cross(upright, row->along, across);
+  Walk(rows, start, foot, row->along, across, radius, &sums);
+  if (!(sums.weight > 0)) PetscFunctionReturn(PETSC_SUCCESS); /* the foot is far from the face */
+  row->length2 = sums.length2 / sums.weight;
+  row->width2  = sums.width2 / sums.weight;
+  row->area    = sums.area / sums.weight;
+  row->share =
+    SmoothStep((PetscSqrtReal(row->length2 / row->width2) - ROWS_FROM) / (PetscReal)(ROWS_WHOLLY - ROWS_FROM));
+  length = PetscSqrtReal(Dot(sums.normal, sums.normal));
+  for (int d = 0; d < 3; d++) row->normal[d] = sums.normal[d] / length;
+  SolveRow(&sums, c);
+  for (int d = 0; d < 3; d++) row->along[d] += c[1] / radius[1] * across[d];
+  Flatten(upright, row->along);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
