@@ -416,6 +416,19 @@ static PetscErrorCode ChangeWay(ActiveSet p)
 }
 
 /*@
+  ActiveSetLeaveRelaxation - says that sets with friction that repeat themselves are not to be relaxed.
+
+  Not collective
+
+  Input Parameter:
+. p - the active set
+@*/
+void ActiveSetLeaveRelaxation(ActiveSet p)
+{
+  p->unrelaxed = PETSC_TRUE;
+}
+
+/*@
   ActiveSetSolve - goes on with the contact problem of the step as far as the columns at hand allow.
 
   Not collective
@@ -452,7 +465,7 @@ PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBo
     if (*m || !p->m) PetscFunctionReturn(PETSC_SUCCESS);
     for (PetscInt i = 0; i < p->n && p->parts > 1; i++) p->sticks[i] = PETSC_FALSE;
     if (regular) *m = MissingFriction(p, which);
-    if (!*m && !*converged && p->parts > 1) PetscCall(Relax(p, m, which, converged));
+    if (!*m && !*converged && p->parts > 1 && !p->unrelaxed) PetscCall(Relax(p, m, which, converged));
     if (*m || *converged || p->plain || (p->parts == 1 && (p->searches || !regular)))
       PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(ChangeWay(p));

@@ -39,6 +39,7 @@ typedef struct _n_Pressing *ActiveSet;
 PetscErrorCode ActiveSetCreate(PetscInt n, PetscInt parts, PetscInt most, const ActiveSetTerm *,
                                const PetscReal *travel, ActiveSet *);
 PetscErrorCode ActiveSetDestroy(ActiveSet *);
+void           ActiveSetLeaveRelaxation(ActiveSet);
 PetscErrorCode ActiveSetAddColumns(ActiveSet, PetscInt m, const PetscInt *which, const PetscReal *G);
 PetscErrorCode ActiveSetSolve(ActiveSet, PetscInt *m, PetscInt *which, PetscBool *converged);
 void           ActiveSetRest(ActiveSet, PetscInt *m, PetscInt *which);

@@ -56,10 +56,11 @@ static PetscReal Balanced(ActiveSet p, PetscInt j, PetscReal enough)
   return change;
 }
 
-/* Balances all columns once. *most: the largest change of an excess. */
+/* Balances all columns once. *most: the largest change of an excess, or what is left of imbalance. */
 static void Sweep(ActiveSet p, PetscReal enough, PetscReal *most)
 {
   const PetscInt all = p->parts * p->n;
+  PetscReal      slope;
 
   *most = 0;
   for (PetscInt j = 0; j < p->m; j++) {
@@ -67,6 +68,7 @@ static void Sweep(ActiveSet p, PetscReal enough, PetscReal *most)
     const PetscReal change = Balanced(p, j, RELAX_BALANCED * enough);
 
     *most = PetscMax(*most, PetscAbsReal(change));
+    *most = PetscMax(*most, PetscAbsReal(Imbalance(p, j, change, &slope)));
     p->excess[j] += change;
     for (PetscInt k = 0; k < all && change != 0; k++) p->end[k] -= change * p->G[j * all + k];
     p->pressed[i] = (PetscBool)(p->terms[i].opening + p->end[i] < 0);
@@ -84,13 +86,13 @@ static void Sweep(ActiveSet p, PetscReal enough, PetscReal *most)
 
   Output Parameter:
 . settled - the sweeps came to rest: what the laws say of the components that have columns is what the excess makes of
-            them, but for what is no matter to friction, and for components that have no balance of their own
+            them, but for what is no matter to friction
 
   Notes:
   Newton's method for all terms at once goes in cycles where friction is large: what one set lets slip presses another
   term off, which the next set brings back. Each term alone has one answer as a rule, whatever its neighbours do, and
-  the sweeps come to rest in far more cases, though slowly. What has no balance of its own is left to the next iteration
-  of the problem that the step belongs to.
+  the sweeps come to rest in far more cases, though slowly. A component that has no balance of its own keeps them from
+  it: a step that is taken in spite of it leads a roller that is drawn along from one state to the next.
 
   Source: Jourdan, Alart, Jean, A Gauss-Seidel like algorithm to solve frictional contact problems, CMAME 155 (1998)
   31-47.

@@ -168,6 +168,7 @@ PetscErrorCode ContactUnpredictedEnergy(Contact, const PetscReal *u, PetscReal t
 PetscErrorCode ContactSoften(Contact, PetscReal most);
 PetscErrorCode ContactStiffest(Contact, PetscReal *most);
 PetscErrorCode ContactScalePenalty(Contact, PetscReal factor, PetscReal stick);
+PetscErrorCode ContactPairDepth(Contact, int pair, PetscReal *over_h);
 PetscErrorCode ContactStiffen(Contact, int pair, PetscReal factor);
 PetscErrorCode ContactStiffenStick(Contact, int pair, PetscReal factor);
 PetscReal      ContactPairInitialPenalty(Contact, int pair);

@@ -95,6 +95,28 @@ PetscErrorCode ContactPairPressing(const ContactPair *pair, ContactPressing *pre
 }
 
 /*@
+  ContactPairDepth - finds how deep what is in contact of a pair stands in the master.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact, after ContactResidual()
+- p       - number of the pair
+
+  Output Parameter:
+. over_h - largest penetration over the face size there
+@*/
+PetscErrorCode ContactPairDepth(Contact contact, int p, PetscReal *over_h)
+{
+  ContactPressing pressing;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactPairPressing(&contact->pairs[p], &pressing));
+  *over_h = pressing.over_h;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactSummarise - counts contact and collects penetrations (length), penalties and the total force of all pairs in
   the present state.
 

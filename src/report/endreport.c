@@ -122,7 +122,8 @@ static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
   if (!pair->scene->friction) return;
   fprintf(stream, "         elastic slip leaves about %.2g %% in forces, %.2g %% in displacements",
           100 * (double)error->slip_force, 100 * (double)error->slip_displacement);
-  if ((double)pair->stick_stiffened > END_RAISED) fprintf(stream, "; its penalty raised %.3g times for it", (double)pair->stick_stiffened);
+  if ((double)pair->stick_stiffened > END_RAISED)
+    fprintf(stream, "; its penalty raised %.3g times for it", (double)pair->stick_stiffened);
   fprintf(stream, "\n");
 }
 

@@ -42,6 +42,9 @@
    what sticks. The first time is enough where the error is proportional to the compliance of the penalty, which it is
    when it is small. */
 #define EQUILIBRIUM_MAX_STIFFEN 4
+/* Times at one load parameter that they are made stiffer because nodes stand deep in faces: once, and once more where the
+   first one was too little. */
+#define EQUILIBRIUM_MAX_DEEP 2
 /* Raises of penalties that are tried before they stay as they are: the whole one, and its square root. */
 #define EQUILIBRIUM_RAISES 2
 /* A fluid may move this many times at one load parameter. It wets all places that it can at once, so that it moves a
@@ -483,6 +486,27 @@ static PetscErrorCode ModelSolveStiffened(Model model, PetscReal factor[], Solve
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Solves with stiffer penalties, which the run may choose, where nodes stand deep in faces. WINDOW_MISSED: the step must
+   be solved on. */
+static PetscErrorCode ModelBoundDepth(Model model, SolveReport *report, ContactWindowState *window)
+{
+  PetscBool  stiffened = PETSC_FALSE;
+  PetscReal *factor;
+
+  PetscFunctionBeginUser;
+  if (report->deep == EQUILIBRIUM_MAX_DEEP) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(PENALTY_SOURCES * ContactPairs(model->contact), &factor));
+  PetscCall(ModelStiffenDeep(model, factor, &stiffened));
+  if (stiffened) {
+    report->deep++;
+    report->adjusted++;
+    PetscCall(ModelSolveStiffened(model, factor, report, window));
+    if (*window == WINDOW_HOLDS) report->deep = EQUILIBRIUM_MAX_DEEP;
+  }
+  PetscCall(PetscFree(factor));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Estimates what penetration leaves of error, and solves with stiffer penalties, which the run may choose, where that
    is too much. WINDOW_MISSED: the step must be solved on. */
 static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, ContactWindowState *window)
@@ -615,7 +639,9 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
         PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
         report->result = SOLVE_WINDOW;
       }
-      if (window == WINDOW_HOLDS && ModelEstimatesAt(model, t)) PetscCall(ModelCheckPenalty(model, report, &window));
+      if (window == WINDOW_HOLDS) PetscCall(ModelBoundDepth(model, report, &window));
+      if (window == WINDOW_HOLDS && report->result == SOLVE_CONVERGED && ModelEstimatesAt(model, t))
+        PetscCall(ModelCheckPenalty(model, report, &window));
     }
     if (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) PetscCall(ModelSolveOn(model, slowly, report));
   }

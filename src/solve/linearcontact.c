@@ -69,6 +69,7 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
   PetscCall(PetscMalloc1(s->all, &s->travel));
   PetscCall(ContactStepChange(s->contact, s->du, t, model->t, s->travel));
   if (!s->rank) PetscCall(ActiveSetCreate(s->n, ContactStepParts(s->contact), s->most, terms, s->travel, &s->active));
+  if (!s->rank && model->work->stalled) ActiveSetLeaveRelaxation(s->active);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,9 @@
 /* The line search of Newton's method: what it compares, and how Newton's step is corrected for contact before it. */
 #include "bodies/tools.h"
 #include "modelimpl.h"
+
+/* A solve with friction has stalled if its residual is still above this part of that LINE_MEMORY iterations before. */
+#define LINE_STALL 0.9
 #include "contact/contactturn.h"
 
 /* Below this residual, relative to F_ref, the energies that the line search compares differ by round-off only, because
@@ -108,6 +111,27 @@ static PetscErrorCode ModelTurnStep(Model model, SNESLineSearch search, Vec y, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Notes whether the last iterations of a solve with friction have hardly lowered the residual. The contact problem of a
+   linear step may then be one whose answer leads to and fro over a kink, as where a roller passes from node to node. As
+   long as that is so, it is not relaxed. */
+static PetscErrorCode ModelFindStall(Model model, SNESLineSearch search)
+{
+  ModelWork *work = model->work;
+  SNES       snes;
+  PetscInt   iterate;
+  PetscReal  norm;
+  Vec        F;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESLineSearchGetSNES(search, &snes));
+  PetscCall(SNESGetIterationNumber(snes, &iterate));
+  if (!ContactHasFriction(model->contact) || iterate < LINE_MEMORY) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
+  PetscCall(VecNorm(F, NORM_2, &norm));
+  work->stalled = (PetscBool)(norm > LINE_STALL * work->norms[iterate % LINE_MEMORY]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Changes Newton's step so that its contact is right at its end, and chooses the objective anew from the slope of the
    energy. A step that leads uphill is turned round. */
 static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x, Vec y)
@@ -118,6 +142,7 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
 
   PetscFunctionBeginUser;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
+  if (model->contact) PetscCall(ModelFindStall(model, search));
   PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, y));
   if (model->work->objective == OBJECTIVE_RESIDUAL || ContactHasFriction(model->contact))
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -59,6 +59,7 @@ typedef struct {
   PetscInt    regathered;       /* times that contact lists were replaced */
   PetscInt    adjusted;         /* times that penalties or multipliers were changed and the step solved on */
   PetscInt    stiffened;        /* times that penalties were made stiffer for a smaller error, and the step solved on */
+  PetscInt    deep;             /* times that they were because nodes stood deep in faces */
   PetscInt    wetted;           /* times that a fluid moved and the step was solved on */
   PetscInt    cuts[CUT_CAUSES]; /* iterations that the line search shortened, by their cause */
   PetscInt    turned;           /* iterations whose step led uphill and was turned round */

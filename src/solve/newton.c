@@ -484,6 +484,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   if (model->contact) PetscCall(ContactCycleStart(model->work->watch));
   model->work->turned           = 0;
   model->work->crawls           = 0;
+  model->work->stalled          = PETSC_FALSE;
   model->work->relaxed.waits    = PETSC_FALSE;
   model->work->relaxed.farthest = MODEL_FARTHEST;
   PetscCall(PetscArrayzero(model->work->cuts, CUT_CAUSES));

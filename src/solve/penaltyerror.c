@@ -32,6 +32,10 @@
    power of it has not brought what it was made for: what is left does not come from the penalty, or it is at a few
    terms that hardly have an area, such as those over the end of a surface. The pair is then stiffened no more. */
 #define PENALTY_GAIN 0.5
+/* In any step, penalties that the run may choose are made stiffer where a node stands deeper in a face than this part of
+   what the certificate allows. They are made so stiff that the second part is to be expected. */
+#define PENALTY_DEEP    0.5
+#define PENALTY_SHALLOW 0.2
 /* A pair whose forces are below this part of those of the most loaded pair does not stiffen its penalty, because its
    own error hardly counts in the model. */
 #define PENALTY_LIGHT_PAIR 1e-3
@@ -407,6 +411,30 @@ PetscErrorCode ModelStiffenLess(Model model, PetscReal factor[])
     factor[k]                    = PetscSqrtReal(factor[k]);
     model->work->stiffened_by[k] = factor[k];
     PetscCall(StiffenPair(model, (PenaltySource)(k / pairs), k % pairs, factor[k]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes penalties stiffer that the run may choose and that let nodes stand deep in faces. factor[] is that of
+   ModelStiffen(). *stiffened: some are. */
+PetscErrorCode ModelStiffenDeep(Model model, PetscReal factor[], PetscBool *stiffened)
+{
+  const int       pairs   = ContactPairs(model->contact);
+  const PetscReal allowed = model->scene->certificate.penetration;
+  PetscReal       over_h;
+
+  PetscFunctionBeginUser;
+  *stiffened = PETSC_FALSE;
+  for (int k = 0; k < PENALTY_SOURCES * pairs; k++) factor[k] = 1;
+  for (int p = 0; p < pairs; p++) {
+    if (!MayStiffen(ContactPairScene(model->contact, p), BY_PENETRATION)) continue;
+    PetscCall(ContactPairDepth(model->contact, p, &over_h));
+    if (!(over_h > PENALTY_DEEP * allowed)) continue;
+    factor[p] = PetscMin(PENALTY_MOST_STIFFER, over_h / (PENALTY_SHALLOW * allowed));
+    PetscCall(StiffenPair(model, BY_PENETRATION, p, factor[p]));
+    PetscCall(PetscInfo(model->snes, "contact '%s': %g of a face deep, penalties %g times as stiff\n",
+                        ContactPairName(model->contact, p), (double)over_h, (double)factor[p]));
+    *stiffened = PETSC_TRUE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -29,7 +29,8 @@ COUNTS = ("step", "newton", "attempts", "contact_nodes", "nodes_in", "nodes_out"
 # their number, how the mesh lies on them, and the round-off of the linear solver.
 OWN = ("wall_s", "cpu_s", "seconds", "peak_rss_mb", "restarts", "mesh_s")
 SHORT = ("stepping.initial=0.06", "output={every: 1, checkpoint: 1}")
-OF_RANKS = ("ranks", "partition", "linear.largest_residual")
+OF_RANKS = ("ranks", "partition", "linear.largest_residual", "certificate.residual", "certificate.force_balance",
+            "certificate.moment_balance")
 
 args = arguments(("part", "what is shown", ("kills", "sliding", "plastic", "signals", "refusals", "flips", "states",
                                             "options")),

@@ -15,6 +15,7 @@ struct _n_Pressing {
   PetscBool     *slipped;      /* n: the term slipped where friction was looked at last */
   PetscBool     *sticks;       /* n: its slip has turned round since, so that it is to stick in the next set */
   PetscReal     *slip;         /* 2*n: its slip there (length) */
+  PetscBool      unrelaxed;    /* sets with friction that repeat themselves are not relaxed */
   PetscBool      plain;        /* friction stays as residual and tangent have it */
 };
 

@@ -101,6 +101,7 @@ typedef struct _n_ModelWork {
   Objective   objective;
   RelaxedStep relaxed;
   PetscReal   norms[LINE_MEMORY]; /* residuals of the last iterates, where there is friction */
+  PetscBool   stalled;            /* with friction: the last LINE_MEMORY iterations have hardly lowered the residual */
   PetscBool   soft;               /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
   PetscBool   balanced;           /* the residual of the iterate is within the tolerance */
   PetscBool   left;               /* the solve ended because a slave point slid out of its lists */
@@ -146,6 +147,7 @@ PetscErrorCode ModelCreatePenaltyError(Model);
 void           ModelForgetPenaltyError(Model);
 PetscErrorCode ModelArchivePenaltyError(Model, Archive);
 PetscErrorCode ModelEstimatePenalty(Model);
+PetscErrorCode ModelStiffenDeep(Model, PetscReal factor[], PetscBool *stiffened);
 PetscErrorCode ModelStiffen(Model, PetscReal factor[], PetscBool *stiffened);
 PetscErrorCode ModelUnstiffen(Model, const PetscReal factor[]);
 PetscErrorCode ModelStiffenLess(Model, PetscReal factor[]);
