@@ -639,9 +639,9 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
         PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
         report->result = SOLVE_WINDOW;
       }
-      if (window == WINDOW_HOLDS) PetscCall(ModelBoundDepth(model, report, &window));
-      if (window == WINDOW_HOLDS && report->result == SOLVE_CONVERGED && ModelEstimatesAt(model, t))
-        PetscCall(ModelCheckPenalty(model, report, &window));
+      if (window == WINDOW_HOLDS && ModelEstimatesAt(model, t)) PetscCall(ModelCheckPenalty(model, report, &window));
+      if (window == WINDOW_HOLDS && report->result == SOLVE_CONVERGED)
+        PetscCall(ModelBoundDepth(model, report, &window));
     }
     if (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) PetscCall(ModelSolveOn(model, slowly, report));
   }

@@ -34,7 +34,7 @@
 #define PENALTY_GAIN 0.5
 /* In any step, penalties that the run may choose are made stiffer where a node stands deeper in a face than this part of
    what the certificate allows. They are made so stiff that the second part is to be expected. */
-#define PENALTY_DEEP    0.5
+#define PENALTY_DEEP    0.6
 #define PENALTY_SHALLOW 0.2
 /* A pair whose forces are below this part of those of the most loaded pair does not stiffen its penalty, because its
    own error hardly counts in the model. */
