@@ -6,6 +6,9 @@
 /* Offsets that a solve turns back are damped where what is left of their change is more than this part of the change
    before. Less than that settles by itself. */
 #define OFFSET_SETTLES 0.1
+/* They are damped after so many such turns in a row. One alone may come from nodes that open or close: two cubes that
+   overhang each other do not settle if they are damped from the first one on. */
+#define OFFSET_TURNS 2
 
 struct _n_Offsets {
   ContactSurface surface;
@@ -25,6 +28,7 @@ struct _n_Offsets {
      the solution asked for and by how much that differed. */
   PetscReal *held, *asked, *change;
   PetscBool  replaced, turning; /* turning: solutions turn them to and fro */
+  int        turns;             /* times in a row that they have */
 };
 
 /*@
@@ -386,6 +390,7 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
   }
   PetscCall(PetscArraycpy(o->held, o->used, o->n));
   o->replaced = o->turning = PETSC_FALSE;
+  o->turns    = 0;
   o->taken    = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -423,7 +428,7 @@ PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
 
   Note:
   A soft body may answer to a change of its offsets by more than that change the other way, as a ring that rolls in its
-  groove. Solutions then never settle. From the first such answer on, the offsets are set on the line through the last
+  groove. Solutions then never settle. From OFFSET_TURNS such answers in a row on, the offsets are set on the line through the last
   two that solutions asked for, where their secant sees no change any more.
 
   Source: Anderson, Iterative procedures for nonlinear integral equations, J. ACM 12 (1965) 547-560.
@@ -432,6 +437,7 @@ PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
 {
   PetscReal sum[3] = {0, 0, 0}; /* squared change before, change times change before, squared change */
   PetscReal part;
+  PetscBool turns;
 
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
@@ -444,7 +450,9 @@ PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
     sum[2] += PetscSqr(change);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, o->search->mesh->comm));
-  o->turning = (PetscBool)(o->turning || (o->replaced && sum[1] < 0 && sum[2] > PetscSqr(OFFSET_SETTLES) * sum[0]));
+  turns      = (PetscBool)(o->replaced && sum[1] < 0 && sum[2] > PetscSqr(OFFSET_SETTLES) * sum[0]);
+  o->turns   = turns ? o->turns + 1 : 0;
+  o->turning = (PetscBool)(o->turning || o->turns == OFFSET_TURNS);
   *changed   = (PetscBool)(o->turning && sum[2] > 0);
   part       = *changed ? PetscMax(-1, (sum[2] - sum[1]) / (sum[2] - 2 * sum[1] + sum[0])) : 0;
   for (PetscInt i = 0; i < o->n; i++) {
