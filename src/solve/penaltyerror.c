@@ -353,7 +353,7 @@ static PetscBool MayStiffen(const SceneContact *scene, PenaltySource source)
 }
 
 /* Makes the penalties of one kind stiffer that the run may choose and whose error is large. Those with such small forces
-   stay as they are of which the solve itself leaves an error as large. Returns whether some are stiffer. */
+   stay as they are of which the solve itself leaves an error as large. *stiffened is set where some are stiffer. */
 static PetscErrorCode StiffenSource(Model model, PenaltySource source, const ContactLoad load[], PetscReal factor[],
                                     PetscBool *stiffened)
 {
