@@ -100,6 +100,9 @@ typedef struct {
   ContactPlace deepest;      /* where the largest penetration is */
 } ContactQuality;
 
+/* Where bodies give way in contact: what the error of the penalty comes from. */
+typedef enum { BY_PENETRATION, BY_SLIP, PENALTY_SOURCES } PenaltySource;
+
 /* How a pair presses, over all its slave nodes. */
 typedef struct {
   PetscReal force;    /* sum of the normal forces; axisymmetric: over 360 degrees */
@@ -167,7 +170,6 @@ PetscErrorCode ContactUnpredictedEnergy(Contact, const PetscReal *u, PetscReal t
 /* Penalties and multipliers */
 PetscErrorCode ContactSoften(Contact, PetscReal most);
 PetscErrorCode ContactStiffest(Contact, PetscReal *most);
-PetscErrorCode ContactScalePenalty(Contact, PetscReal factor, PetscReal stick);
 PetscErrorCode ContactPairDepth(Contact, int pair, PetscReal *over_h);
 PetscErrorCode ContactStiffen(Contact, int pair, PetscReal factor);
 PetscErrorCode ContactStiffenStick(Contact, int pair, PetscReal factor);
@@ -175,6 +177,8 @@ PetscReal      ContactPairInitialPenalty(Contact, int pair);
 PetscReal      ContactPairStick(Contact, int pair);
 PetscErrorCode ContactPairFriction(Contact, int pair, ContactFriction *);
 PetscErrorCode ContactPairLoad(Contact, int pair, const PetscReal *u, ContactLoad *);
+PetscErrorCode ContactStifferForces(Contact, PenaltySource, PetscReal *f);
+PetscErrorCode ContactLoadChanges(Contact, PenaltySource, const PetscReal *u, const PetscReal *v, ContactLoad change[]);
 PetscErrorCode ContactAdjustPenalty(Contact, ContactWindowState *);
 PetscErrorCode ContactAdjustNextPenalty(Contact);
 PetscErrorCode ContactGapsConverged(Contact, PetscBool *converged);

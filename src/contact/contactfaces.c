@@ -129,6 +129,20 @@ PetscReal ContactTermPenalty(const ContactPair *pair, PetscInt c, PetscReal pena
 }
 
 /*@
+  ContactTermAtBound - says whether the penalty of a term would count for no more if it were raised.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+- c    - the term
+@*/
+PetscBool ContactTermAtBound(const ContactPair *pair, PetscInt c)
+{
+  return (PetscBool)(c >= pair->n_nodes && pair->now.penalty[c] >= (1 - PETSC_SMALL) * FACE_STIFFEST * pair->automatic);
+}
+
+/*@
   ContactTermId - returns a number of a term that no other term of its pair has, the same on any ranks.
 
   Not collective

@@ -364,8 +364,6 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SurfaceFindFreeEdges(pair->slave, pair->n_images, pair->images));
   pair->automatic    = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
   pair->most         = PETSC_MAX_REAL;
-  pair->trial_factor = 1;
-  pair->trial_stick  = 1;
   penalty            = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
   pair->initial      = penalty;
   PetscCall(ContactStateCreate(pair->n, penalty, friction, &pair->now));

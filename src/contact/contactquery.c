@@ -218,7 +218,8 @@ PetscErrorCode ContactRoundOff(Contact contact, PetscReal *force)
 /* Adds to the pressures of a pair what its partner's slave points press on the same surface from the other side, as
    forces over the areas of the shape functions. Corners of 6-node triangles have none; there the own side stands for
    both. Where no partner is near there is no direction, and no pressure. */
-static PetscErrorCode AddPartner(Contact contact, ContactPair *pair, const ContactPair *partner, const PetscReal *u)
+static PetscErrorCode AddPartner(Contact contact, const ContactPair *pair, const PetscReal *u,
+                                 const PetscReal *reaction, PetscReal *pressure)
 {
   const int  dim = contact->mesh->dim;
   PetscReal *area;
@@ -228,13 +229,53 @@ static PetscErrorCode AddPartner(Contact contact, ContactPair *pair, const Conta
   PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
     const PetscInt  node  = pair->node[c];
-    const PetscReal own   = pair->scene->share * pair->pressure[c];
+    const PetscReal own   = pair->scene->share * pressure[c];
     PetscReal       other = 0;
 
-    for (int d = 0; d < dim; d++) other += partner->reaction[node * dim + d] * pair->normal[3 * c + d];
-    pair->pressure[c] = own + (area[node] > CONTACT_NO_SHAPE_AREA * pair->area[c] ? other / area[node] : own);
+    for (int d = 0; d < dim; d++) other += reaction[node * dim + d] * pair->normal[3 * c + d];
+    pressure[c] = own + (area[node] > CONTACT_NO_SHAPE_AREA * pair->area[c] ? other / area[node] : own);
   }
   PetscCall(PetscFree(area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactNodePressures - finds the pressures of slave nodes that belong to nodal forces.
+
+  Collective
+
+  Input Parameters:
++ contact  - the contact
+. p        - number of the pair
+. u        - local displacements, u[n_nodes*dim] (length), for present tributary areas; with small kinematics those of
+             the reference are taken
+. force    - normal force of each slave node of this rank
+- reaction - forces of the partner on its master, by node of the mesh, where two pairs treat two surfaces from either
+             side; else NULL
+
+  Output Parameters:
++ area     - area[n_nodes] tributary areas of the mesh's nodes
+- pressure - of each slave node; where there is a partner, that of both together
+
+  Note:
+  It is linear in force and reaction.
+@*/
+PetscErrorCode ContactNodePressures(Contact contact, int p, const PetscReal *u, const PetscReal *force,
+                                    const PetscReal *reaction, PetscReal *area, PetscReal *pressure)
+{
+  const ContactPair *pair = &contact->pairs[p];
+
+  PetscFunctionBeginUser;
+  if (contact->scene->kinematics == KINEMATICS_SMALL) u = NULL;
+  if (pair->formulation.surface)
+    PetscCall(SlavePointsHatAreas(pair->slaves, pair->geometry, u, area));
+  else
+    PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
+    area[pair->node[c]] *= pair->scene->share;
+    pressure[c] = force[c] / area[pair->node[c]];
+  }
+  if (reaction) PetscCall(AddPartner(contact, pair, u, reaction, pressure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -263,16 +304,8 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(contact->mesh->n_nodes, &area));
-  if (contact->scene->kinematics == KINEMATICS_SMALL) u = NULL;
-  if (pair->formulation.surface)
-    PetscCall(SlavePointsHatAreas(pair->slaves, pair->geometry, u, area));
-  else
-    PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
-  for (PetscInt c = 0; c < pair->n_nodes; c++) {
-    area[pair->node[c]] *= pair->scene->share;
-    pair->pressure[c] = pair->force[c] / area[pair->node[c]];
-  }
-  if (partner >= 0) PetscCall(AddPartner(contact, pair, &contact->pairs[partner], u));
+  PetscCall(ContactNodePressures(contact, p, u, pair->force, partner >= 0 ? contact->pairs[partner].reaction : NULL, area,
+                                 pair->pressure));
   *nodes = (ContactNodes){.n        = pair->n_nodes,
                           .node     = pair->node,
                           .area     = pair->area,

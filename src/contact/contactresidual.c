@@ -15,28 +15,61 @@ static void TermNormal(ContactPair *pair, PetscInt c)
   for (int d = 0; d < 3 && length > 0; d++) normal[d] /= PetscSqrtReal(length);
 }
 
-/* Adds the forces of the loaded slave points to the values of the contact nodes. */
-static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
+/*@
+  ContactPointForces - adds normal forces of slave points to the values of the contact nodes.
+
+  Not collective
+
+  Input Parameters:
++ pair        - the pair, projected
+- point_force - of each slave point
+
+  Input/Output Parameter:
+. values - forces over the contact nodes, subtracted as external ones are
+@*/
+PetscErrorCode ContactPointForces(const ContactPair *pair, const PetscReal *point_force, PetscReal *values)
 {
   const int                dim = pair->mesh->dim;
   const ContactVariations *v   = pair->variations;
 
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
-    const PetscReal force = pair->point_force[q];
-
-    if (force == 0) continue;
+    if (point_force[q] == 0) continue;
     PetscCall(ContactVariationsNeed(pair, q));
     for (PetscInt i = v->first[q]; i < v->end[q]; i++)
-      for (int d = 0; d < dim; d++) values[v->number[i] * dim + d] -= force * v->N[i * dim + d];
-    for (int d = 0; d < dim && v->first[q] < v->end[q]; d++) pair->total[d] += force * v->own[q * dim + d];
+      for (int d = 0; d < dim; d++) values[v->number[i] * dim + d] -= point_force[q] * v->N[i * dim + d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces of the pair on the nodes of its master, by node of the mesh: those on all contact nodes without those on the
-   slave points themselves. */
-static PetscErrorCode PairReaction(ContactPair *pair, const PetscReal *values)
+/* The force on this rank's terms. */
+static void PairTotal(ContactPair *pair)
+{
+  const int                dim = pair->mesh->dim;
+  const ContactVariations *v   = pair->variations;
+
+  for (int d = 0; d < 3; d++) pair->total[d] = 0;
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++)
+    for (int d = 0; d < dim && pair->point_force[q] != 0 && v->first[q] < v->end[q]; d++)
+      pair->total[d] += pair->point_force[q] * v->own[q * dim + d];
+}
+
+/*@
+  ContactPointReactions - finds the forces on the nodes of a master: those on all contact nodes without those on the
+  slave points themselves.
+
+  Collective
+
+  Input Parameters:
++ pair        - the pair, projected
+. point_force - normal force of each slave point
+- values      - what ContactPointForces() makes of them
+
+  Output Parameter:
+. reaction - reaction[n_nodes*dim] by node of the mesh, complete at owned nodes
+@*/
+PetscErrorCode ContactPointReactions(const ContactPair *pair, const PetscReal *point_force, const PetscReal *values,
+                                     PetscReal *reaction)
 {
   const int            dim   = pair->mesh->dim;
   const NeighbourLists lists = pair->lists;
@@ -46,34 +79,50 @@ static PetscErrorCode PairReaction(ContactPair *pair, const PetscReal *values)
   PetscCall(PetscMalloc1(lists->n_nodes * dim, &on_master));
   for (PetscInt i = 0; i < lists->n_nodes * dim; i++) on_master[i] = -values[i];
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
-    if (pair->point_force[q] == 0 || pair->variations->first[q] == pair->variations->end[q]) continue;
+    if (point_force[q] == 0 || pair->variations->first[q] == pair->variations->end[q]) continue;
     for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++)
       for (int d = 0; d < dim; d++)
-        on_master[lists->slave_node[k] * dim + d] -= pair->point_force[q] * lists->slave_S[k] *
+        on_master[lists->slave_node[k] * dim + d] -= point_force[q] * lists->slave_S[k] *
                                                      pair->images[lists->slave_side[k]].sign[d] *
                                                      pair->variations->own[q * dim + d];
   }
-  PetscCall(PetscArrayzero(pair->reaction, pair->mesh->n_nodes * dim));
-  PetscCall(NeighbourListsReduce(lists, on_master, pair->reaction));
+  PetscCall(PetscArrayzero(reaction, pair->mesh->n_nodes * dim));
+  PetscCall(NeighbourListsReduce(lists, on_master, reaction));
   PetscCall(PetscFree(on_master));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Normal nodal forces of terms that share their points. The hat functions distribute the points' forces, also to
-   terms of other ranks. */
-static PetscErrorCode PairSharedForces(ContactPair *pair)
+/*@
+  ContactNodalForces - finds the normal forces of slave nodes from those of slave points.
+
+  Collective
+
+  Input Parameters:
++ pair        - the pair
+- point_force - of each slave point
+
+  Output Parameter:
+. force - of each term that is a node
+
+  Note:
+  Where terms share their points, the hat functions distribute the points' forces, also to terms of other ranks.
+@*/
+PetscErrorCode ContactNodalForces(const ContactPair *pair, const PetscReal *point_force, PetscReal *force)
 {
   const int      dim   = pair->mesh->dim;
   NeighbourLists lists = pair->lists;
   PetscReal     *values, *nodal;
 
   PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n_nodes && !pair->formulation.surface; c++)
+    force[c] = point_force[pair->term_point[pair->term_ptr[c]]];
+  if (!pair->formulation.surface) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc2(lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &nodal));
   for (PetscInt q = 0; q < lists->n_slaves; q++)
     for (PetscInt k = pair->slaves->ptr[q], node = lists->slave_ptr[q]; k < pair->slaves->ptr[q + 1]; k++, node++)
-      values[lists->slave_node[node] * dim] += pair->slaves->hat[k] * pair->point_force[q];
+      values[lists->slave_node[node] * dim] += pair->slaves->hat[k] * point_force[q];
   PetscCall(NeighbourListsReduce(lists, values, nodal));
-  for (PetscInt c = 0; c < pair->n_nodes; c++) pair->force[c] = nodal[pair->node[c] * dim];
+  for (PetscInt c = 0; c < pair->n_nodes; c++) force[c] = nodal[pair->node[c] * dim];
   PetscCall(PetscFree2(values, nodal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -103,22 +152,20 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
     if (!f) continue;
     pair->now.gap[c]    = gap;
     pair->now.status[c] = value.stiffness > 0 ? CONTACT_CLOSED : CONTACT_OPEN;
-    ContactTermPress(pair, c, value.pressure);
+    ContactTermPress(pair, c, value.pressure, pair->point_force);
     TermNormal(pair, c);
   }
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
   pair->t = t;
-  PetscCall(PetscArrayzero(pair->total, 3));
   PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
-  PetscCall(PairForces(pair, values));
-  if (pair->scene->share < 1) PetscCall(PairReaction(pair, values));
+  PetscCall(ContactPointForces(pair, pair->point_force, values));
+  PairTotal(pair);
+  if (pair->scene->share < 1) PetscCall(ContactPointReactions(pair, pair->point_force, values, pair->reaction));
   if (pair->friction) PetscCall(FrictionResidual(pair, t, values));
   if (pair->tool) PetscCall(ContactToolForces(pair, values));
   PetscCall(NeighbourListsReduce(pair->lists, values, f));
   if (contact->outer && HasOuter(pair)) PetscCall(NeighbourListsReduce(pair->lists, values, contact->outer));
-  if (pair->formulation.surface) PetscCall(PairSharedForces(pair));
-  for (PetscInt c = 0; c < pair->n_nodes && !pair->formulation.surface; c++)
-    pair->force[c] = pair->point_force[pair->term_point[pair->term_ptr[c]]];
+  PetscCall(ContactNodalForces(pair, pair->point_force, pair->force));
   PetscCall(PetscFree(values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

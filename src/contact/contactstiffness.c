@@ -1,28 +1,5 @@
-/* Stiffer penalties: for trial, and for good where penetration leaves too large an error. */
+/* Stiffer penalties where penetration leaves too large an error, and how pairs press. */
 #include "contactimpl.h"
-
-/*@
-  ContactScalePenalty - multiplies what the penalties count for in energy, force and tangent, until the next call.
-
-  Not collective
-
-  Input Parameters:
-+ contact - the contact
-. factor  - on those of pressures, the same on all ranks; 1 ends it
-- stick   - on the penalty of what sticks, the same on all ranks; 1 ends it
-
-  Note:
-  The penalties themselves do not change.
-@*/
-PetscErrorCode ContactScalePenalty(Contact contact, PetscReal factor, PetscReal stick)
-{
-  PetscFunctionBeginUser;
-  for (int p = 0; p < contact->n_pairs; p++) {
-    contact->pairs[p].trial_factor = factor;
-    contact->pairs[p].trial_stick  = stick;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /*@
   ContactStiffen - multiplies the penalties of a pair in the present state.

@@ -30,7 +30,7 @@ static PetscErrorCode PairStiffness(Contact contact, ContactPair *pair, const Pe
     ContactTermLaw(pair, c, t, &value, NULL, &area);
     pair->stiffness_before[c] = pair->stiffness[c];
     pair->stiffness[c]        = value.stiffness;
-    if (value.stiffness > 0) ContactTermPress(pair, c, TermTurningPressure(pair, c, t, &value));
+    if (value.stiffness > 0) ContactTermPress(pair, c, TermTurningPressure(pair, c, t, &value), pair->point_force);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -194,7 +194,7 @@ PetscReal ContactMeanOpening(const ContactPair *pair, PetscInt c)
 @*/
 LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t, PetscReal most)
 {
-  return (LawState){.penalty = PetscMin(most, ContactTermPenalty(pair, c, pair->trial_factor * pair->now.penalty[c])),
+  return (LawState){.penalty = PetscMin(most, ContactTermPenalty(pair, c, pair->now.penalty[c])),
                     .offset  = ContactTermOffset(pair, c, t),
                     .multiplier = pair->now.multiplier[c] - (pair->carried ? pair->carried[c] : 0)};
 }
@@ -274,10 +274,13 @@ PetscReal ContactTermForce(const ContactPair *pair, PetscInt c)
 + pair     - the pair
 . c        - the term
 - pressure - force per area; 0 adds nothing
+
+  Input/Output Parameter:
+. point_force - of each slave point
 @*/
-void ContactTermPress(ContactPair *pair, PetscInt c, PetscReal pressure)
+void ContactTermPress(const ContactPair *pair, PetscInt c, PetscReal pressure, PetscReal *point_force)
 {
   if (pressure == 0) return;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
-    pair->point_force[pair->term_point[k]] += pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
+    point_force[pair->term_point[k]] += pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
 }

@@ -489,7 +489,7 @@ static void TermMaterial(const ContactPair *pair, PetscInt c, PetscReal t, Petsc
 {
   *in = (FrictionInput){.cohesion  = pair->scene->cohesion,
                         .limit     = pair->scene->tau_max,
-                        .stiffness = pair->trial_stick * pair->friction->stiffness,
+                        .stiffness = pair->friction->stiffness,
                         .pressure  = pressure};
 
   in->coefficient = TermCoefficient(pair, c, t, pressure, &in->steepness);
@@ -711,13 +711,25 @@ static PetscErrorCode AddMoment(const ContactPair *pair, PetscInt q, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds up the forces on slave nodes. Where terms share their points, the hat functions distribute the points' forces,
-   also to terms of other ranks. */
-static PetscErrorCode NodalForces(ContactPair *pair)
+/*@
+  FrictionNodalForces - adds up the forces of friction on slave nodes.
+
+  Collective
+
+  Input Parameters:
++ pair  - the pair
+- force - 3 for each slave point
+
+  Output Parameter:
+. on_node - 3 for each term
+
+  Note:
+  Where terms share their points, the hat functions distribute the points' forces, also to terms of other ranks.
+@*/
+PetscErrorCode FrictionNodalForces(const ContactPair *pair, const PetscReal *force, PetscReal *on_node)
 {
   const int            dim   = pair->mesh->dim;
   const NeighbourLists lists = pair->lists;
-  Friction             f     = pair->friction;
   PetscReal           *values, *nodal;
 
   PetscFunctionBeginUser;
@@ -725,10 +737,10 @@ static PetscErrorCode NodalForces(ContactPair *pair)
   for (PetscInt q = 0; q < lists->n_slaves; q++)
     for (PetscInt k = pair->slaves->ptr[q], node = lists->slave_ptr[q]; k < pair->slaves->ptr[q + 1]; k++, node++)
       for (int d = 0; d < dim; d++)
-        values[lists->slave_node[node] * dim + d] -= pair->slaves->hat[k] * f->force[3 * q + d];
+        values[lists->slave_node[node] * dim + d] -= pair->slaves->hat[k] * force[3 * q + d];
   PetscCall(NeighbourListsReduce(lists, values, nodal));
   for (PetscInt c = 0; c < pair->n; c++)
-    for (int d = 0; d < dim; d++) f->nodal[3 * c + d] = nodal[pair->node[c] * dim + d];
+    for (int d = 0; d < dim; d++) on_node[3 * c + d] = nodal[pair->node[c] * dim + d];
   PetscCall(PetscFree2(values, nodal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -824,7 +836,7 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
     PetscCall(FrictionPointForces(pair, q, F, values));
     PetscCall(AddMoment(pair, q, F, pair->friction->moment));
   }
-  PetscCall(NodalForces(pair));
+  PetscCall(FrictionNodalForces(pair, pair->friction->force, pair->friction->nodal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -221,8 +221,9 @@ double FrictionBound(const FrictionInput *in, double pressure)
 @*/
 void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
 {
-  double slope, e[3], length, bound = Bound(in, &slope);
-  Matrix m;
+  double       slope, rate, e[3], length, bound = Bound(in, &slope);
+  const double share = CountedShare(in, &rate);
+  Matrix       m;
 
   ElasticSlip(in, e, out);
   length     = sqrt(Dot(e, e));
@@ -234,6 +235,7 @@ void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
     for (int i = 0; i < 3; i++) m[i][i] = in->stiffness;
     ApplyMatrix(m, out);
     for (int i = 0; i < 3; i++) out->traction[i] = in->stiffness * e[i];
+    for (int i = 0; i < 3; i++) out->by_stiffness[i] = share * out->traction[i]; /* beta falls as the stiffness grows */
     out->elastic = length;
     out->slipped = 0;
     return;
@@ -242,7 +244,8 @@ void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
   Projector(bound > 0 ? bound / length : 0, e, m);
   ApplyMatrix(m, out);
   for (int i = 0; i < 3; i++) {
-    out->traction[i] = bound * e[i];
+    out->traction[i]     = bound * e[i];
+    out->by_stiffness[i] = 0; /* all of e turns with beta, and |t| is the bound */
     out->by_gap[i] -= slope * in->rate * e[i];
   }
   out->elastic = bound / in->stiffness;

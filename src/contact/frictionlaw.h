@@ -43,6 +43,7 @@ typedef struct {
   double        elastic;     /* elastic slip: the length of e where the node sticks, b / stiffness where it slips */
   double        slipped;     /* what is left of the length of e: slip that stays (length) */
   double        by_normal[3][3], by_slip[3][3], by_along[3][3], by_gap[3]; /* derivatives of the traction */
+  double        by_stiffness[3]; /* derivative of the traction by the logarithm of the stiffness */
 } FrictionTraction;
 
 void   FrictionComponents(const double normal[3], const double along[3], const double v[3], double component[2]);

@@ -374,11 +374,10 @@ static PetscErrorCode AddFootMotion(TermBlock *b, PetscInt q, const PetscReal F[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fills the block: the derivative of the traction, taken to the nodes, and the motion of its forces over the master. */
-static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction *out)
+/* Adds the derivative of the traction of a term over the nodes of the block. */
+static PetscErrorCode AddTraction(TermBlock *b, PetscInt c, const FrictionTraction *out)
 {
   const ContactPair *pair = b->pair;
-  const int          dim  = b->dim;
   PetscReal          area = 0;
 
   PetscFunctionBeginUser;
@@ -390,11 +389,26 @@ static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction
 
     if (!FrictionTermTakes(pair, k)) continue;
     PetscCall(AddVariations(b, b->by_node, q, weight / area, out->by_normal, out->by_gap));
-    PetscCall(AddShares(b, q, weight));
     if (pair->friction->face[q] < 0) continue;
     AddSlipColumns(b, q, weight / area, out);
   }
   AddAlongColumns(b, FrictionTermGuide(pair, c), out);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fills the block: the derivative of the traction, taken to the nodes, and the motion of its forces over the master. */
+static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction *out)
+{
+  const ContactPair *pair = b->pair;
+  const int          dim  = b->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(AddTraction(b, c, out));
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt q = pair->term_point[k];
+
+    if (FrictionTermTakes(pair, k)) PetscCall(AddShares(b, q, pair->term_weight[k] * pair->factor[q]));
+  }
   PetscCall(PetscCalloc1(b->n_rows * dim * b->columns, &b->value));
   for (PetscInt r = 0; r < b->n_rows * dim; r++)
     for (int d = 0; d < dim; d++)
@@ -477,5 +491,45 @@ PetscErrorCode FrictionTermBlock(const ContactPair *pair, BlockMatrix blocks, in
   PetscCall(PetscFree2(b.by_node, b.share));
   PetscCall(PetscFree2(b.row_node, b.row_of));
   PetscCall(PetscFree(b.value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionTermAlong - computes how the traction of a term changes along a motion of the contact nodes.
+
+  Not collective
+
+  Input Parameters:
++ pair   - the pair, projected
+. c      - the term
+. out    - what the law says of it, of FrictionTerm()
+- motion - motion[contact nodes*dim] (length), relative to a tool with unknowns, see ContactToolRelative()
+
+  Output Parameter:
+. change - of the traction (force per area), in the frame of such a tool
+@*/
+PetscErrorCode FrictionTermAlong(const ContactPair *pair, PetscInt c, const FrictionTraction *out,
+                                 const PetscReal *motion, PetscReal change[3])
+{
+  const int dim = pair->mesh->dim;
+  TermBlock b   = {.pair = pair, .dim = dim};
+  PetscInt *nodes, n;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrictionTermNodes(pair, c));
+  n         = pair->work->count;
+  b.columns = n * dim;
+  PetscCall(PetscMalloc1(n, &nodes));
+  PetscCall(PetscArraycpy(nodes, pair->work->number, n));
+  PetscCall(PetscCalloc1(dim * b.columns, &b.by_node));
+  PetscCall(ContactWorkBlockBegin(pair->work, pair->lists->n_nodes, n, nodes));
+  PetscCall(AddTraction(&b, c, out));
+  ContactWorkBlockEnd(pair->work, n, nodes);
+  for (int d = 0; d < 3; d++) change[d] = 0;
+  for (int d = 0; d < dim; d++)
+    for (PetscInt j = 0; j < b.columns; j++)
+      change[d] += b.by_node[d * b.columns + j] * motion[nodes[j / dim] * dim + j % dim];
+  PetscCall(PetscFree(b.by_node));
+  PetscCall(PetscFree(nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,8 +2,9 @@
 
    A quantity q depends on the factor s on all penalties like q(s) = q_0 (1 - c / s) once the penalties are stiff. Then
    its error q_0 - q is dq/d(ln s). One linear solve with the tangent gives du/d(ln s), because the residual depends on
-   ln s through the penalty part of the contact forces alone. Forces and pressures are then evaluated a small way along
-   this derivative.
+   ln s through the penalty part of the contact forces alone. The derivatives of forces and pressures follow from it by
+   their first variations (contact/contactcompliance.c). Nothing is compared over a finite step, in which what penetrates
+   is so small that rounding of positions would show.
 
    The penalty of what sticks leaves an error in the same way: surfaces that stick give way by an elastic slip, as they
    give way by penetrations. Its estimate is the same with tractions of friction where it sticks in the place of the
@@ -11,11 +12,6 @@
 #include "mesh/pressurenodes.h"
 #include "modelimpl.h"
 
-/* Step along which forces and pressures are compared. Penetrations shrink by about this part of themselves, so that
-   hardly any node opens or closes, and round-off of the gaps stays far below. Penalties grow as penetrations shrink, to
-   1 / (1 - step): then forces that stay as they are do so to the second order too. What moves from faces at the bound
-   of their penalties to nodes does not, and shows as this part of itself. */
-#define PENALTY_STEP 0.002
 /* Penalties that the run may choose are made stiffer where an estimate is above this. The estimates for pressures do
    not count for this. Where the slave's nodes are denser than the master's, pressures scatter, and stiffer penalties
    only let them scatter more. */
@@ -136,37 +132,22 @@ PetscErrorCode ModelUnstiffen(Model model, const PetscReal factor[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Scales the penalties that an estimate is of. */
-static PetscErrorCode ModelScalePenalty(Model model, PenaltySource source, PetscReal factor)
+/* -dR/d(ln s) of the free residual at the trial state, which is that of the last residual. */
+static PetscErrorCode ModelStifferForces(Model model, PenaltySource source, Vec forces)
 {
-  return ContactScalePenalty(model->contact, source == BY_PENETRATION ? factor : 1, source == BY_SLIP ? factor : 1);
-}
-
-/* The derivative of the free residual to ln s at the trial state. The residual is linear in s where what slips goes on
-   slipping, up to the bound of the penalties of faces. The loads are compared over the same step. */
-static PetscErrorCode ModelPenaltyForces(Model model, PenaltySource source, Vec forces)
-{
-  const Problem   problem = model->problem;
-  const PetscReal scale   = 1 / (1 - PENALTY_STEP);
-  Vec             single;
-  PetscBool       ok;
+  PetscReal *f;
 
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(forces, &single));
-  PetscCall(ModelScalePenalty(model, source, scale));
-  PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
-  PetscCall(ProblemCollectResidual(problem, model->x, forces));
-  PetscCall(ModelScalePenalty(model, source, 1));
-  PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
-  PetscCall(ProblemCollectResidual(problem, model->x, single));
-  PetscCall(VecAXPY(forces, -1, single));
-  PetscCall(VecScale(forces, 1 / (scale - 1)));
-  PetscCall(VecDestroy(&single));
+  PetscCall(PetscCalloc1(model->mesh->n_nodes * model->mesh->dim, &f));
+  PetscCall(ContactStifferForces(model->contact, source, f));
+  PetscCall(MeshLocalToGlobal(model->mesh, f, forces));
+  PetscCall(VecScale(forces, -1));
+  PetscCall(PetscFree(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -du/d(ln s) of the free displacements at the trial state, whose contact and slip are held, for each source that the
-   scene has. *known: the linear solves succeeded. */
+/* du/d(ln s) of the free displacements at the trial state, for each source that the scene has. *known: the linear solves
+   succeeded. */
 static PetscErrorCode ModelPenaltySlopes(Model model, int sources, Vec slope[], PetscBool *known)
 {
   Vec forces;
@@ -174,7 +155,6 @@ static PetscErrorCode ModelPenaltySlopes(Model model, int sources, Vec slope[], 
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &forces));
-  PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, PETSC_FALSE));
   PetscCall(LinearSolverRenew(model->work->solver));
   PetscCall(LinearSolverSetStart(model->work->solver, 0));
   PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
@@ -182,49 +162,61 @@ static PetscErrorCode ModelPenaltySlopes(Model model, int sources, Vec slope[], 
   PetscCall(KSPSetOperators(ksp, model->problem->A, model->problem->P));
   *known = PETSC_TRUE;
   for (int source = 0; source < sources && *known; source++) {
-    PetscCall(ModelPenaltyForces(model, (PenaltySource)source, forces));
+    PetscCall(ModelStifferForces(model, (PenaltySource)source, forces));
     PetscCall(KSPSolve(ksp, forces, slope[source]));
     *known = (PetscBool)!LinearCheckLost(model->linear);
   }
-  PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(VecDestroy(&forces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How each pair presses in the present state, at displacements u. Two pairs that treat two surfaces from either side
-   share the load between them, and stiffer penalties shift it. Both get what they press together. */
-static PetscErrorCode ModelPresentLoads(Model model, const PetscReal *u, ContactLoad load[])
+/* What two pairs press together that treat two surfaces from either side, and how that changes. Friction acts on the
+   slave, which is the other one's master. */
+static void JoinLoads(const ContactLoad load[2], const ContactLoad rise[2], ContactLoad *joint, ContactLoad *joint_rise)
 {
+  const int larger     = load[1].peak > load[0].peak;
+  PetscReal moment[2] = {0, 0}; /* of forces times pressures, and its change */
+
+  for (int k = 0; k < 2; k++) {
+    moment[0] += load[k].force * load[k].pressure;
+    moment[1] += rise[k].force * load[k].pressure + load[k].force * rise[k].pressure;
+  }
+  *joint      = (ContactLoad){.force = load[0].force + load[1].force, .peak = load[larger].peak};
+  *joint_rise = (ContactLoad){.force = rise[0].force + rise[1].force, .peak = rise[larger].peak};
+  if (joint->force > 0) {
+    joint->pressure      = moment[0] / joint->force;
+    joint_rise->pressure = (moment[1] - joint->pressure * joint_rise->force) / joint->force;
+  }
+  for (int d = 0; d < 3; d++) {
+    joint->friction[d]      = load[0].friction[d] - load[1].friction[d];
+    joint_rise->friction[d] = rise[0].friction[d] - rise[1].friction[d];
+  }
+}
+
+/* How each pair presses in the present state, and how that changes by rise[], which may be NULL. Two pairs that treat two
+   surfaces from either side share the load between them, and stiffer penalties shift it. Both get what they press
+   together. */
+static PetscErrorCode ModelLoads(Model model, ContactLoad load[], ContactLoad rise[])
+{
+  const int pairs = ContactPairs(model->contact);
+
   PetscFunctionBeginUser;
-  for (int p = 0; p < ContactPairs(model->contact); p++) PetscCall(ContactPairLoad(model->contact, p, u, &load[p]));
-  for (int p = 0; p < ContactPairs(model->contact); p++) {
-    const int         q   = ContactPairPartner(model->contact, p);
-    const ContactLoad own = load[p];
+  for (int p = 0; p < pairs; p++) PetscCall(ContactPairLoad(model->contact, p, model->problem->trial, &load[p]));
+  for (int p = 0; p < pairs; p++) {
+    const int         q    = ContactPairPartner(model->contact, p);
+    const ContactLoad none = {.force = 0};
 
     if (q <= p) continue;
-    load[p].force = own.force + load[q].force;
-    load[p].pressure =
-      load[p].force > 0 ? (own.force * own.pressure + load[q].force * load[q].pressure) / load[p].force : 0;
-    load[p].peak = PetscMax(own.peak, load[q].peak);
-    load[q]      = load[p];
+    JoinLoads((ContactLoad[]){load[p], load[q]}, (ContactLoad[]){rise ? rise[p] : none, rise ? rise[q] : none}, &load[p],
+              rise ? &rise[p] : &(ContactLoad){.force = 0});
+    load[q] = load[p];
+    if (rise) rise[q] = rise[p];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same at other displacements than those of the present state. */
-static PetscErrorCode ModelPairLoads(Model model, const PetscReal *u, ContactLoad load[])
-{
-  PetscBool ok;
-
-  PetscFunctionBeginUser;
-  PetscCall(ProblemResidual(model->problem, u, model->t, model->t, &ok));
-  PetscCall(ModelPresentLoads(model, u, load));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Largest entries of the local displacements and of their change along the slope, of all ranks: the second over the
-   first. */
-static PetscErrorCode ModelLargestChange(Model model, const PetscReal *changed, PetscReal step, PetscReal *part)
+/* Largest entries of the local displacements and of their slope v, of all ranks: the second over the first. */
+static PetscErrorCode ModelLargestChange(Model model, const PetscReal *v, PetscReal *part)
 {
   const PetscReal *u       = model->problem->trial;
   PetscReal        most[2] = {0, 0};
@@ -233,72 +225,66 @@ static PetscErrorCode ModelLargestChange(Model model, const PetscReal *changed, 
   for (PetscInt i = 0; i < model->mesh->n_nodes * model->mesh->dim; i++) {
     if (IsPressureNode(model->mesh, i / model->mesh->dim)) continue;
     most[0] = PetscMax(most[0], PetscAbsReal(u[i]));
-    most[1] = PetscMax(most[1], PetscAbsReal(changed[i] - u[i]) / step);
+    most[1] = PetscMax(most[1], PetscAbsReal(v[i]));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, model->mesh->comm));
   *part = most[0] > 0 ? most[1] / most[0] : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Change of a value over the step, as a part of the value. */
-static PetscReal PartChanged(PetscReal now, PetscReal then, PetscReal step)
+/* Change of a value as a part of the value. */
+static PetscReal PartChanged(PetscReal now, PetscReal rise)
 {
-  return now > 0 ? PetscAbsReal(then - now) / (step * now) : 0;
+  return now > 0 ? PetscAbsReal(rise) / now : 0;
 }
 
-/* Change of a pair's friction over the step, as a part of the whole of it. Friction that is light beside the pressure,
-   or that cancels out, is measured by the pressure. */
-static PetscReal FrictionChanged(const ContactLoad *now, const ContactLoad *stiff, PetscReal step)
+/* Change of a pair's friction as a part of the whole of it. Friction that is light beside the pressure, or that cancels
+   out, is measured by the pressure. */
+static PetscReal FrictionChanged(const ContactLoad *now, const ContactLoad *rise)
 {
   PetscReal change = 0, whole = 0;
 
   for (int d = 0; d < 3; d++) {
-    change += PetscSqr(stiff->friction[d] - now->friction[d]);
+    change += PetscSqr(rise->friction[d]);
     whole += PetscSqr(now->friction[d]);
   }
   whole = PetscMax(PetscSqrtReal(whole), PENALTY_LIGHT_FRICTION * now->force);
-  return whole > 0 ? PetscSqrtReal(change) / (step * whole) : 0;
+  return whole > 0 ? PetscSqrtReal(change) / whole : 0;
 }
 
-/* Changes of a pair's loads by stiffer penalties over a step, as parts of themselves. */
-static void ComparePairLoads(PenaltySource source, const ContactLoad *now, const ContactLoad *stiff, PetscReal step,
-                             PetscReal displacement, PenaltyError *error)
+/* Fills the estimates of a pair from its loads and their changes by stiffer penalties. */
+static void FillError(PenaltySource source, const ContactLoad *now, const ContactLoad *rise, PetscReal displacement,
+                      PenaltyError *error)
 {
   if (source == BY_SLIP) {
-    error->slip_force = PetscMax(PartChanged(now->force, stiff->force, step), FrictionChanged(now, stiff, step));
+    error->slip_force        = PetscMax(PartChanged(now->force, rise->force), FrictionChanged(now, rise));
     error->slip_displacement = displacement;
     return;
   }
-  error->force        = PartChanged(now->force, stiff->force, step);
-  error->pressure     = PartChanged(now->pressure, stiff->pressure, step);
-  error->peak         = PartChanged(now->peak, stiff->peak, step);
+  error->force        = PartChanged(now->force, rise->force);
+  error->pressure     = PartChanged(now->pressure, rise->pressure);
+  error->peak         = PartChanged(now->peak, rise->peak);
   error->displacement = displacement;
 }
 
-/* Compares forces and pressures at the trial state with those a step along the slope. */
-static PetscErrorCode ModelComparePenalty(Model model, PenaltySource source, Vec slope)
+/* Estimates the errors of all pairs from the slope of the free displacements at the trial state. */
+static PetscErrorCode ModelFillErrors(Model model, PenaltySource source, Vec slope)
 {
-  const int       pairs = ContactPairs(model->contact);
-  const PetscInt  n     = model->mesh->n_nodes * model->mesh->dim;
-  const PetscReal step  = PENALTY_STEP;
-  PetscReal      *u, displacement;
-  ContactLoad    *load;
-  Vec             x;
+  const int    pairs = ContactPairs(model->contact);
+  ContactLoad *load;
+  PetscReal   *v, displacement;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n, &u, 2 * pairs, &load));
-  PetscCall(VecDuplicate(model->x, &x));
-  PetscCall(VecWAXPY(x, -step, slope, model->x));
-  PetscCall(ProblemDisplacements(model->problem, x, model->t, u));
-  PetscCall(ModelLargestChange(model, u, step, &displacement));
-  PetscCall(ModelScalePenalty(model, source, 1 / (1 - step)));
-  PetscCall(ModelPairLoads(model, u, load));
-  PetscCall(ModelScalePenalty(model, source, 1));
-  PetscCall(ModelPairLoads(model, model->problem->trial, &load[pairs]));
+  PetscCall(PetscCalloc1(model->mesh->n_nodes * model->mesh->dim, &v));
+  PetscCall(PetscMalloc1(2 * pairs, &load));
+  PetscCall(MeshGlobalToLocal(model->mesh, slope, v));
+  PetscCall(ModelLargestChange(model, v, &displacement));
+  PetscCall(ContactLoadChanges(model->contact, source, model->problem->trial, v, &load[pairs]));
+  PetscCall(ModelLoads(model, load, &load[pairs]));
   for (int p = 0; p < pairs; p++)
-    ComparePairLoads(source, &load[pairs + p], &load[p], step, displacement, &model->work->penalty_error[p]);
-  PetscCall(VecDestroy(&x));
-  PetscCall(PetscFree2(u, load));
+    FillError(source, &load[p], &load[pairs + p], displacement, &model->work->penalty_error[p]);
+  PetscCall(PetscFree(load));
+  PetscCall(PetscFree(v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -323,16 +309,17 @@ static void JudgeStiffening(Model model, PenaltySource source, int pair)
 PetscErrorCode ModelEstimatePenalty(Model model)
 {
   const int sources = ContactHasFriction(model->contact) ? PENALTY_SOURCES : BY_SLIP;
-  PetscBool known   = PETSC_FALSE;
+  PetscBool known   = PETSC_FALSE, ok;
   Vec       slope[PENALTY_SOURCES];
 
   PetscFunctionBeginUser;
   for (int source = 0; source < sources; source++) PetscCall(VecDuplicate(model->x, &slope[source]));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
   PetscCall(ModelPenaltySlopes(model, sources, slope, &known));
   for (int p = 0; p < ContactPairs(model->contact); p++) model->work->penalty_error[p] = unknown;
   for (int source = 0; source < sources && known; source++) {
-    PetscCall(ModelComparePenalty(model, (PenaltySource)source, slope[source]));
+    PetscCall(ModelFillErrors(model, (PenaltySource)source, slope[source]));
     for (int p = 0; p < ContactPairs(model->contact); p++) JudgeStiffening(model, (PenaltySource)source, p);
   }
   for (int source = 0; source < sources; source++) PetscCall(VecDestroy(&slope[source]));
@@ -393,7 +380,7 @@ PetscErrorCode ModelStiffen(Model model, PetscReal factor[], PetscBool *stiffene
   *stiffened = PETSC_FALSE;
   for (int k = 0; k < PENALTY_SOURCES * pairs; k++) factor[k] = 1;
   PetscCall(PetscMalloc1(pairs, &load));
-  PetscCall(ModelPresentLoads(model, model->problem->trial, load));
+  PetscCall(ModelLoads(model, load, NULL));
   for (int source = 0; source < PENALTY_SOURCES && !*stiffened; source++)
     PetscCall(StiffenSource(model, (PenaltySource)source, load, &factor[source * pairs], stiffened));
   PetscCall(PetscFree(load));

@@ -78,8 +78,6 @@ typedef struct {
   PetscReal  automatic;             /* penalty (force per length and area) */
   PetscReal  initial;               /* the penalty at the start of the run */
   PetscReal  most;                  /* largest penalty that counts (force per length and area), ContactSoften() */
-  PetscReal  trial_factor;          /* factor on what penalties count for, ContactScalePenalty() */
-  PetscReal  trial_stick;           /* the same for the penalty of what sticks */
   PetscBool  holding, touching;     /* a linear step: closed terms stay so, and what touches is closed */
   PetscBool *held, *predicted;      /* terms closed where the linear step began; those the prediction counted on */
 
@@ -160,6 +158,8 @@ PetscErrorCode ContactOverride(Contact);
 /* contactrepeated.c */
 PetscErrorCode ContactRefuseRepeated(Contact);
 /* contactquery.c */
+PetscErrorCode ContactNodePressures(Contact, int pair, const PetscReal *u, const PetscReal *force,
+                                    const PetscReal *reaction, PetscReal *area, PetscReal *pressure);
 PetscErrorCode ContactPairPressing(const ContactPair *, ContactPressing *);
 /* contactfaces.c */
 PetscBool      ContactFacesServe(const ContactPair *, Scene, int order);
@@ -167,6 +167,7 @@ PetscErrorCode ContactFacesAdd(ContactPair *, const PetscReal turn[]);
 PetscReal      ContactFacesShare(const ContactPair *);
 void           ContactFacesPoints(ContactPair *);
 PetscReal      ContactTermPenalty(const ContactPair *, PetscInt term, PetscReal penalty);
+PetscBool      ContactTermAtBound(const ContactPair *, PetscInt term);
 PetscInt       ContactTermId(const ContactPair *, PetscInt term);
 /* contactterm.c */
 LawState  ContactTermState(const ContactPair *, PetscInt term, PetscReal t, PetscReal most);
@@ -180,7 +181,7 @@ PetscReal ContactTermOnsetGap(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermBound(const ContactPair *, PetscInt term);
 PetscReal ContactTouchTolerance(const ContactPair *, PetscInt term);
 PetscReal ContactMeanOpening(const ContactPair *, PetscInt term);
-void      ContactTermPress(ContactPair *, PetscInt term, PetscReal pressure);
+void      ContactTermPress(const ContactPair *, PetscInt term, PetscReal pressure, PetscReal *point_force);
 /* contactpoint.c */
 PetscErrorCode ContactPointEvaluate(const ContactPair *, const Smoother *, NeighbourLists, PetscInt q, int seed,
                                     SmootherWant, PetscBool *found);
@@ -236,6 +237,7 @@ PetscInt       FrictionFootPoint(const ContactPair *, PetscInt q, int node);
 PetscErrorCode FrictionPointForces(const ContactPair *, PetscInt q, const PetscReal force[3], PetscReal *values);
 PetscErrorCode FrictionTermAsk(const ContactPair *, PetscInt term, PetscReal t, FrictionInput *, PetscBool *found);
 PetscErrorCode FrictionResidual(ContactPair *, PetscReal t, PetscReal *values);
+PetscErrorCode FrictionNodalForces(const ContactPair *, const PetscReal *force, PetscReal *on_node);
 PetscErrorCode FrictionShow(const ContactPair *, const PetscReal *area, ContactNodes *);
 /* frictionstep.c */
 PetscErrorCode FrictionTermMotion(const ContactPair *, PetscInt term, const PetscReal *values, PetscReal motion[3]);
@@ -246,6 +248,13 @@ PetscErrorCode FrictionStepTerm(const ContactPair *, PetscInt term, PetscReal t,
 PetscErrorCode FrictionTermNodes(const ContactPair *, PetscInt term);
 PetscErrorCode FrictionTermBlock(const ContactPair *, BlockMatrix, int list, PetscInt term, PetscReal t, PetscInt n,
                                  const PetscInt nodes[]);
+PetscErrorCode FrictionTermAlong(const ContactPair *, PetscInt term, const FrictionTraction *, const PetscReal *motion,
+                                 PetscReal change[3]);
+/* contactresidual.c */
+PetscErrorCode ContactPointForces(const ContactPair *, const PetscReal *point_force, PetscReal *values);
+PetscErrorCode ContactPointReactions(const ContactPair *, const PetscReal *point_force, const PetscReal *values,
+                                     PetscReal *reaction);
+PetscErrorCode ContactNodalForces(const ContactPair *, const PetscReal *point_force, PetscReal *force);
 /* contacttangent.c */
 PetscErrorCode ContactMatrixRows(Contact, PetscInt *rows);
 /* contactlists.c */

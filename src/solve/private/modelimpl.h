@@ -49,9 +49,6 @@ typedef struct {
   Vec       x, y;     /* free displacements at its start, and the whole step (length) */
 } RelaxedStep;
 
-/* Where bodies give way in contact: what the error of the penalty comes from. */
-typedef enum { BY_PENETRATION, BY_SLIP, PENALTY_SOURCES } PenaltySource;
-
 typedef struct _n_ModelWork {
   LinearSolver   solver;
   PetscBool      ordered;       /* the linear solver has chosen the order of its unknowns */
