@@ -105,9 +105,9 @@ typedef enum { BY_PENETRATION, BY_SLIP, PENALTY_SOURCES } PenaltySource;
 
 /* How a pair presses, over all its slave nodes. */
 typedef struct {
-  PetscReal force;    /* sum of the normal forces; axisymmetric: over 360 degrees */
-  PetscReal pressure; /* mean, each node weighted by its force (force per area) */
-  PetscReal peak;     /* largest pressure of a node */
+  PetscReal force;       /* sum of the normal forces; axisymmetric: over 360 degrees */
+  PetscReal pressure;    /* mean, each node weighted by its force (force per area) */
+  PetscReal peak;        /* largest pressure of a node */
   PetscReal friction[3]; /* sum of the forces by friction */
 } ContactLoad;
 

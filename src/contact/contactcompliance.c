@@ -1,6 +1,6 @@
 /* First variations of contact by its penalties: the forces that stiffer penalties add where nothing moves, and how the
-   loads of the pairs change along the motion that follows. What is in contact stays so, and what slips goes on slipping.
-   No step is taken, so that no digits are lost. */
+   loads of the pairs change along the motion that follows. What is in contact stays so, and what slips goes on
+   slipping. No step is taken, so that no digits are lost. */
 #include "contactimpl.h"
 
 /* Present areas of slave nodes are compared to both sides along a motion, where it is this part of the mean size of the

@@ -127,8 +127,7 @@ PetscErrorCode ContactPairDepth(Contact contact, int p, PetscReal *over_h)
   *over_h = 0;
   for (PetscInt c = 0; c < pair->n; c++)
     if (pair->now.status[c] == CONTACT_CLOSED)
-      *over_h =
-        PetscMax(*over_h, (ContactTermOffset(pair, c, pair->t) - pair->now.gap[c]) / SmallerSize(pair, c));
+      *over_h = PetscMax(*over_h, (ContactTermOffset(pair, c, pair->t) - pair->now.gap[c]) / SmallerSize(pair, c));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, over_h, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -304,8 +303,8 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(contact->mesh->n_nodes, &area));
-  PetscCall(ContactNodePressures(contact, p, u, pair->force, partner >= 0 ? contact->pairs[partner].reaction : NULL, area,
-                                 pair->pressure));
+  PetscCall(ContactNodePressures(contact, p, u, pair->force, partner >= 0 ? contact->pairs[partner].reaction : NULL,
+                                 area, pair->pressure));
   *nodes = (ContactNodes){.n        = pair->n_nodes,
                           .node     = pair->node,
                           .area     = pair->area,

@@ -194,8 +194,8 @@ PetscReal ContactMeanOpening(const ContactPair *pair, PetscInt c)
 @*/
 LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t, PetscReal most)
 {
-  return (LawState){.penalty = PetscMin(most, ContactTermPenalty(pair, c, pair->now.penalty[c])),
-                    .offset  = ContactTermOffset(pair, c, t),
+  return (LawState){.penalty    = PetscMin(most, ContactTermPenalty(pair, c, pair->now.penalty[c])),
+                    .offset     = ContactTermOffset(pair, c, t),
                     .multiplier = pair->now.multiplier[c] - (pair->carried ? pair->carried[c] : 0)};
 }
 

@@ -3,8 +3,8 @@
    A quantity q depends on the factor s on all penalties like q(s) = q_0 (1 - c / s) once the penalties are stiff. Then
    its error q_0 - q is dq/d(ln s). One linear solve with the tangent gives du/d(ln s), because the residual depends on
    ln s through the penalty part of the contact forces alone. The derivatives of forces and pressures follow from it by
-   their first variations (contact/contactcompliance.c). Nothing is compared over a finite step, in which what penetrates
-   is so small that rounding of positions would show.
+   their first variations (contact/contactcompliance.c). Nothing is compared over a finite step, in which what
+   penetrates is so small that rounding of positions would show.
 
    The penalty of what sticks leaves an error in the same way: surfaces that stick give way by an elastic slip, as they
    give way by penetrations. Its estimate is the same with tractions of friction where it sticks in the place of the
@@ -28,8 +28,8 @@
    power of it has not brought what it was made for: what is left does not come from the penalty, or it is at a few
    terms that hardly have an area, such as those over the end of a surface. The pair is then stiffened no more. */
 #define PENALTY_GAIN 0.5
-/* In any step, penalties that the run may choose are made stiffer where a node stands deeper in a face than this part of
-   what the certificate allows. They are made so stiff that the second part is to be expected. */
+/* In any step, penalties that the run may choose are made stiffer where a node stands deeper in a face than this part
+   of what the certificate allows. They are made so stiff that the second part is to be expected. */
 #define PENALTY_DEEP    0.6
 #define PENALTY_SHALLOW 0.2
 /* A pair whose forces are below this part of those of the most loaded pair does not stiffen its penalty, because its
@@ -39,9 +39,8 @@
 #define PENALTY_LIGHT_FRICTION 0.02
 
 /* No estimate */
-static const PenaltyError unknown = {
-  .force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN, .slip_force = NAN, .slip_displacement = NAN};
-
+static const PenaltyError unknown =
+  {.force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN, .slip_force = NAN, .slip_displacement = NAN};
 
 /* Makes room for the estimates; none is known yet. */
 PetscErrorCode ModelCreatePenaltyError(Model model)
@@ -70,7 +69,8 @@ PetscErrorCode ModelArchivePenaltyError(Model model, Archive archive)
 
   PetscFunctionBeginUser;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ArchiveReals(archive, "model/penalty_error", PENALTY_ERROR_VALUES * n, &model->work->penalty_error[0].force));
+  PetscCall(
+    ArchiveReals(archive, "model/penalty_error", PENALTY_ERROR_VALUES * n, &model->work->penalty_error[0].force));
   PetscCall(ArchiveReals(archive, "model/penalty_stiffened", PENALTY_SOURCES * n, model->work->stiffened_by));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -146,8 +146,8 @@ static PetscErrorCode ModelStifferForces(Model model, PenaltySource source, Vec 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* du/d(ln s) of the free displacements at the trial state, for each source that the scene has. *known: the linear solves
-   succeeded. */
+/* du/d(ln s) of the free displacements at the trial state, for each source that the scene has. *known: the linear
+   solves succeeded. */
 static PetscErrorCode ModelPenaltySlopes(Model model, int sources, Vec slope[], PetscBool *known)
 {
   Vec forces;
@@ -174,7 +174,7 @@ static PetscErrorCode ModelPenaltySlopes(Model model, int sources, Vec slope[], 
    slave, which is the other one's master. */
 static void JoinLoads(const ContactLoad load[2], const ContactLoad rise[2], ContactLoad *joint, ContactLoad *joint_rise)
 {
-  const int larger     = load[1].peak > load[0].peak;
+  const int larger    = load[1].peak > load[0].peak;
   PetscReal moment[2] = {0, 0}; /* of forces times pressures, and its change */
 
   for (int k = 0; k < 2; k++) {
@@ -193,8 +193,8 @@ static void JoinLoads(const ContactLoad load[2], const ContactLoad rise[2], Cont
   }
 }
 
-/* How each pair presses in the present state, and how that changes by rise[], which may be NULL. Two pairs that treat two
-   surfaces from either side share the load between them, and stiffer penalties shift it. Both get what they press
+/* How each pair presses in the present state, and how that changes by rise[], which may be NULL. Two pairs that treat
+   two surfaces from either side share the load between them, and stiffer penalties shift it. Both get what they press
    together. */
 static PetscErrorCode ModelLoads(Model model, ContactLoad load[], ContactLoad rise[])
 {
@@ -207,8 +207,8 @@ static PetscErrorCode ModelLoads(Model model, ContactLoad load[], ContactLoad ri
     const ContactLoad none = {.force = 0};
 
     if (q <= p) continue;
-    JoinLoads((ContactLoad[]){load[p], load[q]}, (ContactLoad[]){rise ? rise[p] : none, rise ? rise[q] : none}, &load[p],
-              rise ? &rise[p] : &(ContactLoad){.force = 0});
+    JoinLoads((ContactLoad[]){load[p], load[q]}, (ContactLoad[]){rise ? rise[p] : none, rise ? rise[q] : none},
+              &load[p], rise ? &rise[p] : &(ContactLoad){.force = 0});
     load[q] = load[p];
     if (rise) rise[q] = rise[p];
   }
@@ -339,8 +339,9 @@ static PetscBool MayStiffen(const SceneContact *scene, PenaltySource source)
   return (PetscBool)(source == BY_SLIP ? scene->stick_may_stiffen : scene->penalty_may_stiffen);
 }
 
-/* Makes the penalties of one kind stiffer that the run may choose and whose error is large. Those with such small forces
-   stay as they are of which the solve itself leaves an error as large. *stiffened is set where some are stiffer. */
+/* Makes the penalties of one kind stiffer that the run may choose and whose error is large. Those with such small
+   forces stay as they are of which the solve itself leaves an error as large. *stiffened is set where some are stiffer.
+ */
 static PetscErrorCode StiffenSource(Model model, PenaltySource source, const ContactLoad load[], PetscReal factor[],
                                     PetscBool *stiffened)
 {
@@ -351,8 +352,8 @@ static PetscErrorCode StiffenSource(Model model, PenaltySource source, const Con
   for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
   for (int p = 0; p < pairs; p++) {
     const PetscReal worst = WorstError(&model->work->penalty_error[p], source);
-    PetscReal      *at = &model->work->stiffened_at[source * pairs + p];
-    PetscReal      *by = &model->work->stiffened_by[source * pairs + p];
+    PetscReal      *at    = &model->work->stiffened_at[source * pairs + p];
+    PetscReal      *by    = &model->work->stiffened_by[source * pairs + p];
 
     if (!MayStiffen(ContactPairScene(model->contact, p), source) || !(worst > PENALTY_ERROR_LARGE) ||
         load[p].force < PENALTY_LIGHT_PAIR * most || PENALTY_ERROR_LARGE * load[p].force <= left || *by < 0)

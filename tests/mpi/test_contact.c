@@ -389,13 +389,112 @@ static void test_overlap(void **state)
   }
 }
 
+/* Some motion of the nodes without any symmetry. */
+static void MakeMotion(double scale, PetscReal *v)
+{
+  const PetscReal *X = parts.mesh->coords;
+
+  for (PetscInt i = 0; i < parts.mesh->n_nodes; i++) {
+    v[2 * i]     = scale * sin(2 * X[2 * i] + 3 * X[2 * i + 1]);
+    v[2 * i + 1] = scale * cos(3 * X[2 * i] - 2 * X[2 * i + 1] + 0.4);
+  }
+}
+
+/* Loads of the first pair at u + h v, where penalties are exp(h) times as stiff. */
+static ContactLoad LoadAt(PenaltySource source, const PetscReal *v, double h)
+{
+  Contact     contact = parts.problem->contact;
+  PetscReal  *u;
+  ContactLoad load;
+
+  OK(PetscMalloc1(parts.mesh->n_nodes * 2, &u));
+  for (PetscInt i = 0; i < parts.mesh->n_nodes * 2; i++) u[i] = parts.u[i] + h * v[i];
+  OK(source == BY_SLIP ? ContactStiffenStick(contact, 0, exp(h)) : ContactStiffen(contact, 0, exp(h)));
+  OK(PetscArrayzero(parts.f, parts.mesh->n_nodes * 2));
+  (void)Residual(&parts, u, parts.f);
+  OK(ContactPairLoad(contact, 0, u, &load));
+  OK(source == BY_SLIP ? ContactStiffenStick(contact, 0, exp(-h)) : ContactStiffen(contact, 0, exp(-h)));
+  OK(PetscFree(u));
+  return load;
+}
+
+/* Forces that stiffer penalties add where nothing moves, as the difference over h. */
+static double ForcesDiffer(PenaltySource source, double h)
+{
+  const PetscInt n     = parts.mesh->n_nodes * 2;
+  double         error = 0, most = 0;
+  PetscReal     *f, *still;
+
+  OK(PetscCalloc2(n, &f, n, &still));
+  (void)LoadAt(source, still, 0);
+  OK(ContactStifferForces(parts.problem->contact, source, f));
+  for (int side = -1; side <= 1; side += 2) {
+    (void)LoadAt(source, still, side * h);
+    for (PetscInt i = 0; i < n; i++) f[i] -= side * parts.f[i] / (2 * h);
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    most  = PetscMax(most, fabs(parts.f[i]));
+    error = PetscMax(error, fabs(f[i]));
+  }
+  OK(PetscFree2(f, still));
+  OK(MPI_Allreduce(MPI_IN_PLACE, &error, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD));
+  OK(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD));
+  return error / most;
+}
+
+/* Changes of the loads by stiffer penalties and a motion are their differences, with friction that sticks or slips by a
+   shift of the upper block. */
+static void CheckStiffer(PenaltySource source, double shift)
+{
+  const double h = 1e-6;
+  PetscReal   *v;
+  ContactLoad  change, now, low, high;
+
+  (void)Evaluate();
+  for (PetscInt i = 0; i < parts.mesh->n_nodes; i++)
+    if (parts.mesh->coords[2 * i + 1] + parts.mesh->centre[1] > 1.05) parts.u[2 * i] += shift;
+  assert_true(ForcesDiffer(source, h) < 1e-8);
+  OK(PetscMalloc1(parts.mesh->n_nodes * 2, &v));
+  MakeMotion(0.1, v);
+  now = LoadAt(source, v, 0);
+  OK(ContactLoadChanges(parts.problem->contact, source, parts.u, v, &change));
+  low  = LoadAt(source, v, -h);
+  high = LoadAt(source, v, h);
+  assert_near(change.force, (high.force - low.force) / (2 * h), 1e-7 * now.force);
+  assert_near(change.pressure, (high.pressure - low.pressure) / (2 * h), 1e-7 * now.pressure);
+  assert_near(change.peak, (high.peak - low.peak) / (2 * h), 1e-7 * now.peak);
+  for (int d = 0; d < 3; d++)
+    assert_near(change.friction[d], (high.friction[d] - low.friction[d]) / (2 * h), 1e-7 * now.force);
+  OK(PetscFree(v));
+}
+
+static void test_stiffer(void **state)
+{
+  static const PartsBlock  fine[]   = {{"lower", 12, 1, {0, 3}, {0, 1}}, {"upper", 3, 1, {1.1, 1.7}, {1.1, 1.7}}};
+  static const char *const pairs[]  = {"", "smoother: diffuse, ", "formulation: surface_to_surface, ",
+                                       "smoother: diffuse, formulation: surface_to_surface, "};
+  static const double      shifts[] = {1e-4, 0.04}; /* what is in contact sticks, slips */
+  char                     pair[512];
+
+  (void)state;
+  for (int k = 0; k < 12; k++) {
+    const PenaltySource source = k < 8 ? BY_PENETRATION : BY_SLIP;
+
+    snprintf(pair, sizeof(pair), "%s%s%s", pairs[k % 4], k < 4 ? "" : "friction: {mu: 0.3}, ", PenaltyText(""));
+    PartsCreate(2, fine, NULL, SceneText("finite", pair), &parts);
+    PartsMove(&parts, Bend);
+    for (int s = 0; s < (k < 4 ? 1 : 2); s++) CheckStiffer(source, shifts[s]);
+    PartsDestroy(&parts);
+  }
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_flat),    cmocka_unit_test(test_inclined),
-                                     cmocka_unit_test(test_curved),  cmocka_unit_test(test_tangent),
-                                     cmocka_unit_test(test_uniform), cmocka_unit_test(test_window),
-                                     cmocka_unit_test(test_clamp),   cmocka_unit_test(test_augment),
-                                     cmocka_unit_test(test_soften),  cmocka_unit_test(test_overlap)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_flat),    cmocka_unit_test(test_inclined), cmocka_unit_test(test_curved),
+    cmocka_unit_test(test_tangent), cmocka_unit_test(test_uniform),  cmocka_unit_test(test_window),
+    cmocka_unit_test(test_clamp),   cmocka_unit_test(test_augment),  cmocka_unit_test(test_soften),
+    cmocka_unit_test(test_overlap), cmocka_unit_test(test_stiffer)};
 
   if (PartsStart(&argc, &argv)) return 1;
   return PartsEnd(cmocka_run_group_tests(tests, NULL, NULL));

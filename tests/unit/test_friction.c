@@ -62,6 +62,7 @@ static void law(const double *x, void *context, double value[3])
   memcpy(in.slip, x + 3, sizeof(in.slip));
   memcpy(in.along, x + 6, sizeof(in.along));
   in.pressure = given->pressure - given->rate * x[9];
+  in.stiffness *= exp(x[10]);
   in.coefficient += given->steepness * (in.pressure - given->pressure);
   FrictionEvaluate(&in, &out);
   memcpy(value, out.traction, sizeof(out.traction));
@@ -107,18 +108,19 @@ static void check_law(int dim, double coefficient, double began, Bound bound, Fr
   for (int trial = 0; trial < 20; trial++) {
     FrictionInput    in = node(dim, coefficient, began);
     FrictionTraction out;
-    double           x[10], direction[10], slope[3], sum[3], worst = 1, along[3], most = bound_node(bound, &in);
+    double           x[11], direction[11], slope[3], sum[3], worst = 1, along[3], most = bound_node(bound, &in);
 
     memcpy(x, in.normal, sizeof(in.normal));
     memcpy(x + 3, in.slip, sizeof(in.slip));
     memcpy(x + 6, in.along, sizeof(in.along));
-    x[9] = 0;
+    x[9] = x[10] = 0;
     for (int i = 0; i < 9; i += 3) fill(dim, 1, direction + i);
-    direction[9] = any();
+    direction[9]  = any();
+    direction[10] = 0.7;
     FrictionEvaluate(&in, &out);
     assert_int_equal(out.state, state);
     for (int i = 0; i < 3; i++) {
-      sum[i] = out.by_gap[i] * direction[9];
+      sum[i] = out.by_gap[i] * direction[9] + out.by_stiffness[i] * direction[10];
       for (int j = 0; j < 3; j++)
         sum[i] += out.by_normal[i][j] * direction[j] + out.by_slip[i][j] * direction[3 + j] +
                   out.by_along[i][j] * direction[6 + j];
@@ -126,7 +128,7 @@ static void check_law(int dim, double coefficient, double began, Bound bound, Fr
     for (double h = 3e-3; h > 2e-6; h /= 3) {
       double error[3];
 
-      difference(law, &in, 10, x, direction, h, slope);
+      difference(law, &in, 11, x, direction, h, slope);
       for (int d = 0; d < 3; d++) error[d] = slope[d] - sum[d];
       worst = fmin(worst, norm(error) / norm(sum));
     }
@@ -413,7 +415,7 @@ static void test_crossing(void **state)
 
   (void)state;
   for (int side = 0; side < 2; side++) { /* the master's faces are as long as 2 and 0.7 */
-    const double x[15] = {0.1, 1, 0, -1, 0.2, 0, 1, 0.4, 0, side ? -0.03 : -2.03, 0, 0, side ? 0.67 : -0.03, 0, 0};
+    const double  x[15] = {0.1, 1, 0, -1, 0.2, 0, 1, 0.4, 0, side ? -0.03 : -2.03, 0, 0, side ? 0.67 : -0.03, 0, 0};
     FrictionFoot  foot;
     FrictionLever lever;
 

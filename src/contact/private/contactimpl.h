@@ -232,7 +232,7 @@ PetscInt       FrictionTermGuide(const ContactPair *, PetscInt term);
 PetscErrorCode FrictionPointFoot(const ContactPair *, PetscInt q, const FrictionFoot **, PetscBool *found);
 PetscInt       FrictionOwnNodes(const ContactPair *, PetscInt q, const PetscInt **node, const PetscReal **S);
 void           FrictionNodeSign(const ContactPair *, PetscInt point, PetscInt *node, PetscReal sign[3]);
-PetscInt FrictionLeverNodes(const ContactPair *, PetscInt q, const PetscInt **node, const PetscReal **slope);
+PetscInt       FrictionLeverNodes(const ContactPair *, PetscInt q, const PetscInt **node, const PetscReal **slope);
 PetscInt       FrictionFootPoint(const ContactPair *, PetscInt q, int node);
 PetscErrorCode FrictionPointForces(const ContactPair *, PetscInt q, const PetscReal force[3], PetscReal *values);
 PetscErrorCode FrictionTermAsk(const ContactPair *, PetscInt term, PetscReal t, FrictionInput *, PetscBool *found);
