@@ -42,8 +42,8 @@
    what sticks. The first time is enough where the error is proportional to the compliance of the penalty, which it is
    when it is small. */
 #define EQUILIBRIUM_MAX_STIFFEN 4
-/* Times at one load parameter that they are made stiffer because nodes stand deep in faces: once, and once more where the
-   first one was too little. */
+/* Times at one load parameter that they are made stiffer because nodes stand deep in faces: once, and once more where
+   the first one was too little. */
 #define EQUILIBRIUM_MAX_DEEP 2
 /* Raises of penalties that are tried before they stay as they are: the whole one, and its square root. */
 #define EQUILIBRIUM_RAISES 2
@@ -443,12 +443,13 @@ static PetscBool ModelEstimatesAt(Model model, PetscReal t)
 }
 
 /* Goes back to the solution x with the penalties before, as no solution was found with those that are factor[] times as
-   stiff. The step is not to fail for a smaller error; the estimate says what is left. */
-static PetscErrorCode ModelSoften(Model model, const PetscReal factor[], Vec x, SolveReport *report)
+   stiff. The step is not to fail for a smaller error; the estimate says what is left. forecast: see
+   ModelSolveStiffened(). */
+static PetscErrorCode ModelSoften(Model model, const PetscReal factor[], PetscBool forecast, Vec x, SolveReport *report)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscInfo(model->snes, "no solution with stiffer penalties: they stay as they were\n"));
-  PetscCall(ModelUnstiffen(model, factor));
+  PetscCall(ModelUnstiffen(model, factor, forecast));
   PetscCall(VecCopy(x, model->x));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   ContactForgetLost(model->contact);
@@ -461,8 +462,8 @@ static PetscErrorCode ModelSoften(Model model, const PetscReal factor[], Vec x, 
 }
 
 /* Solves on with penalties that are factor[] times as stiff, or, where no solution is found, by the square root of that
-   only. If there is none either, the state is the one before. */
-static PetscErrorCode ModelSolveStiffened(Model model, PetscReal factor[], SolveReport *report,
+   only. If there is none either, the state is the one before. forecast: an estimate says what the raise is to bring. */
+static PetscErrorCode ModelSolveStiffened(Model model, PetscReal factor[], PetscBool forecast, SolveReport *report,
                                           ContactWindowState *window)
 {
   Vec x;
@@ -471,23 +472,23 @@ static PetscErrorCode ModelSolveStiffened(Model model, PetscReal factor[], Solve
   PetscCall(VecDuplicate(model->x, &x));
   PetscCall(VecCopy(model->x, x));
   for (int attempt = 0; attempt < EQUILIBRIUM_RAISES && *window == WINDOW_HOLDS; attempt++) {
-    if (attempt) PetscCall(ModelStiffenLess(model, factor));
+    if (attempt) PetscCall(ModelStiffenLess(model, factor, forecast));
     PetscCall(ModelSolveHeld(model, report));
     if (report->result == SOLVE_CONVERGED)
       *window = WINDOW_MISSED;
     else
-      PetscCall(ModelSoften(model, factor, x, report));
+      PetscCall(ModelSoften(model, factor, forecast, x, report));
     if (report->result != SOLVE_CONVERGED) break;
   }
   PetscCall(VecDestroy(&x));
-  if (*window == WINDOW_MISSED || report->result != SOLVE_CONVERGED) PetscFunctionReturn(PETSC_SUCCESS);
+  if (*window == WINDOW_MISSED || report->result != SOLVE_CONVERGED || !forecast) PetscFunctionReturn(PETSC_SUCCESS);
   report->stiffened = EQUILIBRIUM_MAX_STIFFEN;
   PetscCall(ModelEstimatePenalty(model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves with stiffer penalties, which the run may choose, where nodes stand deep in faces. WINDOW_MISSED: the step must
-   be solved on. */
+/* Solves with stiffer penalties, which the run may choose, where nodes stand deep in faces. WINDOW_MISSED: the step
+   must be solved on. */
 static PetscErrorCode ModelBoundDepth(Model model, SolveReport *report, ContactWindowState *window)
 {
   PetscBool  stiffened = PETSC_FALSE;
@@ -500,7 +501,7 @@ static PetscErrorCode ModelBoundDepth(Model model, SolveReport *report, ContactW
   if (stiffened) {
     report->deep++;
     report->adjusted++;
-    PetscCall(ModelSolveStiffened(model, factor, report, window));
+    PetscCall(ModelSolveStiffened(model, factor, PETSC_FALSE, report, window));
     if (*window == WINDOW_HOLDS) report->deep = EQUILIBRIUM_MAX_DEEP;
   }
   PetscCall(PetscFree(factor));
@@ -522,7 +523,7 @@ static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, Contac
   if (stiffened) {
     report->stiffened++;
     report->adjusted++;
-    PetscCall(ModelSolveStiffened(model, factor, report, window));
+    PetscCall(ModelSolveStiffened(model, factor, PETSC_TRUE, report, window));
   }
   PetscCall(PetscFree(factor));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -579,8 +580,7 @@ static PetscErrorCode ModelSolveOn(Model model, PetscBool slowly, SolveReport *r
   PetscFunctionBeginUser;
   if (slowly) PetscCall(ModelAnchor(model));
   PetscCall(ModelSolveHeld(model, report));
-  if (slowly && report->result != SOLVE_CONVERGED)
-    PetscCall(ModelSolveDamped(model, NULL, ModelSolveHeld, report));
+  if (slowly && report->result != SOLVE_CONVERGED) PetscCall(ModelSolveDamped(model, NULL, ModelSolveHeld, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -115,8 +115,9 @@ static PetscErrorCode StiffenPair(Model model, PenaltySource source, int p, Pets
   return source == BY_SLIP ? ContactStiffenStick(model->contact, p, factor) : ContactStiffen(model->contact, p, factor);
 }
 
-/* Takes back what ModelStiffen() has done, as no solution was found with penalties that are factor[] times as stiff. */
-PetscErrorCode ModelUnstiffen(Model model, const PetscReal factor[])
+/* Takes back what ModelStiffen() or ModelStiffenDeep() has done, as no solution was found with penalties that are
+   factor[] times as stiff. forecast: the raise was for an estimate, which judges it. */
+PetscErrorCode ModelUnstiffen(Model model, const PetscReal factor[], PetscBool forecast)
 {
   const int pairs = ContactPairs(model->contact);
 
@@ -127,7 +128,7 @@ PetscErrorCode ModelUnstiffen(Model model, const PetscReal factor[])
 
       if (factor[k] == 1) continue;
       PetscCall(StiffenPair(model, (PenaltySource)source, p, 1 / factor[k]));
-      model->work->stiffened_by[k] = -factor[k];
+      if (forecast) model->work->stiffened_by[k] = -factor[k];
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -389,22 +390,22 @@ PetscErrorCode ModelStiffen(Model model, PetscReal factor[], PetscBool *stiffene
 }
 
 /* After ModelUnstiffen(): makes penalties stiffer by the square roots of the factors, which factor[] then has. */
-PetscErrorCode ModelStiffenLess(Model model, PetscReal factor[])
+PetscErrorCode ModelStiffenLess(Model model, PetscReal factor[], PetscBool forecast)
 {
   const int pairs = ContactPairs(model->contact);
 
   PetscFunctionBeginUser;
   for (int k = 0; k < PENALTY_SOURCES * pairs; k++) {
     if (factor[k] == 1) continue;
-    factor[k]                    = PetscSqrtReal(factor[k]);
-    model->work->stiffened_by[k] = factor[k];
+    factor[k] = PetscSqrtReal(factor[k]);
+    if (forecast) model->work->stiffened_by[k] = factor[k];
     PetscCall(StiffenPair(model, (PenaltySource)(k / pairs), k % pairs, factor[k]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Makes penalties stiffer that the run may choose and that let nodes stand deep in faces. factor[] is that of
-   ModelStiffen(). *stiffened: some are. */
+   ModelStiffen(). *stiffened: some are. No estimate says what this is to bring, so that none judges it. */
 PetscErrorCode ModelStiffenDeep(Model model, PetscReal factor[], PetscBool *stiffened)
 {
   const int       pairs   = ContactPairs(model->contact);

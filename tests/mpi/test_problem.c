@@ -264,16 +264,18 @@ static void test_linear(void **state)
 /* Two blocks in line, 0.1 apart, pressed by 0.3: springs in series, which the linear step with contact finds. */
 static void test_linear_contact(void **state)
 {
-  static const PartsBlock column[] = {{"lower", 2, 1, {0, 1}, {0, 1}}, {"upper", 2, 1, {0, 1}, {1.1, 1.7}}};
-  static const char       text[]   = "geometry: plane_strain\nkinematics: small\nbodies:\n"
-                                     "  - {volume: lower, material: {law: linear, E: 1000, nu: 0}}\n"
-                                     "  - {volume: upper, material: {law: linear, E: 500, nu: 0}}\n"
-                                     "supports: [{surface: lower_bottom, ux: 0, uy: 0}, {surface: upper_top, ux: 0}]\n"
-                                     "loads: [{surface: upper_top, uy: -0.3}]\n"
-                                     "contact: [{name: joint, slave: lower_top, master: upper_bottom, smoother: facet, "
-                                     "formulation: node_to_surface, penalty: {initial: 2000}}]\n"
-                                     "solver: {type: direct, tolerance: 1e-12}\n";
-  const double            pressure = 0.2 / (1 / 1000. + 0.6 / 500. + 1 / 2000.);
+  static const PartsBlock column[]   = {{"lower", 2, 1, {0, 1}, {0, 1}}, {"upper", 2, 1, {0, 1}, {1.1, 1.7}}};
+  static const char       text[]     = "geometry: plane_strain\nkinematics: small\nbodies:\n"
+                                       "  - {volume: lower, material: {law: linear, E: 1000, nu: 0}}\n"
+                                       "  - {volume: upper, material: {law: linear, E: 500, nu: 0}}\n"
+                                       "supports: [{surface: lower_bottom, ux: 0, uy: 0}, {surface: upper_top, ux: 0}]\n"
+                                       "loads: [{surface: upper_top, uy: -0.3}]\n"
+                                       "contact: [{name: joint, slave: lower_top, master: upper_bottom, smoother: facet, "
+                                       "formulation: node_to_surface, penalty: {initial: 2000}}]\n"
+                                       "solver: {type: direct, tolerance: 1e-12}\n";
+  const double            compliance = 1 / 1000. + 0.6 / 500. + 1 / 2000.;
+  const double            pressure = 0.2 / compliance, share = 1 / 2000. / compliance;
+  PenaltyError            error;
   PetscReal               force[3];
   SolveReport             report;
   Model                   model;
@@ -288,6 +290,47 @@ static void test_linear_contact(void **state)
   OK(ProblemReaction(model->problem, &parts.mesh->groups[MeshFindGroup(parts.mesh, 1, "upper_top")], force));
   assert_near(force[1], -pressure, 1e-9);
   assert_true(report.newton <= 2);
+  error = ModelPenaltyError(model, 0); /* of the three springs in series, the third is the penalty */
+  assert_near(error.force, share, 1e-9);
+  assert_near(error.pressure, share, 1e-9);
+  assert_near(error.peak, share, 1e-9);
+  assert_near(error.displacement, share * pressure * 0.6 / 500. / 0.3, 1e-9);
+  OK(ModelDestroy(&model));
+  PartsDestroy(&parts);
+}
+
+/* A raise of the penalty for depth that fails and then succeeds by its square root has no estimate to be judged by: the
+   next one does not take it for a raise that brought too little. */
+static void test_raise_for_depth(void **state)
+{
+  static const PartsBlock column[] = {{"lower", 2, 1, {0, 1}, {0, 1}}, {"upper", 2, 1, {0, 1}, {1.1, 1.7}}};
+  static const char       text[]   = "geometry: plane_strain\nkinematics: small\nbodies:\n"
+                                     "  - {volume: lower, material: {law: linear, E: 1000, nu: 0}}\n"
+                                     "  - {volume: upper, material: {law: linear, E: 500, nu: 0}}\n"
+                                     "supports: [{surface: lower_bottom, ux: 0, uy: 0}, {surface: upper_top, ux: 0}]\n"
+                                     "loads: [{surface: upper_top, uy: -0.3}]\n"
+                                     "contact: [{name: joint, slave: lower_top, master: upper_bottom, smoother: facet, "
+                                     "formulation: node_to_surface}]\n"
+                                     "certificate: {penetration: 1e-12}\nsolver: {type: direct, tolerance: 1e-12}\n";
+  PetscReal               factor[PENALTY_SOURCES];
+  PetscBool               stiffened;
+  SolveReport             report;
+  Model                   model;
+
+  (void)state;
+  PartsCreate(2, column, NULL, text, &parts);
+  model = Start();
+  OK(ModelSolve(model, 1, &report));
+  assert_int_equal(report.result, SOLVE_CONVERGED);
+  assert_false(ModelPenaltyStays(model, 0));
+  OK(ModelStiffenDeep(model, factor, &stiffened));
+  assert_true(stiffened && factor[BY_PENETRATION] > 1);
+  OK(ModelUnstiffen(model, factor, PETSC_FALSE));
+  OK(ModelStiffenLess(model, factor, PETSC_FALSE));
+  OK(ModelEstimatePenalty(model));
+  assert_false(ModelPenaltyStays(model, 0));
+  OK(ModelUnstiffen(model, factor, PETSC_TRUE)); /* one for an estimate would have been judged */
+  assert_true(ModelPenaltyStays(model, 0));
   OK(ModelDestroy(&model));
   PartsDestroy(&parts);
 }
@@ -378,10 +421,10 @@ static void test_extrapolation(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_consistent), cmocka_unit_test(test_bar),
-                                     cmocka_unit_test(test_round_off),  cmocka_unit_test(test_quadratic),
-                                     cmocka_unit_test(test_linear),     cmocka_unit_test(test_linear_contact),
-                                     cmocka_unit_test(test_active_set), cmocka_unit_test(test_extrapolation)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_consistent),      cmocka_unit_test(test_bar),        cmocka_unit_test(test_round_off),
+    cmocka_unit_test(test_quadratic),       cmocka_unit_test(test_linear),     cmocka_unit_test(test_linear_contact),
+    cmocka_unit_test(test_raise_for_depth), cmocka_unit_test(test_active_set), cmocka_unit_test(test_extrapolation)};
 
   if (PartsStart(&argc, &argv)) return 1;
   return PartsEnd(cmocka_run_group_tests(tests, NULL, NULL));

@@ -13,6 +13,9 @@ SMOOTHED = 1e-3  # the smooth surface of a bent tip of four faces is not its fac
 SMOOTHED_PRESSURE = {"node_to_surface": 0.1, "surface_to_surface": 1e-2}
 PLANE = 5e-4  # of the force that flattens a tube: its wall on its own image or on a plane, with stiff penalties
 STIFF = 3000  # times the automatic penalty: what penetration leaves of error differs between the two
+PATCH = {"n_lower": 3, "n_upper": 5, "n_height": 2, "n_depth_lower": 2, "n_depth_upper": 3}
+OF_ROLE = 0.7  # measured 0.36 to 0.57 on meshes of other phases
+FINER = 0.4  # elements of half the size; measured 0.24 to 0.3
 ROLES = 2e-4  # of a force: between roles of slave and master
 ITERATIONS = 1.1  # of the named pair's
 
@@ -80,16 +83,39 @@ def walls():
     patch()
 
 
+def patch_fields(name, contact, fine=1):
+    """Flat blocks that do not match, on a mesh that is so many times as fine as that of the scene."""
+    sizes = ", ".join(f"{key}: {value * fine}" for key, value in PATCH.items())
+    return run(args, SCENES / "contact_patch.yaml", out=name, overrides=[
+        f"contact=[{{name: joint, {contact}, formulation: surface_to_surface, penalty: {{initial: auto, scale: 100}}}}]",
+        "probes=[]", f"mesh.parameters={{solid: 1, {sizes}}}"]).fields()
+
+
+def stress_error(fields):
+    """Largest error of the uniform stress, and its mean over the elements."""
+    errors = abs(fields["stress"][:, 1] / -10 - 1)
+    return errors.max(), errors.mean()
+
+
 def patch():
-    """Flat blocks that do not match, from both sides: no worse than the better role, where gaps are those of facets."""
-    how = "formulation: surface_to_surface, penalty: {initial: auto, scale: 100}"
+    """Flat blocks that do not match, from both sides. Where gaps are those of facets: no worse than the better role. The
+    diffuse surface passes on uniform pressures as uniform ones but along free edges of the master. There the largest
+    error stays as it is on finer meshes, 3 to 5 % as their faces happen to lie, and the zone becomes smaller."""
+    listed = "surfaces: [upper_bottom, lower_top]"
     for smoother, bound in (("facet", 0.012), ("diffuse", 0.04)):
-        fields = run(args, SCENES / "contact_patch.yaml", out=f"patch_{smoother}", overrides=[
-            f"contact=[{{name: joint, surfaces: [upper_bottom, lower_top], smoother: {smoother}, {how}}}]", "probes=[]"
-        ]).fields()
+        fields = patch_fields(f"patch_{smoother}", f"{listed}, smoother: {smoother}")
         for pair in ("joint.upper_bottom.lower_top", "joint.lower_top.upper_bottom"):
             check.near(f"patch, {smoother}: pressure of {pair}", fields[f"contact/{pair}/pressure"] / 10, 1, bound)
-        check.near(f"patch, {smoother}: stress", fields["stress"][:, 1] / -10, 1, bound)
+        if smoother == "facet":
+            check.near("patch, facet: stress", fields["stress"][:, 1] / -10, 1, bound)
+    largest, mean = stress_error(fields)
+    roles = [stress_error(patch_fields(f"patch_{slave}", f"slave: {slave}, master: {master}, smoother: diffuse"))[0]
+             for slave, master in (("upper_bottom", "lower_top"), ("lower_top", "upper_bottom"))]
+    check.holds("patch, diffuse: largest error of the stress is well below that of the better role",
+                largest < OF_ROLE * min(roles), f"{largest:.3e} of {min(roles):.3e}")
+    finer = stress_error(patch_fields("patch_finer", f"{listed}, smoother: diffuse", 2))[1]
+    check.holds("patch, diffuse: mean error of the stress falls with the mesh", finer < FINER * mean,
+                f"{mean:.3e}, {finer:.3e}")
 
 
 def ranks():

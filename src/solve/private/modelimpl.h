@@ -70,7 +70,7 @@ typedef struct _n_ModelWork {
 
   PenaltyError *penalty_error; /* of each pair, once the load is at its end */
   /* Of each pair for penetration, then of each for elastic slip: */
-  PetscReal    *stiffened_at;  /* its worst estimate when this solve stiffened it last; 0: it has not */
+  PetscReal    *stiffened_at;  /* its worst estimate when this solve stiffened it for it last; 0: it has not */
   PetscReal    *stiffened_by;  /* the factor by which it did; negative: that brought too little, and it stays */
 
   /* A look-ahead from the accepted state */
@@ -146,5 +146,5 @@ PetscErrorCode ModelArchivePenaltyError(Model, Archive);
 PetscErrorCode ModelEstimatePenalty(Model);
 PetscErrorCode ModelStiffenDeep(Model, PetscReal factor[], PetscBool *stiffened);
 PetscErrorCode ModelStiffen(Model, PetscReal factor[], PetscBool *stiffened);
-PetscErrorCode ModelUnstiffen(Model, const PetscReal factor[]);
-PetscErrorCode ModelStiffenLess(Model, PetscReal factor[]);
+PetscErrorCode ModelUnstiffen(Model, const PetscReal factor[], PetscBool forecast);
+PetscErrorCode ModelStiffenLess(Model, PetscReal factor[], PetscBool forecast);
