@@ -114,6 +114,8 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   if (pair->scene->share < 1) PetscCall(PairReaction(pair, values));
   if (pair->friction) PetscCall(FrictionResidual(pair, t, values));
   if (pair->tool) PetscCall(ContactToolForces(pair, values));
+  if (contact->hold)
+    ContactPairHold(contact, pair, t, values, &contact->hold[(pair - contact->pairs) * MOTION_COMPONENTS]);
   PetscCall(NeighbourListsReduce(pair->lists, values, f));
   if (contact->outer && HasOuter(pair)) PetscCall(NeighbourListsReduce(pair->lists, values, contact->outer));
   if (pair->formulation.surface) PetscCall(PairSharedForces(pair));
