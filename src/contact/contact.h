@@ -152,9 +152,9 @@ PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscRe
                                PetscReal *force2);
 PetscErrorCode ContactRoundOff(Contact, PetscReal *force);
 /* Work from outside and energy in contact */
-const Motion *ContactPairMotion(Contact, int pair);
-void          ContactWatchTools(Contact, PetscReal *hold);
-void          ContactStored(Contact, PetscReal t_0, PetscReal *stored, PetscReal *given);
+const Motion  *ContactPairMotion(Contact, int pair);
+void           ContactWatchTools(Contact, PetscReal *hold);
+PetscErrorCode ContactStored(Contact, PetscReal t_0, PetscBool moved, PetscReal *stored, PetscReal *given);
 /* Tangent */
 PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed);
 PetscErrorCode ContactTangentChanges(Contact, PetscInt *terms);

@@ -75,12 +75,15 @@ void ContactWatchTools(Contact contact, PetscReal *hold)
 /* Energies of a pair on this rank */
 typedef struct {
   PetscReal stored, given;
+  PetscReal lets_go, touches; /* parts of given where the whole pair is open at the end of the step, at its start */
+  PetscReal pressed[2];       /* terms that press: in the accepted state, now */
 } PairEnergy;
 
 /* Adds those of a term's normal pressure. Between the accepted state and the present one the trapezoidal rule gives
    contact the work (p_0 + p_1) (gap_0 - gap_1)/2. With p = penalty (onset - gap), this is the growth of p^2/(2 penalty)
-   less what the changes of onset and penalty give. A multiplier presses without a penetration: its part is in neither.
- */
+   less what the changes of onset and penalty give. Where the whole pair is open at one end of the step, it is less the
+   force at the other end over half of the opening, too, through which nothing presses; other terms take or leave the
+   force of a single one. A multiplier presses without a penetration: its part is in neither. */
 static void AddPressure(const ContactPair *pair, PetscInt c, PetscReal t_0, PairEnergy *energy)
 {
   const ContactState *accepted = &pair->accepted;
@@ -90,12 +93,18 @@ static void AddPressure(const ContactPair *pair, PetscInt c, PetscReal t_0, Pair
                              .offset     = ContactTermOffset(pair, c, t_0),
                              .multiplier = accepted->multiplier[c] - fluid};
   LawValue  value, then = {0, 0, 0};
-  PetscReal area, held;
+  PetscReal area, held, gap;
 
-  ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
+  ContactTermLaw(pair, c, pair->t, &value, &gap, &area);
+  if (PetscIsNanReal(gap)) return;
   if (!PetscIsNanReal(accepted->gap[c])) pair->law->evaluate(accepted->gap[c], &before, &then);
   held = PetscSqr(PetscMax(now.multiplier, 0)) / (2 * now.penalty);
   if (value.pressure > 0) energy->stored += area * (value.psi - held);
+  if (PetscIsNanReal(accepted->gap[c])) return;
+  energy->pressed[0] += then.pressure > 0;
+  energy->pressed[1] += value.pressure > 0;
+  if (!(value.pressure > 0)) energy->lets_go += area * then.pressure / 2 * (gap - LawOnsetGap(&now));
+  if (!(then.pressure > 0)) energy->touches -= area * value.pressure / 2 * (accepted->gap[c] - LawOnsetGap(&before));
   if (!(value.pressure > 0 && then.pressure > 0)) return;
   energy->given += area * (value.pressure + then.pressure) / 2 * (LawOnsetGap(&now) - LawOnsetGap(&before));
   energy->given += area * value.pressure * then.pressure / 2 * (1 / before.penalty - 1 / now.penalty);
@@ -123,31 +132,39 @@ static void AddElasticSlip(const ContactPair *pair, PetscInt c, PairEnergy *ener
   ContactStored - computes what contact stores in the state of the last residual, and what it was given since the
   accepted one without any motion: by overlaps that grow over t, and by penalties that change.
 
-  Not collective
+  Collective
 
   Input Parameters:
 + contact - the contact, after ContactResidual() with forces and before ContactAccept()
-- t_0     - load parameter of the accepted state
+. t_0     - load parameter of the accepted state
+- moved   - bodies were moved since then, so that its gaps are not those at which the step began
 
   Output Parameters:
-+ stored - energy in penetrations and elastic slip, of this rank
-- given  - energy, of this rank
++ stored - energy in penetrations and elastic slip, the same on all ranks
+- given  - energy, the same on all ranks; what the trapezoidal rule counts for forces through the opening of a pair that
+           lets go or touches is taken out of it
 
   Note:
   Where a penalty is raised, bodies that overlapped are pushed apart by twice the energy that the penetrations lose.
 @*/
-void ContactStored(Contact contact, PetscReal t_0, PetscReal *stored, PetscReal *given)
+PetscErrorCode ContactStored(Contact contact, PetscReal t_0, PetscBool moved, PetscReal *stored, PetscReal *given)
 {
-  PairEnergy energy = {0, 0};
-
+  PetscFunctionBeginUser;
+  *stored = *given = 0;
   for (int p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
+    const ContactPair *pair   = &contact->pairs[p];
+    PairEnergy         energy = {.stored = 0};
 
     for (PetscInt c = 0; c < pair->n; c++) {
       AddPressure(pair, c, t_0, &energy);
       if (pair->friction) AddElasticSlip(pair, c, &energy);
     }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, sizeof(energy) / sizeof(PetscReal), MPIU_REAL, MPI_SUM,
+                               contact->mesh->comm));
+    *stored += energy.stored;
+    *given += energy.given;
+    if (energy.pressed[1] == 0) *given += energy.lets_go;
+    if (energy.pressed[0] == 0 && !moved) *given += energy.touches;
   }
-  *stored = energy.stored;
-  *given  = energy.given;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

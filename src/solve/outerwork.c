@@ -13,6 +13,7 @@ struct _n_OuterWork {
   int          n_pairs;
   PetscMPIInt  rank;
   PetscBool    begun; /* there is an accepted state */
+  PetscReal   *u;     /* [n_nodes*dim] local displacements of that state (length) */
   Outside      now, before;
   OuterFigures figures; /* the same on all ranks */
 };
@@ -40,6 +41,7 @@ PetscErrorCode OuterWorkCreate(Problem problem, OuterWork *work)
   w->n_pairs = problem->contact ? ContactPairs(problem->contact) : 0;
   PetscCallMPI(MPI_Comm_rank(problem->mesh->comm, &w->rank));
   PetscCall(PetscCalloc2(n, &w->now.force, w->n_pairs * MOTION_COMPONENTS, &w->now.hold));
+  PetscCall(PetscCalloc1(n, &w->u));
   PetscCall(PetscCalloc2(n, &w->before.force, w->n_pairs * MOTION_COMPONENTS, &w->before.hold));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -57,6 +59,7 @@ PetscErrorCode OuterWorkDestroy(OuterWork *work)
   PetscFunctionBeginUser;
   if (!*work) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree2((*work)->now.force, (*work)->now.hold));
+  PetscCall(PetscFree((*work)->u));
   PetscCall(PetscFree2((*work)->before.force, (*work)->before.hold));
   PetscCall(PetscFree(*work));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -82,15 +85,28 @@ PetscErrorCode OuterWorkBegin(OuterWork work)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether bodies were moved since the last accepted state, without forces, to where the step began. */
+static PetscErrorCode WasMoved(const OuterWork work, const PetscReal *u_0, PetscBool *moved)
+{
+  const Mesh mesh = work->problem->mesh;
+
+  PetscFunctionBeginUser;
+  *moved = PETSC_FALSE;
+  for (PetscInt i = 0; i < mesh->n_nodes * mesh->dim; i++) *moved = (PetscBool)(*moved || u_0[i] != work->u[i]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, moved, sizeof(PetscBool), MPI_BYTE, MPI_BOR, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Collects what acts in the state of the last residual, what contact stores, and what it was given since t_0. */
-static PetscErrorCode Collect(OuterWork work, PetscReal t_0, const PetscReal *u, PetscReal t)
+static PetscErrorCode Collect(OuterWork work, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t)
 {
   const Problem  problem = work->problem;
   const Mesh     mesh    = problem->mesh;
   const PetscInt n       = mesh->n_nodes * mesh->dim;
   Outside       *now     = &work->now;
-  PetscReal     *all, sum[2] = {0, 0};
+  PetscReal     *all, stored = 0, given = 0;
   ContactSummary contact = {.dissipated = NAN};
+  PetscBool      moved;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &all));
@@ -102,14 +118,14 @@ static PetscErrorCode Collect(OuterWork work, PetscReal t_0, const PetscReal *u,
   for (PetscInt i = 0; i < n; i++) now->force[i] = (LoadsPrescribed(problem->loads, i) ? all[i] : 0) - now->force[i];
   PetscCall(PetscFree(all));
   if (problem->contact) {
-    ContactStored(problem->contact, t_0, &sum[0], &sum[1]);
+    PetscCall(WasMoved(work, u_0, &moved));
+    PetscCall(ContactStored(problem->contact, t_0, moved, &stored, &given));
     PetscCall(ContactSummarise(problem->contact, &contact));
   }
   PetscCallMPI(
     MPI_Allreduce(MPI_IN_PLACE, now->hold, work->n_pairs * MOTION_COMPONENTS, MPIU_REAL, MPI_SUM, mesh->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, mesh->comm));
-  work->figures.stored   = sum[0];
-  work->figures.work += work->begun ? sum[1] : 0;
+  work->figures.stored = stored;
+  work->figures.work += work->begun ? given : 0;
   work->figures.friction = PetscIsNanReal(contact.dissipated) ? 0 : contact.dissipated;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -152,9 +168,10 @@ PetscErrorCode OuterWorkAdd(OuterWork work, const PetscReal *u_0, PetscReal t_0,
 
   PetscFunctionBeginUser;
   if (work->problem->contact) ContactWatchTools(work->problem->contact, NULL);
-  PetscCall(Collect(work, t_0, u, t));
+  PetscCall(Collect(work, u_0, t_0, u, t));
   if (!work->begun) work->figures.given = work->figures.stored;
   work->begun = PETSC_TRUE;
+  PetscCall(PetscArraycpy(work->u, u, mesh->n_nodes * mesh->dim));
   for (PetscInt i = 0; i < mesh->n_nodes * mesh->dim; i++)
     if (mesh->node_owner[i / mesh->dim] == work->rank)
       sum += (work->before.force[i] + work->now.force[i]) / 2 * (u[i] - u_0[i]);
@@ -183,9 +200,10 @@ OuterFigures OuterWorkGet(OuterWork work)
 
   Input Parameters:
 + work    - the work
-- archive - decides whether it is saved or loaded
+. archive - decides whether it is saved or loaded
+- u       - local displacements (length) of the accepted state
 @*/
-PetscErrorCode OuterWorkArchive(OuterWork work, Archive archive)
+PetscErrorCode OuterWorkArchive(OuterWork work, Archive archive, const PetscReal *u)
 {
   const Mesh    mesh    = work->problem->mesh;
   OuterFigures *figures = &work->figures;
@@ -199,5 +217,6 @@ PetscErrorCode OuterWorkArchive(OuterWork work, Archive archive)
   PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_global, mesh->n_nodes, mesh->node_id, &nodes));
   PetscCall(ArchiveRows(archive, "model/outer_force", &nodes, mesh->dim, work->now.force));
   PetscCall(Hdf5TableDestroy(&nodes));
+  if (ArchiveLoads(archive)) PetscCall(PetscArraycpy(work->u, u, mesh->n_nodes * mesh->dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -20,4 +20,4 @@ PetscErrorCode OuterWorkDestroy(OuterWork *);
 PetscErrorCode OuterWorkBegin(OuterWork);
 PetscErrorCode OuterWorkAdd(OuterWork, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t);
 OuterFigures   OuterWorkGet(OuterWork);
-PetscErrorCode OuterWorkArchive(OuterWork, Archive);
+PetscErrorCode OuterWorkArchive(OuterWork, Archive, const PetscReal *u);
