@@ -154,6 +154,10 @@ PetscErrorCode ContactLocateLost(Contact, PetscBool *lost, char *text, size_t si
 PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy,
                                PetscReal *force2);
 PetscErrorCode ContactRoundOff(Contact, PetscReal *force);
+/* Work from outside and energy in contact */
+const Motion  *ContactPairMotion(Contact, int pair);
+void           ContactWatchTools(Contact, PetscReal *hold);
+PetscErrorCode ContactStored(Contact, PetscReal t_0, PetscBool moved, PetscReal *stored, PetscReal *given);
 /* Tangent */
 PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed);
 PetscErrorCode ContactTangentChanges(Contact, PetscInt *terms);

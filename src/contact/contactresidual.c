@@ -163,6 +163,8 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   if (pair->scene->share < 1) PetscCall(ContactPointReactions(pair, pair->point_force, values, pair->reaction));
   if (pair->friction) PetscCall(FrictionResidual(pair, t, values));
   if (pair->tool) PetscCall(ContactToolForces(pair, values));
+  if (contact->hold)
+    ContactPairHold(contact, pair, t, values, &contact->hold[(pair - contact->pairs) * MOTION_COMPONENTS]);
   PetscCall(NeighbourListsReduce(pair->lists, values, f));
   if (contact->outer && HasOuter(pair)) PetscCall(NeighbourListsReduce(pair->lists, values, contact->outer));
   PetscCall(ContactNodalForces(pair, pair->point_force, pair->force));

@@ -296,14 +296,18 @@ static double PathIsCoarse(const RunFigures *figures, char *text)
 {
   const EnergyFigures energy  = figures->last ? figures->last->energy : (EnergyFigures){0};
   const double        plastic = (double)energy.plastic, sum = (double)energy.elastic + plastic,
-               apart = fabs((double)energy.work - sum);
+               lost   = plastic + (double)energy.outer.friction, bodies = fabs((double)energy.work - sum),
+               outside = (double)EnergyApart(&energy);
+  const PetscBool inner = (PetscBool)(bodies > ADVICE_PATH * plastic && bodies > ADVICE_PATH_ELASTIC * sum),
+                  outer = (PetscBool)(outside > ADVICE_PATH * lost && outside > ADVICE_PATH_ELASTIC * sum);
 
-  if (!(plastic > 0 && apart > ADVICE_PATH * plastic && apart > ADVICE_PATH_ELASTIC * sum)) return 0;
+  if (!(plastic > 0 && (inner || outer))) return 0;
   snprintf(
     text, ADVICE_TEXT,
-    "work and energies of the bodies are %.2g %% of the plastic work apart: steps may be too long for the path of "
-    "plastic flow, and forces and strains wrong; compare with shorter ones",
-    100 * apart / plastic);
+    "work and energies are %.2g %% of %s apart: steps may be too long for the path of plastic flow and of contact, and "
+    "forces and strains wrong; compare with shorter ones",
+    100 * (inner ? bodies / plastic : outside / lost),
+    inner || !(energy.outer.friction > 0) ? "the plastic work" : "plastic work and friction");
   return 1;
 }
 

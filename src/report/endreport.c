@@ -213,14 +213,21 @@ static void PrintGuards(const RunFigures *figures, FILE *stream)
   fprintf(stream, n ? "\n" : "guards   none acted\n");
 }
 
-/* Prints the energies of plastic bodies and how far the work is from their sum. */
+/* Prints the work from outside, the energies of plastic bodies and of contact, and how far the work is from their sum.
+ */
 static void PrintEnergy(const EnergyFigures *energy, FILE *stream)
 {
-  const double sum = (double)(energy->elastic + energy->plastic), work = (double)energy->work;
+  const OuterFigures outer = energy->outer;
+  const double       sum   = (double)(energy->elastic + energy->plastic + outer.stored + outer.friction),
+               apart       = (double)EnergyApart(energy);
 
-  fprintf(stream, "energy   work %.6g on the bodies = %.6g elastic + %.6g plastic", work, (double)energy->elastic,
-          (double)energy->plastic);
-  if (sum > 0) fprintf(stream, ", %.2g %% apart by the trapezoidal rule over the steps", 100 * fabs(work - sum) / sum);
+  fprintf(stream, "energy   work %.6g from outside = %.6g elastic + %.6g plastic", (double)outer.work,
+          (double)energy->elastic, (double)energy->plastic);
+  if (outer.stored > 0) fprintf(stream, " + %.4g contact", (double)outer.stored);
+  if (outer.friction > 0) fprintf(stream, " + %.6g friction", (double)outer.friction);
+  if (isnan(apart)) fprintf(stream, ", without that of overlaps resolved at once");
+  if (sum > 0 && !isnan(apart))
+    fprintf(stream, ", %.2g %% apart by the trapezoidal rule over the steps", 100 * apart / sum);
   fprintf(stream, "; largest plastic strain %.4g, growth in a step up to %.2g\n", (double)energy->strain,
           (double)energy->growth);
   if (energy->lag > 0) /* of routines of users alone none is known */

@@ -270,7 +270,12 @@ static PetscErrorCode ResultsArchiveStep(Results results, Archive archive)
                                &last->energy.plastic,
                                &last->energy.work,
                                &last->energy.strain,
-                               &last->energy.growth};
+                               &last->energy.growth,
+                               &last->energy.lag,
+                               &last->energy.outer.work,
+                               &last->energy.outer.stored,
+                               &last->energy.outer.given,
+                               &last->energy.outer.friction};
   PetscInt       *integer[] = {&last->step,     &last->attempts, &last->newton, &last->krylov,           &last->tied,
                                &contact->nodes, &contact->in,    &contact->out, &contact->outside_window};
 

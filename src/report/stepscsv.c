@@ -158,6 +158,8 @@ static void FillEnergy(const EnergyFigures *energy, PetscReal row[STEP_COLUMNS])
   row[COLUMN_ELASTIC_ENERGY] = energy->elastic;
   row[COLUMN_PLASTIC_WORK]   = energy->plastic;
   row[COLUMN_WORK]           = energy->work;
+  row[COLUMN_EXTERNAL_WORK]  = energy->outer.work;
+  row[COLUMN_CONTACT_ENERGY] = energy->outer.stored;
 }
 
 /* Fills the fixed columns of a row; NaN where there is no value. */

@@ -202,9 +202,11 @@ static void AddEnergy(cJSON *json, Scene scene, const StepRecord *last)
   map = cJSON_AddObjectToObject(json, "energy");
   AddReal(map, "elastic", energy.elastic);
   AddReal(map, "plastic", energy.plastic);
+  AddReal(map, "contact", energy.outer.stored);
+  AddReal(map, "friction", energy.outer.friction);
   AddReal(map, "work", energy.work);
-  AddReal(map, "apart",
-          energy.plastic > 0 ? PetscAbsReal(energy.work - energy.elastic - energy.plastic) / energy.plastic : NAN);
+  AddReal(map, "external", energy.outer.work);
+  AddReal(map, "apart", energy.plastic > 0 ? EnergyApart(&energy) / (energy.plastic + energy.outer.friction) : NAN);
   AddReal(map, "lag", energy.plastic > 0 ? energy.lag / energy.plastic : NAN);
   AddReal(json, "max_plastic_strain", energy.strain);
   AddReal(json, "max_plastic_growth", energy.growth);

@@ -23,6 +23,8 @@ const char *const StepColumnNames[STEP_COLUMNS] = {
   [COLUMN_ELASTIC_ENERGY]  = "elastic_energy",
   [COLUMN_PLASTIC_WORK]    = "plastic_work",
   [COLUMN_WORK]            = "work",
+  [COLUMN_EXTERNAL_WORK]   = "external_work",
+  [COLUMN_CONTACT_ENERGY]  = "contact_energy",
   [COLUMN_DISSIPATED]      = "dissipated",
   [COLUMN_WALL_S]          = "wall_s",
 };

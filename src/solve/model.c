@@ -60,7 +60,7 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   if (scene->kinematics != KINEMATICS_SMALL || SceneIsPlastic(scene))
     PetscCall(ExtrapolationCreate(mesh, &model->work->extrapolation));
   if (ProblemIsPlastic(model->problem))
-    PetscCall(EnergyBalanceCreate(mesh, model->problem->elasticity, &model->balance));
+    PetscCall(EnergyBalanceCreate(model->problem, &model->balance));
   PetscCall(ModelCreateSNES(model));
   PetscCall(ModelCreatePenaltyError(model));
   if (model->contact) PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
@@ -237,12 +237,15 @@ PetscErrorCode ModelAccept(Model model)
   PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t, &path));
   if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u, &path));
   if (SceneBreaks(model->scene, model->t)) ElasticityForgetFlow(model->problem->elasticity);
+  if (model->balance) PetscCall(OuterWorkBegin(EnergyBalanceOuter(model->balance)));
   if (model->certificate && stepped) {
     PetscCall(ForceBalanceFind(model->problem, model->u, model->t, &balance, &ok));
     CertificateBalance(model->certificate, balance.force, balance.moment);
   } else {
     PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   }
+  if (model->balance)
+    PetscCall(OuterWorkAdd(EnergyBalanceOuter(model->balance), work->accepted_u, work->accepted_t, model->u, model->t));
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);
   model->problem->force_so_far = ProblemForceScale(model->problem);

@@ -217,4 +217,13 @@ JOBS = [
         Answer("end_x", -4.904, 0.21, "limit"),
         Answer("end_y", 3.6454, 0.15, "limit"),
     ], steps=30, pairs=2, picture=["--mirror", "x"]),
+    Job("bead_pressed", "bead pressed into a strip over a groove", [
+        Answer("draw", -5.444, 0.05, "limit"),
+    ], steps=25, pairs=2, picture=["--mirror", "x"], stiff=["mesh.order=1", "stepping.dt_max=0.02"]),
+    Job("pipe_flared", "pipe end flared on a cone", [
+        Answer("rim", 3.940, 0.07, "limit"),
+    ], steps=35, picture=["--mirror", "x"], stiff=["stepping.dt_max=0.02"]),
+    Job("disc_coined", "ridge coined into a disc", [
+        Answer("rim", 0.1, 1, "limit"),
+    ], steps=50, picture=["--mirror", "x"], stiff=["stepping.dt_max=0.02"]),
 ]

@@ -1,9 +1,11 @@
-"""The balance of energies of a plastic block: the work on it is what it stores and dissipates, whatever does the work, a
-tool that is pushed or moved, friction, its weight, springs below it, a pressure that follows it or displacements. The
-bound is the error of the trapezoidal rule over 50 steps."""
+"""The balance of energies of a plastic block: the work on it is what it stores and dissipates, and the work from outside is
+that and what contact stores and friction takes. This holds whatever does the work, a tool that is pushed, moved or
+turned, friction, its weight, springs below it, a pressure that follows it, displacements, an overlap that grows, or a
+fluid that enters below it. The bound is the error of the trapezoidal rule over 50 steps, and of friction's own rule,
+which takes the traction at the end of a step for all of its slip."""
 from harness import SCENES, Check, arguments, run
 
-BOUND = 2e-3
+BOUND, SLIP = 2e-3, 0.03
 TOOL = "contact.0.master={cylinder: {point: [5, 8.2], radius: 3, "
 PUSHED = [TOOL + "free: [uy], force: [0, -200]}}"]
 MOVED = [TOOL + "motion: [{uy: -0.8, ux: 0.3}]}}"]
@@ -15,6 +17,9 @@ CASES = {
     "tool that is pushed": PUSHED,
     "pushed, friction": PUSHED + FRICTION,
     "moved, friction": MOVED + FRICTION,
+    "turned and moved, friction": [TOOL + "motion: [{uy: -0.8, rz: -20}]}}"] + FRICTION,
+    "overlap that grows": [TOOL + "motion: [{uy: 0}]}}", "contact.0.initial_overlap={add: 0.9}"],
+    "augmented": MOVED + ["contact.0.penalty={augment: true, g_max: 1e-3, unit: length}"],
     "springs and weight": [*PUSHED, "supports.0={surface: y_min, spring: [500, 500]}",
                            "loads=[{volume: block, body_force: [0, -3]}]"],
     "pressure that follows": NOTHING + [
@@ -24,6 +29,17 @@ CASES = {
 }
 args = arguments()
 check = Check()
+
+
+def check_energy(name, energy):
+    bodies, work = energy["elastic"] + energy["plastic"], energy["external"]
+    check.near(name, bodies, energy["work"], BOUND * energy["work"])
+    check.near(f"{name}, from outside", bodies + energy["contact"] + energy["friction"], work,
+               BOUND * work + SLIP * energy["friction"])
+    check.near(f"{name}: apart", energy["apart"], abs(work - bodies - energy["contact"] - energy["friction"]) /
+               (energy["plastic"] + energy["friction"]), 1e-9)
+
+
 COMMON = ["kinematics=finite", "mesh.parameters.nx=10", "mesh.parameters.ny=5", "mesh.order=1"]
 for name, overrides in CASES.items():
     finished = run(args, SCENES / "tool.yaml", "-quiet", out=name.replace(" ", "_").replace(",", ""),
@@ -32,8 +48,16 @@ for name, overrides in CASES.items():
                        "stepping={dt_max: 0.02, initial: 0.02}"
                    ])
     energy = finished.summary()["energy"]
-    check.near(name, energy["elastic"] + energy["plastic"], energy["work"], BOUND * energy["work"])
+    check_energy(name, energy)
     check.holds(f"{name}: it yields", energy["plastic"] > energy["elastic"])
+# A gasket that flows under a fluid.
+finished = run(args, SCENES.parent / "jobs/seal_leak.yaml", "-quiet", out="fluid", overrides=[
+    "bodies.0.material={law: von_mises, E: 6, nu: 0.45, yield: 1, hardening: {linear: 2}}", "mesh.order=1",
+    "stepping.dt_max=0.02", "loads.1.pressure=1.4"
+])
+summary = finished.summary()
+check_energy("fluid", summary["energy"])
+check.holds("fluid: it enters", summary["fluids"][0]["wetted"] > 0.2, str(summary["fluids"][0]["wetted"]))
 # Few steps are too long for a tool that travels along a body that flows. A line of advice says so.
 finished = run(args, SCENES / "tool.yaml", out="few_steps", overrides=COMMON + [
     TOOL + "motion: [{uy: -0.8, ux: 3}]}}",

@@ -251,12 +251,23 @@ static void test_path(void **state)
 
   (void)state;
   Good(&c);
-  c.last.energy = (EnergyFigures){.elastic = 700, .plastic = 1000, .work = 1660};
+  c.last.energy = (EnergyFigures){.elastic = 700, .plastic = 1000, .work = 1660, .outer = {.work = 1660}};
   Expect(&c, NULL);
   c.last.energy.work = 1400;
   Expect(&c,
-         "work and energies of the bodies are 30 % of the plastic work apart: steps may be too long for the path of "
-         "plastic flow, and forces and strains wrong; compare with shorter ones: -set stepping.dt_max=0.05");
+         "work and energies are 30 % of the plastic work apart: steps may be too long for the path of plastic flow and "
+         "of contact, and forces and strains wrong; compare with shorter ones: -set stepping.dt_max=0.05");
+  c.last.energy.work       = 1700;
+  c.last.energy.outer.work = 2200; /* from outside, of which friction takes less than is missing */
+  Expect(&c, "are 50 % of the plastic work apart");
+  c.last.energy.outer.friction = 250;
+  Expect(&c, "are 20 % of plastic work and friction apart");
+  c.last.energy.outer.friction = 500;
+  Expect(&c, NULL);
+  c.last.energy.outer.given = 100; /* nothing does the work of overlaps that are resolved at once */
+  c.last.energy.outer.work  = 0;
+  Expect(&c, NULL);
+  c.last.energy      = (EnergyFigures){.elastic = 700, .plastic = 1000, .outer = {.work = 1700}};
   c.last.energy.work = 2000; /* either sign */
   Expect(&c, "are 30 % of the plastic work apart");
   c.whole.stepping.control = STEP_FIXED;
@@ -264,7 +275,8 @@ static void test_path(void **state)
   c.whole.stepping.dt_max = 1;
   c.way.steps = c.way.newton_accepted = 200;
   Expect(&c, "-set stepping.initial=0.0025");
-  c.last.energy         = (EnergyFigures){.elastic = 1e5, .plastic = 1000, .work = 1.005e5};
+  c.last.energy         = (EnergyFigures){
+    .elastic = 1e5, .plastic = 1000, .work = 1.005e5, .outer = {.work = 1.005e5}};
   c.way.steps           = 10;
   c.way.newton_accepted = 50;
   Expect(&c, NULL);

@@ -139,6 +139,7 @@ struct _n_Contact {
   ContactVectors  one;     /* room for one of them */
   ContactProduct *product; /* of each pair; NULL: no product is asked for */
   PetscReal      *outer;   /* forces of tools and mirror images are added here; NULL: nobody asks */
+  PetscReal      *hold;    /* forces that drive the tools of pairs are added here; NULL: nobody asks */
   PetscLogEvent   event_search, event_project, event_residual, event_tangent;
   PetscLogEvent   event_fit, event_offset, event_adjust, event_touch; /* only where the scene calls for the effect */
 };
@@ -157,6 +158,8 @@ PetscErrorCode ContactPairDestroy(ContactPair *);
 PetscErrorCode ContactOverride(Contact);
 /* contactrepeated.c */
 PetscErrorCode ContactRefuseRepeated(Contact);
+/* contactoutside.c */
+void ContactPairHold(Contact, const ContactPair *, PetscReal t, const PetscReal *values, PetscReal *out);
 /* contactquery.c */
 PetscErrorCode ContactNodePressures(Contact, int pair, const PetscReal *u, const PetscReal *force,
                                     const PetscReal *reaction, PetscReal *area, PetscReal *pressure);
