@@ -301,6 +301,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 
   PetscFunctionBeginUser;
   work->renewed = 0;
+  work->loosely = (PetscBool)(model->contact && ContactOffsetsLag(model->contact) && !ContactHasFriction(model->contact));
   while (!hold && report->result == SOLVE_CONVERGED) {
     work->left = PETSC_FALSE;
     PetscCall(ModelNewton(model, report));
@@ -310,11 +311,16 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     PetscCall(ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left, lag, &hold));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
     if (lost) report->result = SOLVE_LOST;
+    if (hold && work->loosely && !lost) {
+      work->loosely = hold = PETSC_FALSE;
+      continue;
+    }
     if (hold || lost) break;
     report->regathered++;
     if (!work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
     if (!work->left && report->result == SOLVE_CONVERGED) PetscCall(ModelFollowLists(model, report));
   }
+  work->loosely = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
