@@ -291,7 +291,9 @@ static PetscErrorCode ModelLag(Model model, PetscInt times, PetscReal *lag)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves with frozen contact lists until the lists hold at the solution. */
+/* Solves with frozen contact lists until the lists hold at the solution. Where offsets lag, lists mostly change after the
+   first solution. Solutions are then found loosely, until lists hold at one of them; from there the solve goes on to
+   the tolerance. Not so with friction, as what sticks and what slips is not known before. */
 static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
   ModelWork *work = model->work;
@@ -307,15 +309,16 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     PetscCall(ModelNewton(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     work->renewed += work->left;
+    if (!report->first && !work->left) report->first = report->newton;
     PetscCall(ModelLag(model, times, &lag));
     PetscCall(ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left, lag, &hold));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
     if (lost) report->result = SOLVE_LOST;
-    if (hold && work->loosely && !lost) {
+    if (lost || (hold && !work->loosely)) break;
+    if (hold) {
       work->loosely = hold = PETSC_FALSE;
       continue;
     }
-    if (hold || lost) break;
     report->regathered++;
     if (!work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
     if (!work->left && report->result == SOLVE_CONVERGED) PetscCall(ModelFollowLists(model, report));
