@@ -298,18 +298,20 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
   ModelWork *work = model->work;
   PetscBool  hold = PETSC_FALSE, lost = PETSC_FALSE;
-  PetscInt   times = 0;
-  PetscReal  lag   = 1;
+  PetscInt   times = 0, first = 0, before;
+  PetscReal  lag = 1;
 
   PetscFunctionBeginUser;
   work->renewed = 0;
   work->loosely = (PetscBool)(model->contact && ContactOffsetsLag(model->contact) && !ContactHasFriction(model->contact));
   while (!hold && report->result == SOLVE_CONVERGED) {
     work->left = PETSC_FALSE;
+    before     = report->newton;
     PetscCall(ModelNewton(model, report));
+    work->begun = 0;
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     work->renewed += work->left;
-    if (!report->first && !work->left) report->first = report->newton;
+    if (!first && !work->left) first = report->newton;
     PetscCall(ModelLag(model, times, &lag));
     PetscCall(ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left, lag, &hold));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
@@ -317,6 +319,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     if (lost || (hold && !work->loosely)) break;
     if (hold) {
       work->loosely = hold = PETSC_FALSE;
+      work->begun          = report->newton - before;
       continue;
     }
     report->regathered++;
@@ -324,6 +327,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     if (!work->left && report->result == SOLVE_CONVERGED) PetscCall(ModelFollowLists(model, report));
   }
   work->loosely = PETSC_FALSE;
+  if (!report->first) report->first = times > 1 ? report->newton : first;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

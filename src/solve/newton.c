@@ -461,6 +461,20 @@ static SolveResult ResultFromReason(SNESConvergedReason reason)
   }
 }
 
+/* Lets SNES solve. A solve that goes on has the iterations that it has left. */
+static PetscErrorCode ModelIterate(Model model)
+{
+  PetscReal absolute, relative, step;
+  PetscInt  most, functions;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetTolerances(model->snes, &absolute, &relative, &step, &most, &functions));
+  PetscCall(SNESSetTolerances(model->snes, absolute, relative, step, PetscMax(0, most - model->work->begun), functions));
+  PetscCall(SNESSolve(model->snes, NULL, model->x));
+  PetscCall(SNESSetTolerances(model->snes, absolute, relative, step, most, functions));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelNewton - runs Newton's method once, from model->x, with the present contact lists.
 
@@ -497,7 +511,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   model->work->relaxed.waits    = PETSC_FALSE;
   model->work->relaxed.farthest = MODEL_FARTHEST;
   PetscCall(PetscArrayzero(model->work->cuts, CUT_CAUSES));
-  PetscCall(SNESSolve(model->snes, NULL, model->x));
+  PetscCall(ModelIterate(model));
   PetscCall(SNESGetConvergedReason(model->snes, &reason));
   PetscCall(SNESGetIterationNumber(model->snes, &its));
   PetscCall(SNESGetLinearSolveIterations(model->snes, &krylov));

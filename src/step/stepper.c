@@ -320,8 +320,8 @@ static PetscErrorCode LoadStepperMeetFluid(Model model, StepSize *size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The iterations of a solve by which the next step is chosen: those to its first solution. What lists, penalties and
-   fluids take that change afterwards does not depend on the length of the step. */
+/* The iterations of a solve by which the next step is chosen: those to its first solution. What it takes to make lists
+   anew once does not depend on the length of the step, nor what stiffer penalties take or a fluid that moves on. */
 static PetscInt StepIterations(const SolveReport *solve)
 {
   return solve->first && !solve->damped ? solve->first : solve->newton;

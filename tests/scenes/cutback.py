@@ -21,7 +21,7 @@ CASES = {
 PIPE = [
     "mesh.order=1", "mesh.parameters={n_arc: 6, n_wall: 1, n_len: 2}", "loads.0.uy=-50",
     "probes=[{name: force, reaction: plate_top, component: y}]", "contact.0.smoother=diffuse",
-    "contact.0.formulation=surface_to_surface", "solver.max_iterations=3"
+    "contact.0.formulation=surface_to_surface", "solver.max_iterations=2"
 ]
 for offset in ("held", "live"):
     CASES[f"{offset} offsets"] = ("pipe_pinch", [*PIPE, f"contact.0.offset={offset}"], ("force",), 1)
