@@ -279,8 +279,7 @@ static PetscErrorCode Keep(const Search *s, PetscReal rise, PetscReal slope, Pet
 /* Takes the step as far as cells may turn in it and lists reach, although the energy rises. *taken: it could be. The
    pressures of stiff volumes change along the step as the step's linear problem says, however far it goes, and whether
    it leads to a minimum or away from a saddle. Where the energy falls over the shortened step, the next one may still
-   be judged from its start; not so where there is no energy, and the work on the way tells less: there such a step has
-   paid already. */
+   be judged from its start; not so where there is no energy, and the work on the way tells less. */
 static PetscErrorCode Relax(const Search *s, PetscReal rise, PetscReal slope, PetscBool *taken)
 {
   ModelWork *work = s->model->work;
@@ -297,8 +296,6 @@ static PetscErrorCode Relax(const Search *s, PetscReal rise, PetscReal slope, Pe
   if (!*taken) PetscFunctionReturn(PETSC_SUCCESS);
   if (ProblemConservative(s->model->problem) || rise > -SEARCH_FALL * lambda * slope)
     PetscCall(Keep(s, rise, slope, lambda * turn));
-  else
-    work->relaxed.farthest = PetscMin(MODEL_FARTHEST, SEARCH_GROW * PetscMax(work->relaxed.farthest, lambda * turn));
   work->relaxed.linear = PETSC_TRUE;
   work->uphill         = PETSC_FALSE;
   PetscCall(Take(s, lambda));
