@@ -208,6 +208,7 @@ PetscErrorCode      ContactPairText(Contact, int pair, char *text, size_t size);
 PetscErrorCode      ContactPairSurface(Contact, int pair, const MeshGroup **slave, PetscReal *mean_face_size);
 PetscErrorCode      ContactPairTermStiffness(Contact, int pair, PetscReal *stiffness);
 PetscErrorCode      ContactPairClosed(Contact, int pair, const PetscInt *label, PetscInt n, PetscInt *closed);
+PetscBool           ContactOffsetsLag(Contact);
 PetscBool           ContactHasFriction(Contact);
 MPI_Comm            ContactComm(Contact);
 /* What an accepted step is checked for */

@@ -508,6 +508,22 @@ int ContactPairPartner(Contact contact, int pair)
 }
 
 /*@
+  ContactOffsetsLag - says whether some pair holds its offsets in a solve, so that lists made afresh may find them old.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. contact - the contact
+@*/
+PetscBool ContactOffsetsLag(Contact contact)
+{
+  PetscBool lag = PETSC_FALSE;
+
+  for (int p = 0; p < contact->n_pairs; p++) lag = (PetscBool)(lag || contact->pairs[p].formulation.lags);
+  return lag;
+}
+
+/*@
   ContactHasFriction - says whether some pair has friction, so that forces have no potential and the tangent is not
   symmetric.
 

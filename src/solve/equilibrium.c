@@ -291,30 +291,43 @@ static PetscErrorCode ModelLag(Model model, PetscInt times, PetscReal *lag)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves with frozen contact lists until the lists hold at the solution. */
+/* Solves with frozen contact lists until the lists hold at the solution. Where offsets lag, lists mostly change after the
+   first solution. Solutions are then found loosely, until lists hold at one of them; from there the solve goes on to
+   the tolerance. Not so with friction, as what sticks and what slips is not known before. */
 static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
   ModelWork *work = model->work;
   PetscBool  hold = PETSC_FALSE, lost = PETSC_FALSE;
-  PetscInt   times = 0;
-  PetscReal  lag   = 1;
+  PetscInt   times = 0, first = 0, before;
+  PetscReal  lag = 1;
 
   PetscFunctionBeginUser;
   work->renewed = 0;
+  work->loosely = (PetscBool)(model->contact && ContactOffsetsLag(model->contact) && !ContactHasFriction(model->contact));
   while (!hold && report->result == SOLVE_CONVERGED) {
     work->left = PETSC_FALSE;
+    before     = report->newton;
     PetscCall(ModelNewton(model, report));
+    work->begun = 0;
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     work->renewed += work->left;
+    if (!first && !work->left) first = report->newton;
     PetscCall(ModelLag(model, times, &lag));
     PetscCall(ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left, lag, &hold));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
     if (lost) report->result = SOLVE_LOST;
-    if (hold || lost) break;
+    if (lost || (hold && !work->loosely)) break;
+    if (hold) {
+      work->loosely = hold = PETSC_FALSE;
+      work->begun          = report->newton - before;
+      continue;
+    }
     report->regathered++;
     if (!work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
     if (!work->left && report->result == SOLVE_CONVERGED) PetscCall(ModelFollowLists(model, report));
   }
+  work->loosely = PETSC_FALSE;
+  if (!report->first) report->first = times > 1 ? report->newton : first;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -55,6 +55,7 @@ extern const char *const CutCauses[]; /* in words */
 typedef struct {
   SolveResult result;
   PetscInt    newton;           /* linear solves, those of the prediction and of repeated solves included */
+  PetscInt    first;            /* those of them until the first solution; until lists settle if once is not enough */
   PetscInt    krylov;           /* iterations of these linear solves */
   PetscInt    regathered;       /* times that contact lists were replaced */
   PetscInt    adjusted;         /* times that penalties or multipliers were changed and the step solved on */

@@ -320,6 +320,13 @@ static PetscErrorCode LoadStepperMeetFluid(Model model, StepSize *size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The iterations of a solve by which the next step is chosen: those to its first solution. What it takes to make lists
+   anew once does not depend on the length of the step, nor what stiffer penalties take or a fluid that moves on. */
+static PetscInt StepIterations(const SolveReport *solve)
+{
+  return solve->first && !solve->damped ? solve->first : solve->newton;
+}
+
 /* Accepts a converged step of dt: fills its record, lets the control choose the next dt, which is at most `most` and
    which it must not shrink below dt_min, and accepts the state. */
 static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscReal most, PetscBool clipped,
@@ -333,7 +340,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   record->dt       = dt;
   record->residual = solve->residual;
   if (model->contact) PetscCall(ContactSummarise(model->contact, &record->contact));
-  PetscCall(stepper->control->next(model, dt, clipped, solve->newton, &stepper->size));
+  PetscCall(stepper->control->next(model, dt, clipped, StepIterations(solve), &stepper->size));
   stepper->size.dt = PetscMin(stepper->size.dt, most);
   PetscCall(LoadStepperMeetFluid(model, &stepper->size));
   stepper->size.dt = PetscMin(stepper->size.dt_max, PetscMax(stepper->size.dt, PetscMin(dt, stepper->size.dt_min)));

@@ -12,7 +12,8 @@ SOLID = ["mesh.parameters.solid=1", "probes.0.displacement=[20, 0.001, 0]",
 
 args = arguments(("geometry", "of the scene", list(ALIKE)))
 check = Check()
-form = [f"geometry={args.geometry}", *(SOLID if args.geometry == "solid" else [])]
+# One or two nodes carry all: the way there changes the deflection by 3 %. All runs take the same short steps.
+form = [f"geometry={args.geometry}", "stepping.dt_max=0.1", *(SOLID if args.geometry == "solid" else [])]
 slab = run(args, SCENES / "overhang.yaml", out="slab", overrides=form)
 block = run(args, SCENES / "overhang.yaml", out="block",
             overrides=[*form, "contact.0.slave=block_top", "contact.0.master=underside"])

@@ -100,6 +100,8 @@ typedef struct _n_ModelWork {
   PetscReal   norms[LINE_MEMORY]; /* residuals of the last iterates, where there is friction */
   PetscBool   stalled;            /* with friction: the last LINE_MEMORY iterations have hardly lowered the residual */
   PetscBool   soft;               /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
+  PetscBool   loosely;            /* contact lists are checked after the solve, before it goes on to the tolerance */
+  PetscInt    begun;              /* iterations before, of a solve that goes on */
   PetscBool   balanced;           /* the residual of the iterate is within the tolerance */
   PetscBool   left;               /* the solve ended because a slave point slid out of its lists */
   PetscBool   cycling;            /* the solve ended because the contact set repeats itself with shorter steps too */
