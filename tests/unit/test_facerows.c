@@ -1,5 +1,4 @@
-/* Rows of long faces on a flat ring run along the circle, and have the faces' length and width. Compact faces are left
-   alone. */
+/* Rows of long faces on a flat ring bend like circles. Compact faces are left alone. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -61,17 +60,22 @@ static void Follow(Ring *ring, FaceRow *row)
   assert_int_equal(NeighbourhoodsDestroy(&ring->neighbourhoods), PETSC_SUCCESS);
 }
 
+/* The circle through (R, 0) leaves its tangent by R - sqrt(R^2 - t^2) = t^2/2R + t^4/8R^3 + ... towards the axis. */
 static void test_ring(void **state)
 {
   const PetscReal radius = 100;
   static Ring     ring;
   FaceRow         row;
+  PetscReal       across, bend, reach = 40, circle = radius - sqrt(radius * radius - reach * reach);
 
   (void)state;
   MakeRing(&ring, radius, radius * PETSC_PI / AROUND / 10);
   Follow(&ring, &row);
   assert_true(row.share == 1);
-  assert_true(fabs(row.along[0]) < 1e-3); /* the face itself is turned by 0.07 */
+  assert_true(fabs(row.along[1]) > 1 - 1e-6);
+  across = -row.along[1]; /* radial component of `along`, turned to the left */
+  bend   = reach * reach * (row.h[0] + reach * (row.h[1] + reach * row.h[2]));
+  assert_true(fabs(across * bend + circle) < 0.05 * circle);
   assert_true(fabs(sqrt(row.length2 / row.width2) - 10) < 0.5);
 }
 
