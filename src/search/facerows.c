@@ -20,7 +20,10 @@
    to bend with it, and from which on they do so wholly. A straight support still holds a row that bends by a part of
    its width, and the wiggles of uneven faces are far below that. */
 #define ROWS_BENDS 0.25
-#define ROWS_BENDS_WHOLLY 1
+#define ROWS_BENDS_WHOLLY 1.
+/* The circle of a row is found in this many passes. Each takes what the higher powers are wrong by to a tenth, and they
+   are small. */
+#define ROWS_PASSES 4
 
 enum { UNKNOWNS = 3 /* of a row: place and slope at the foot, curvature */ };
 
@@ -241,19 +244,21 @@ static void AddFace(FaceRows rows, PetscInt f, PetscReal rho2, const PetscReal f
   }
 }
 
-/* Solves the normal equations of the row's place c[0] + c[1] t + c[2] (t^2 + quartic t^4) by Gauss' elimination; they
-   are positive definite by the ridge. */
-static void SolveRow(const RowSums *sums, PetscReal quartic, PetscReal c[UNKNOWNS])
+/* Solves the normal equations of the row's place c[0] + c[1] t + c[2] (t^2 + cubic t^3 + quartic t^4) by Gauss'
+   elimination; they are positive definite by the ridge. */
+static void SolveRow(const RowSums *sums, PetscReal cubic, PetscReal quartic, PetscReal c[UNKNOWNS])
 {
   const PetscReal *m = sums->moment;
-  PetscReal        A[UNKNOWNS][UNKNOWNS] = {
-           {m[0], m[1], m[2] + quartic * m[4]},
-           {m[1], m[2], m[3] + quartic * m[5]},
-           {m[2] + quartic * m[4], m[3] + quartic * m[5], m[4] + quartic * (2 * m[6] + quartic * m[8])}
-  };
+  PetscReal        A[UNKNOWNS][UNKNOWNS];
 
-  for (int k = 0; k < UNKNOWNS; k++) c[k] = sums->place[k];
-  c[2] += quartic * sums->place[4];
+  for (int k = 0; k < UNKNOWNS - 1; k++) {
+    A[k][0] = m[k];
+    A[k][1] = m[k + 1];
+    A[k][2] = A[2][k] = m[k + 2] + cubic * m[k + 3] + quartic * m[k + 4];
+    c[k]              = sums->place[k];
+  }
+  A[2][2] = m[4] + cubic * (2 * m[5] + cubic * m[6]) + quartic * (2 * m[6] + 2 * cubic * m[7] + quartic * m[8]);
+  c[2]    = sums->place[2] + cubic * sums->place[3] + quartic * sums->place[4];
   for (int k = 1; k < UNKNOWNS; k++) A[k][k] += ROWS_RIDGE * sums->weight;
   for (int k = 0; k < UNKNOWNS; k++) {
     for (int i = k + 1; i < UNKNOWNS; i++) {
@@ -269,24 +274,25 @@ static void SolveRow(const RowSums *sums, PetscReal quartic, PetscReal c[UNKNOWN
   }
 }
 
-/* Finds slope and bend of the row at the foot. The row is taken for a circle of curvature K in space, which bends
-   aside by k (t^2/2 + K^2 t^4/8 + ...) in the tangent plane, where k is the part of K in this plane. */
+/* Finds slope and bend of the row at the foot. The row is taken for a circle of curvature K in space. In the tangent
+   plane, where the part of K is k, it bends aside by k (t^2/2 + K^2 t^4/8 + ...). Seen along a direction that is off by
+   a slope there is also a cubic term, slope k^2 t^3/2. */
 static void FindBend(const RowSums *sums, const PetscReal radius[2], FaceRow *row, PetscReal *slope)
 {
-  const PetscReal across = sums->turn / sums->moment[2]; /* the part of K square to the plane, times the reach */
-  PetscReal       c[UNKNOWNS], quartic = PetscSqr(across) / 4, aside;
+  const PetscReal out = sums->turn / sums->moment[2]; /* the part of K square to the plane, times the reach */
+  PetscReal       c[UNKNOWNS], cubic = 0, quartic = PetscSqr(out) / 4, aside;
 
-  for (int pass = 0; pass < 3; pass++) {
-    SolveRow(sums, quartic, c);
-    quartic = (PetscSqr(across) + PetscSqr(2 * c[2] / radius[1])) / 4;
+  for (int pass = 0; pass < ROWS_PASSES; pass++) {
+    SolveRow(sums, cubic, quartic, c);
+    cubic   = 2 * c[2] * c[1] / PetscSqr(radius[1]);
+    quartic = PetscSqr(out) / 4 + PetscSqr(c[2] / radius[1]);
   }
-  aside = PetscAbsReal(c[2]) / radius[0];
-  *slope = c[1] / radius[1];
-  row->bends =
-    row->share * SmoothStep((aside - ROWS_BENDS) / (PetscReal)(ROWS_BENDS_WHOLLY - ROWS_BENDS));
-  row->h[0] = row->bends * c[2] / PetscSqr(radius[1]);
-  row->h[1] = 0;
-  row->h[2] = row->bends * c[2] * quartic / PetscSqr(PetscSqr(radius[1]));
+  aside      = PetscAbsReal(c[2]) / radius[0];
+  *slope     = c[1] / radius[1];
+  row->bends = row->share * SmoothStep((aside - ROWS_BENDS) / (ROWS_BENDS_WHOLLY - ROWS_BENDS));
+  row->h[0]  = row->bends * c[2] / PetscSqr(radius[1]);
+  row->h[1]  = 0;
+  row->h[2]  = row->h[0] * quartic / PetscSqr(radius[1]);
 }
 
 /* Adds the ways from a face to its neighbours that were not reached in an earlier ring, and queues new ones. */
