@@ -273,20 +273,19 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
   PetscReal        cosine = 0;
 
   for (int d = 0; d < dim; d++) cosine += frame[3 * (dim - 1) + d] * turned[3 * (dim - 1) + d];
-  if (cosine < CONTACT_FRAME_COSINE || old->degree[q] != fresh->degree[q]) return PETSC_FALSE;
+  if (cosine < CONTACT_FRAME_COSINE || old->degree[q] % FIT_BENT != fresh->degree[q] % FIT_BENT) return PETSC_FALSE;
   for (PetscInt i = fresh->list_ptr[q]; i < fresh->list_ptr[q] + fresh->fit_n[q]; i++) {
     const PetscInt p   = fresh->list_point[i];
     const long     key = fresh->point_key[p];
-    PetscReal      x[3], y[2] = {0, 0}, rho2 = 0;
+    PetscReal      x[3], y[2] = {0, 0};
     PetscBool      known = PETSC_FALSE;
 
     NeighbourListsRelative(fresh, q, p, x);
     for (int a = 0; a < dim - 1; a++)
       for (int d = 0; d < dim; d++) y[a] += frame[3 * a + d] * x[d];
-    for (int a = 0; a < dim - 1; a++)
-      for (int b = 0; b < dim - 1; b++) rho2 += y[a] * metric[2 * a + b] * y[b];
-    if (fresh->point_hoop) rho2 += metric[0] * PetscSqr(fresh->point_hoop[p]);
-    if (rho2 >= 1) continue;
+    if (fresh->point_hoop) y[1] = fresh->point_hoop[p];
+    if (FitDistance2(dim, old->degree[q], (const double(*)[2])metric, old->bend ? &old->bend[q] : NULL, y) >= 1)
+      continue;
     for (PetscInt k = 0; !known && k < n; k++) { /* most points have the same place in the list as before */
       const PetscInt place = (at + k) % n;
 

@@ -104,6 +104,7 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
                            .hoop        = work->hoop,
                            .frame       = &lists->frame[9 * q],
                            .metric      = &lists->metric[4 * q],
+                           .bend        = lists->bend ? &lists->bend[q] : NULL,
                            .derivatives = pair->fit.derivatives,
                            .workspace   = work->workspace};
   *found = in.n_facets && smoother->evaluate(&in, want, &work->result) ? PETSC_TRUE : PETSC_FALSE;

@@ -1,5 +1,4 @@
-/* Follows rows of long faces around a foot: a walk from face to face, and the direction of the row at the foot from a
-   polynomial through the places of the faces. */
+/* Follows rows of long faces around a foot: a walk from face to face, and a polynomial for how far the rows bend. */
 #include "facerows.h"
 #include "base/smoothstep.h"
 
@@ -14,11 +13,19 @@
 #define ROWS_TURN 0.7
 /* Cosine of the largest angle between normals, as for lists of points. */
 #define ROWS_FLANK 0.5
-/* What is added to the normal equations of the row, over their sum of weights. It decides only where a row has too few
-   faces for all powers, as at the end of a surface; else it changes the row by less than a thousandth. */
+/* What is added to the normal equations of the bend, over their sum of weights. It decides only where a row has too few
+   faces for all powers, as at the end of a surface; else it changes the bend by less than a thousandth. */
 #define ROWS_RIDGE 1e-6
+/* How far a row bends aside at the end of the support, over the support's half width, from which on coordinates begin
+   to bend with it, and from which on they do so wholly. A straight support still holds a row that bends by a part of
+   its width, and the wiggles of uneven faces are far below that. */
+#define ROWS_BENDS 0.25
+#define ROWS_BENDS_WHOLLY 1.
+/* The circle of a row is found in this many passes. Each takes what the higher powers are wrong by to a tenth, and they
+   are small. */
+#define ROWS_PASSES 4
 
-enum { POWERS = 5 /* of the row: 1, t, ..., t^4 */ };
+enum { UNKNOWNS = 3 /* of a row: place and slope at the foot, curvature */ };
 
 /* A face with its moments, in the present position. */
 typedef struct {
@@ -45,7 +52,8 @@ struct _n_FaceRows {
 /* Sums over the faces around a foot. */
 typedef struct {
   PetscReal weight, normal[3], length2, width2, area;
-  PetscReal A[POWERS][POWERS], b[POWERS]; /* normal equations of the row */
+  PetscReal moment[9], place[5]; /* sums of t^k, and of t^k times the places across the row; t over the reach */
+  PetscReal turn;                /* of t times the slope of the normals along the row */
 } RowSums;
 
 static PetscReal Dot(const PetscReal *a, const PetscReal *b)
@@ -219,39 +227,72 @@ static void AddFace(FaceRows rows, PetscInt f, PetscReal rho2, const PetscReal f
   const FaceShape *shape  = &rows->shape[f];
   const FacePlace *place  = &rows->place[f];
   const PetscReal *normal = &rows->view->normals[3 * f], weight = PetscSqr(1 - rho2 / ROWS_MARGIN);
-  PetscReal        e[3], x[3], power[POWERS] = {1};
+  PetscReal        e[3], x[3], t, power = weight;
 
   Cross(normal, place->along, e);
   for (int d = 0; d < 3; d++) x[d] = shape->centre[d] - foot[d];
-  for (int k = 1; k < POWERS; k++) power[k] = power[k - 1] * Dot(x, along) / reach;
+  t = Dot(x, along) / reach;
   sums->weight += weight;
   sums->length2 += weight * PetscSqr(Extent(shape, place->along));
   sums->width2 += weight * PetscSqr(Extent(shape, e));
   sums->area += weight * shape->area / SurfaceNodesPerFace(rows->view->facets[f].type);
   for (int d = 0; d < 3; d++) sums->normal[d] += weight * shape->area * normal[d];
-  for (int k = 0; k < POWERS; k++) {
-    sums->b[k] += weight * power[k] * (Dot(x, across) - place->s);
-    for (int l = 0; l < POWERS; l++) sums->A[k][l] += weight * power[k] * power[l];
+  sums->turn -= weight * t * Dot(normal, along);
+  for (int k = 0; k < 9; k++, power *= t) {
+    sums->moment[k] += power;
+    if (k < 5) sums->place[k] += power * (Dot(x, across) - place->s);
   }
 }
 
-/* Solves the normal equations for the row by Gauss' elimination; they are positive definite by the ridge. */
-static void SolveRow(RowSums *sums, PetscReal c[POWERS])
+/* Solves the normal equations of the row's place c[0] + c[1] t + c[2] (t^2 + cubic t^3 + quartic t^4) by Gauss'
+   elimination; they are positive definite by the ridge. */
+static void SolveRow(const RowSums *sums, PetscReal cubic, PetscReal quartic, PetscReal c[UNKNOWNS])
 {
-  for (int k = 1; k < POWERS; k++) sums->A[k][k] += ROWS_RIDGE * sums->weight;
-  for (int k = 0; k < POWERS; k++) {
-    for (int i = k + 1; i < POWERS; i++) {
-      const PetscReal share = sums->A[i][k] / sums->A[k][k];
+  const PetscReal *m = sums->moment;
+  PetscReal        A[UNKNOWNS][UNKNOWNS];
 
-      for (int l = k; l < POWERS; l++) sums->A[i][l] -= share * sums->A[k][l];
-      sums->b[i] -= share * sums->b[k];
+  for (int k = 0; k < UNKNOWNS - 1; k++) {
+    A[k][0] = m[k];
+    A[k][1] = m[k + 1];
+    A[k][2] = A[2][k] = m[k + 2] + cubic * m[k + 3] + quartic * m[k + 4];
+    c[k]              = sums->place[k];
+  }
+  A[2][2] = m[4] + cubic * (2 * m[5] + cubic * m[6]) + quartic * (2 * m[6] + 2 * cubic * m[7] + quartic * m[8]);
+  c[2]    = sums->place[2] + cubic * sums->place[3] + quartic * sums->place[4];
+  for (int k = 1; k < UNKNOWNS; k++) A[k][k] += ROWS_RIDGE * sums->weight;
+  for (int k = 0; k < UNKNOWNS; k++) {
+    for (int i = k + 1; i < UNKNOWNS; i++) {
+      const PetscReal share = A[i][k] / A[k][k];
+
+      for (int l = k; l < UNKNOWNS; l++) A[i][l] -= share * A[k][l];
+      c[i] -= share * c[k];
     }
   }
-  for (int k = POWERS - 1; k >= 0; k--) {
-    c[k] = sums->b[k];
-    for (int l = k + 1; l < POWERS; l++) c[k] -= sums->A[k][l] * c[l];
-    c[k] /= sums->A[k][k];
+  for (int k = UNKNOWNS - 1; k >= 0; k--) {
+    for (int l = k + 1; l < UNKNOWNS; l++) c[k] -= A[k][l] * c[l];
+    c[k] /= A[k][k];
   }
+}
+
+/* Finds slope and bend of the row at the foot. The row is taken for a circle of curvature K in space. In the tangent
+   plane, where the part of K is k, it bends aside by k (t^2/2 + K^2 t^4/8 + ...). Seen along a direction that is off by
+   a slope there is also a cubic term, slope k^2 t^3/2. */
+static void FindBend(const RowSums *sums, const PetscReal radius[2], FaceRow *row, PetscReal *slope)
+{
+  const PetscReal out = sums->turn / sums->moment[2]; /* the part of K square to the plane, times the reach */
+  PetscReal       c[UNKNOWNS], cubic = 0, quartic = PetscSqr(out) / 4, aside;
+
+  for (int pass = 0; pass < ROWS_PASSES; pass++) {
+    SolveRow(sums, cubic, quartic, c);
+    cubic   = 2 * c[2] * c[1] / PetscSqr(radius[1]);
+    quartic = PetscSqr(out) / 4 + PetscSqr(c[2] / radius[1]);
+  }
+  aside      = PetscAbsReal(c[2]) / radius[0];
+  *slope     = c[1] / radius[1];
+  row->bends = row->share * SmoothStep((aside - ROWS_BENDS) / (ROWS_BENDS_WHOLLY - ROWS_BENDS));
+  row->h[0]  = row->bends * c[2] / PetscSqr(radius[1]);
+  row->h[1]  = 0;
+  row->h[2]  = row->h[0] * quartic / PetscSqr(radius[1]);
 }
 
 /* Adds the ways from a face to its neighbours that were not reached in an earlier ring, and queues new ones. */
@@ -306,7 +347,7 @@ static void Walk(FaceRows rows, PetscInt start, const PetscReal foot[3], const P
 + rows    - the object
 . start   - face of the foot
 . foot    - the foot (length)
-. upright - unit normal of the tangent plane in which the row's direction is measured
+. upright - unit normal of the tangent plane in which the bend is measured
 - support - radius of the support in spacings
 
   Output Parameter:
@@ -321,7 +362,7 @@ PetscErrorCode FaceRowsFollow(FaceRows rows, PetscInt start, const PetscReal foo
                   radius[2] = {size / PetscSqrtReal(aspect), size * PetscSqrtReal(aspect)};
   FacePlace *place = &rows->place[start];
   RowSums    sums  = {0};
-  PetscReal  v[3], e[3], across[3], c[POWERS], length;
+  PetscReal  v[3], e[3], across[3], slope, length;
 
   PetscFunctionBeginUser;
   row->share = 0;
@@ -344,8 +385,8 @@ PetscErrorCode FaceRowsFollow(FaceRows rows, PetscInt start, const PetscReal foo
     SmoothStep((PetscSqrtReal(row->length2 / row->width2) - ROWS_FROM) / (PetscReal)(ROWS_WHOLLY - ROWS_FROM));
   length = PetscSqrtReal(Dot(sums.normal, sums.normal));
   for (int d = 0; d < 3; d++) row->normal[d] = sums.normal[d] / length;
-  SolveRow(&sums, c);
-  for (int d = 0; d < 3; d++) row->along[d] += c[1] / radius[1] * across[d];
+  FindBend(&sums, radius, row, &slope);
+  for (int d = 0; d < 3; d++) row->along[d] += slope * across[d];
   Flatten(upright, row->along);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

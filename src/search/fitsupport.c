@@ -165,10 +165,14 @@ PetscErrorCode FitSupportDestroy(FitSupport *fit)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The metric over a frame's tangents as a tensor in space (inverse squared lengths). In 2D the third direction is that
-   of the hoop. */
-static void MetricInSpace(int dim, double (*frame)[3], double metric[2][2], PetscReal space[9])
+/* The support of a fit in space, with the metric over the frame's tangents as a tensor. In 2D the third direction is
+   that of the hoop. */
+static void SupportInSpace(const FitProblem *problem, NeighbourhoodSupport *support)
 {
+  const int dim = problem->dim;
+  const double(*const frame)[3] = problem->frame, (*const metric)[2] = problem->metric, *along = problem->bend.along;
+  PetscReal *space = support->metric;
+
   for (int i = 0; i < 3; i++) {
     for (int j = 0; j < 3; j++) {
       space[3 * i + j] = 0;
@@ -177,6 +181,12 @@ static void MetricInSpace(int dim, double (*frame)[3], double metric[2][2], Pets
     }
   }
   if (dim == 2) space[8] = metric[0][0];
+  support->bent = (PetscBool)(problem->degree > FIT_BENT);
+  for (int d = 0; d < 3; d++) {
+    support->h[d]      = problem->bend.h[d];
+    support->along[d]  = along[0] * frame[0][d] + along[1] * frame[1][d];
+    support->across[d] = along[0] * frame[1][d] - along[1] * frame[0][d];
+  }
 }
 
 /* Adds factor times the covariance of a node to a full matrix. */
@@ -254,21 +264,26 @@ static inline PetscInt TakePoints(const int dim, FitSupport *fit, const FitFoot 
   return inside;
 }
 
-/* Makes spacing and frame of a fit those of a row of long faces, by its share. The frame turns from the plane of the
-   points to the mean normal of the faces, because few points of a narrow support make no plane that holds. */
-static void FollowRow(const FaceRow *row, const FitFoot *at, double frame[3][3], double covariance[3][3], double *area)
+/* Lets a fit follow a row of long faces, by its share. The frame turns from the plane of the points to the mean normal
+   of the faces, because the points of a row that bends have no plane of their own; the spacing is that along and across
+   the row, and the coordinates bend. */
+static void FollowRow(const FaceRow *row, const FitFoot *at, FitProblem *problem, double covariance[3][3], double *area)
 {
-  double normal[3], along[3], across[3], out = 0, length = 0;
+  double normal[3], along[3] = {0}, across[3], length;
 
   for (int d = 0; d < 3; d++)
-    normal[d] = frame[2][d] + (at->upright ? 0 : row->share) * (row->normal[d] - frame[2][d]);
-  FitFrameFromNormal(3, normal, frame);
-  for (int d = 0; d < 3; d++) out += frame[2][d] * row->along[d];
-  for (int d = 0; d < 3; d++) along[d] = row->along[d] - out * frame[2][d];
-  for (int d = 0; d < 3; d++) length += along[d] * along[d];
-  for (int d = 0; d < 3; d++) along[d] /= sqrt(length);
-  for (int d = 0; d < 3; d++)
-    across[d] = frame[2][(d + 1) % 3] * along[(d + 2) % 3] - frame[2][(d + 2) % 3] * along[(d + 1) % 3];
+    normal[d] = problem->frame[2][d] + (at->upright ? 0 : row->share) * (row->normal[d] - problem->frame[2][d]);
+  FitFrameFromNormal(3, normal, problem->frame);
+  if (row->bends > 0) problem->degree += FIT_BENT;
+  for (int k = 0; k < 2; k++)
+    for (int d = 0; d < 3; d++) problem->bend.along[k] += problem->frame[k][d] * row->along[d];
+  length = hypot(problem->bend.along[0], problem->bend.along[1]);
+  for (int k = 0; k < 2; k++) problem->bend.along[k] /= length;
+  for (int k = 0; k < 3; k++) problem->bend.h[k] = row->h[k];
+  for (int d = 0; d < 3; d++) {
+    along[d]  = problem->bend.along[0] * problem->frame[0][d] + problem->bend.along[1] * problem->frame[1][d];
+    across[d] = problem->bend.along[0] * problem->frame[1][d] - problem->bend.along[1] * problem->frame[0][d];
+  }
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       covariance[i][j] += row->share * (row->length2 * along[i] * along[j] + row->width2 * across[i] * across[j] -
@@ -289,8 +304,8 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
   double           covariance[3][3], area;
   const PetscReal *rho2, support = settings->support * Ladder[rung].widen;
   const PetscBool  upright = (PetscBool)(settings->global_frame || at->upright);
-  FaceRow          row     = {.share = 0};
-  PetscReal        space[9];
+  NeighbourhoodSupport space;
+  FaceRow          row = {.share = 0};
   PetscInt         n, found, inside;
   int              passes;
 
@@ -310,10 +325,10 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
      with the spacing around them. One is enough where neither is asked for, or where a row of long faces knows both. */
   passes = row.share == 1 || (upright && !settings->integral) ? 1 : 2;
   for (int pass = 1; pass <= passes; pass++) {
-    if (pass == passes && row.share > 0) FollowRow(&row, at, problem->frame, covariance, &area);
+    if (pass == passes && row.share > 0) FollowRow(&row, at, problem, covariance, &area);
     FitMetricFromCovariance(dim, problem->frame, covariance, area, support, problem->metric);
-    MetricInSpace(dim, problem->frame, problem->metric, space);
-    PetscCall(NeighbourhoodGather(fit->neighbourhoods, at->facet, at->foot, problem->frame[dim - 1], space,
+    SupportInSpace(problem, &space);
+    PetscCall(NeighbourhoodGather(fit->neighbourhoods, at->facet, at->foot, problem->frame[dim - 1], &space,
                                   SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points, &rho2, &n, &found));
     inside     = dim == 3 ? TakePoints(3, fit, at, n, rho2) : TakePoints(2, fit, at, n, rho2);
     problem->n = (int)n;
@@ -363,19 +378,18 @@ PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, int first, Fi
    itself. dim is a constant where this is called. */
 static inline PetscReal FitResidual(const int dim, const FitProblem *problem, const FitResult *result)
 {
-  const double Q[3] = {problem->metric[0][0], 2 * problem->metric[0][1], problem->metric[1][1]};
-  PetscReal    most = 0;
+  PetscReal most = 0;
 
   for (int i = 0; i < problem->n; i++) {
-    double y[2] = {0, 0}, z = 0, rho2;
+    double y[2] = {0, 0}, z = 0;
 
     for (int d = 0; d < dim; d++) {
       for (int a = 0; a < dim - 1; a++) y[a] += problem->frame[a][d] * problem->x[i * dim + d];
       z += problem->frame[dim - 1][d] * problem->x[i * dim + d];
     }
     if (dim == 2) y[1] = problem->hoop[i];
-    rho2 = Q[0] * y[0] * y[0] + (dim == 3 ? (Q[1] * y[0] + Q[2] * y[1]) * y[1] : Q[0] * y[1] * y[1]);
-    if (rho2 <= 0.25) most = PetscMax(most, PetscAbsReal(z - FitSurfaceHeight(&result->surface, y, NULL)));
+    if (FitDistance2(dim, problem->degree, problem->metric, &problem->bend, y) <= 0.25)
+      most = PetscMax(most, PetscAbsReal(z - FitSurfaceHeight(&result->surface, y, NULL)));
   }
   return most;
 }
@@ -435,6 +449,10 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   lists->residual[q] = lists->dim == 3 ? FitResidual(3, &problem, &result) : FitResidual(2, &problem, &result);
   for (int i = 0; i < 9; i++) lists->frame[9 * q + i] = problem.frame[i / 3][i % 3];
   for (int i = 0; i < 4; i++) lists->metric[4 * q + i] = problem.metric[i / 2][i % 2];
+  if (problem.degree > FIT_BENT) {
+    if (!lists->bend) PetscCall(PetscCalloc1(lists->n_slaves, &lists->bend));
+    lists->bend[q] = problem.bend;
+  }
   for (PetscInt i = 0; i < problem.n; i++) PetscCall(ListBufferAddPoint(buffer, first, fit->points[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

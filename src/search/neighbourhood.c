@@ -193,14 +193,24 @@ PetscInt NeighbourhoodsLinks(Neighbourhoods nb, PetscInt f, const PetscInt **lin
   return nb->link_ptr[f + 1] - nb->link_ptr[f];
 }
 
-/* Squared distance of point p from x0 in the metric. */
-static inline PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3], const PetscReal metric[9])
+/* Squared distance of point p from x0 in a support. */
+static inline PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3],
+                             const NeighbourhoodSupport *support)
 {
-  const PetscReal *x = &view->x[p * view->dim], a = x[0] - x0[0], b = x[1] - x0[1],
-                  c = view->dim == 3 ? x[2] - x0[2]
-                      : view->hoop   ? view->hoop[p]
-                                     : 0;
+  const PetscReal *x = &view->x[p * view->dim], *metric = support->metric;
+  PetscReal        a = x[0] - x0[0], b = x[1] - x0[1],
+            c = view->dim == 3 ? x[2] - x0[2]
+                : view->hoop   ? view->hoop[p]
+                               : 0;
 
+  if (support->bent) {
+    const PetscReal *along = support->along, *h = support->h, t = along[0] * a + along[1] * b + along[2] * c,
+                    bend = t * t * (h[0] + t * (h[1] + t * h[2]));
+
+    a -= bend * support->across[0];
+    b -= bend * support->across[1];
+    c -= bend * support->across[2];
+  }
   return metric[0] * a * a + metric[4] * b * b + metric[8] * c * c +
          2 * (metric[1] * a * b + metric[2] * a * c + metric[5] * b * c);
 }
@@ -230,13 +240,13 @@ static void ReachAdd(Neighbourhoods nb, PetscInt *count, PetscReal rho2, PetscIn
   Not collective
 
   Input Parameters:
-+ nb     - the object
-. start  - facet of the foot
-. x0     - the foot (length)
-. e3     - normal there
-. metric - dim x dim, row-major 3x3, symmetric, inverse squared lengths
-. limit  - largest rho^2 in the metric
-- max    - most points that are returned
++ nb      - the object
+. start   - facet of the foot
+. x0      - the foot (length)
+. e3      - normal there
+. support - the support
+. limit   - largest rho^2 in its metric
+- max     - most points that are returned
 
   Output Parameters:
 + points - the points; if not all are returned, the nearest ones by distance, else those of a facet together
@@ -245,7 +255,7 @@ static void ReachAdd(Neighbourhoods nb, PetscInt *count, PetscReal rho2, PetscIn
 - found  - number of points within the limit
 @*/
 PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const PetscReal x0[3], const PetscReal e3[3],
-                                   const PetscReal metric[9], PetscReal limit, PetscInt max, PetscInt *points,
+                                   const NeighbourhoodSupport *support, PetscReal limit, PetscInt max, PetscInt *points,
                                    const PetscReal **rho2, PetscInt *n, PetscInt *found)
 {
   const SurfaceView *view = nb->view;
@@ -261,7 +271,7 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
     PetscBool      inside = PETSC_FALSE;
 
     for (PetscInt q = 0, points = view->first ? view->count[f] : 0; q < points; q++) {
-      const PetscReal own = Rho2(view, view->first[f] + q, x0, metric);
+      const PetscReal own = Rho2(view, view->first[f] + q, x0, support);
 
       inside = (PetscBool)(inside || own <= limit);
       if (own <= limit) ReachAdd(nb, &count, own, view->first[f] + q);
@@ -273,7 +283,7 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
 
       if (nb->seen_point[p] != nb->stamp) {
         nb->seen_point[p] = nb->stamp;
-        nb->point_rho2[p] = Rho2(view, p, x0, metric);
+        nb->point_rho2[p] = Rho2(view, p, x0, support);
         if (!view->first && nb->point_rho2[p] <= limit && view->geometry[p].weight > 0 &&
             Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE)
           ReachAdd(nb, &count, nb->point_rho2[p], p);

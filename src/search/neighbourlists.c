@@ -969,6 +969,7 @@ PetscErrorCode NeighbourListsDestroy(NeighbourLists *lists)
   PetscCall(PetscFree6(l->list_ptr, l->facet_ptr, l->kappa, l->nearest, l->share, l->averse));
   PetscCall(PetscFree5(l->fit_n, l->rung, l->degree, l->frame, l->metric));
   PetscCall(PetscFree6(l->pivot, l->amplified, l->residual, l->centre, l->gap, l->normal));
+  PetscCall(PetscFree(l->bend));
   PetscCall(PetscFree(l->list_point));
   PetscCall(PetscFree(l->facet));
   PetscCall(PetscFree(l->facet_size));

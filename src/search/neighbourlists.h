@@ -63,6 +63,7 @@ typedef struct {
   int       *rung;                  /* RUNG_...: how the fit was found */
   int       *degree;                /* of the fit */
   PetscReal *frame, *metric;        /* 9 and 4 entries for each slave point, as in FitProblem */
+  FitBend   *bend;                  /* of each slave point, as in FitProblem; NULL: no fit is bent */
   /* 2 for each slave point: mean of its fit points when the lists were made, in the frame's tangents, relative to
      it. */
   PetscReal *centre;

@@ -23,6 +23,7 @@
 typedef struct {
   Lanes  p[FIT_MAX_TERMS]; /* monomials of the scaled coordinates */
   double q, g[2], h[2][2];
+  double scale[2][2]; /* derivatives of the scaled coordinates by y */
 } FitLocal;
 
 /* c := R^-1 c with the strictly upper part of R, column by column as in ToOrthonormal(). */
@@ -73,29 +74,36 @@ LANES_INLINE void Layout(const int terms, int n, double *workspace, FitArrays *a
   a->power      = at + 4 * a->capacity;
   a->weight     = at + 5 * a->capacity;
   a->scratch    = at + 6 * a->capacity;
-  a->H          = at + 7 * a->capacity;
+  a->row        = at + 7 * a->capacity;
+  a->H          = at + 8 * a->capacity;
   a->basis      = at + ARRAYS * a->capacity;
   a->points     = (int *)(a->basis + (terms + 1) * a->capacity);
   a->K          = a->basis + (terms + 2) * a->capacity;
 }
 
 /* Writes the points inside the support into the arrays, and their heights into the last column of the basis. */
-LANES_INLINE void Collect(const int dim, const int degree, const int terms, const FitProblem *in, double (*G)[3],
+LANES_INLINE void Collect(const int dim, const int degree, const int terms, const FitProblem *in, const FitState *s,
                           double scale, FitArrays *a)
 {
+  const double(*const G)[3] = s->G;
   double *const z = (double *)(a->basis + terms * a->capacity);
   int           n = 0;
 
   for (int i = 0; i < in->n; i++) {
     const double *x = in->x + i * dim;
-    const double  t = IsRevolved(degree) ? scale * in->hoop[i] : 0;
-    double        d[3], rho2 = t * t;
+    const double  t = IsRevolved(degree) ? scale * in->hoop[i]
+                      : IsBent(degree)   ? s->along[0] * x[0] + s->along[1] * x[1] + s->along[2] * x[2]
+                                         : 0;
+    double        d[3], bend[3], rho2 = IsRevolved(degree) ? t * t : 0;
 
     for (int k = 0; k < dim; k++) d[k] = G[k][0] * x[0] + G[k][1] * x[1] + (dim == 3 ? G[k][2] * x[2] : 0);
+    if (IsBent(degree)) BendAt(&in->bend, t, bend);
+    for (int k = 0; k < dim - 1 && IsBent(degree); k++) d[k] -= s->across[k] * bend[0];
     for (int k = 0; k < dim - 1; k++) rho2 += d[k] * d[k];
     if (!(rho2 < 1)) continue;
     for (int k = 0; k < dim - 1; k++) ((double *)a->eta[k])[n] = d[k];
     if (IsRevolved(degree)) ((double *)a->eta[1])[n] = t;
+    if (IsBent(degree)) ((double *)a->row)[n] = t;
     ((double *)a->multiplier)[n] = in->multiplier[i];
     ((double *)a->inside)[n]     = 1 - rho2;
     z[n]                         = d[dim - 1];
@@ -109,6 +117,7 @@ LANES_INLINE void Collect(const int dim, const int degree, const int terms, cons
   for (; n < a->groups * LANES; n++) {
     for (int k = 0; k < dim - 1; k++) ((double *)a->eta[k])[n] = 0;
     if (IsRevolved(degree)) ((double *)a->eta[1])[n] = 0;
+    if (IsBent(degree)) ((double *)a->row)[n] = 0;
     ((double *)a->multiplier)[n] = ((double *)a->inside)[n] = z[n] = 0;
   }
 }
@@ -249,7 +258,13 @@ LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, c
     }
   }
   memcpy(s->G[dim - 1], in->frame[dim - 1], sizeof(s->G[0]));
-  Collect(dim, degree, terms, in, s->G, surface->scale[0][0], a);
+  if (IsBent(degree)) {
+    surface->bend = in->bend;
+    BendAcross(&in->bend, (const double(*)[2])surface->scale, s->across);
+    for (int c = 0; c < 3; c++)
+      s->along[c] = in->bend.along[0] * in->frame[0][c] + in->bend.along[1] * in->frame[1][c];
+  }
+  Collect(dim, degree, terms, in, s, surface->scale[0][0], a);
   out->n = a->n;
   if (out->points) memcpy(out->points, a->points, a->n * sizeof(int));
   if (a->n < terms) return 0;
@@ -264,16 +279,45 @@ LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, c
   return 1;
 }
 
+/* Makes scaled coordinates from tangent coordinates y that bend. scale holds their derivatives by y. The second
+   derivative of coordinate k is second[k] d d^T with d = `along`. */
+LANES_INLINE void BendCoordinates(const FitSurface *surface, const double *y, double eta[2], double (*scale)[2],
+                                  double second[2])
+{
+  const double *const along = surface->bend.along;
+  double              bend[3], across[2];
+
+  BendAt(&surface->bend, along[0] * y[0] + along[1] * y[1], bend);
+  BendAcross(&surface->bend, surface->scale, across);
+  for (int k = 0; k < 2; k++) {
+    eta[k] -= across[k] * bend[0];
+    second[k] = -across[k] * bend[2];
+    for (int c = 0; c < 2; c++) scale[k][c] -= across[k] * bend[1] * along[c];
+  }
+}
+
+/* Makes scaled coordinates from tangent coordinates y, with their derivatives. */
+LANES_INLINE void ScaledCoordinates(const int m, const int degree, const FitSurface *surface, const double *y,
+                                    double eta[2], double (*scale)[2], double second[2])
+{
+  const double(*const B)[2] = surface->scale;
+
+  memcpy(scale, B, 4 * sizeof(double));
+  for (int k = 0; k < m; k++) eta[k] = B[k][0] * y[0] + (m == 2 ? B[k][1] * y[1] : 0);
+  if (IsRevolved(degree)) eta[1] = B[0][0] * y[1];
+  if (IsBent(degree)) BendCoordinates(surface, y, eta, scale, second);
+}
+
 /* Computes monomials, height, gradient and Hessian of the surface at tangent coordinates y. */
 LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, const FitSurface *surface,
                             const Lanes *alpha, const double *y, FitLocal *at)
 {
-  const double(*const B)[2] = surface->scale;
+  double(*const B)[2] = at->scale;
   Lanes  eta[MAX_TANGENTS], gradient[2], hessian[3];
-  double h[2][2];
+  double h[2][2], scaled[2], second[2];
 
-  for (int k = 0; k < m; k++) eta[k] = Broadcast(B[k][0] * y[0] + (m == 2 ? B[k][1] * y[1] : 0));
-  if (IsRevolved(degree)) eta[1] = Broadcast(B[0][0] * y[1]);
+  ScaledCoordinates(m, degree, surface, y, scaled, at->scale, second);
+  for (int k = 0; k < (IsRevolved(degree) ? 2 : m); k++) eta[k] = Broadcast(scaled[k]);
   Monomials(m, degree, eta, at->p);
   PolynomialGradient(m, degree, at->p, alpha, gradient);
   PolynomialHessian(m, degree, at->p, alpha, hessian);
@@ -286,6 +330,9 @@ LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, cons
     for (int d = 0; d < 2; d++) {
       at->h[c][d] =
         B[0][c] * (h[0][0] * B[0][d] + h[0][1] * B[1][d]) + B[1][c] * (h[1][0] * B[0][d] + h[1][1] * B[1][d]);
+      if (IsBent(degree))
+        at->h[c][d] += (second[0] * gradient[0][0] + second[1] * gradient[1][0]) * surface->bend.along[c] *
+                       surface->bend.along[d];
     }
   }
 }
@@ -388,8 +435,8 @@ LANES_INLINE void FootVariation(const int m, const int degree, const int terms, 
   for (int k = 0; k < terms; k++) {
     s->foot[0][k] = at->p[k];
     for (int c = 0; c < m; c++) {
-      s->foot[1 + c][k] = out->surface.scale[0][c] * dp[0][k];
-      if (m == 2) s->foot[1 + c][k] += out->surface.scale[1][c] * dp[1][k];
+      s->foot[1 + c][k] = at->scale[0][c] * dp[0][k];
+      if (m == 2) s->foot[1 + c][k] += at->scale[1][c] * dp[1][k];
     }
   }
   for (int r = 0; r < 1 + m; r++) ToOrthonormal(terms, s, s->foot[r]);
@@ -450,7 +497,8 @@ LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, cons
 
   Input Parameters:
 + dim    - 2 or 3
-- degree - of the polynomial over the dim - 1 tangents; FIT_REVOLVED added: of a fit of revolution
+- degree - of the polynomial over the dim - 1 tangents; FIT_REVOLVED added: of a fit of revolution; FIT_BENT added: of
+           one in bent coordinates
 
   Note:
   Plain C.
@@ -458,7 +506,7 @@ LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, cons
 int FitTerms(int dim, int degree)
 {
   if (IsRevolved(degree)) return PlainDegree(degree) == 4 ? 9 : 2 * PlainDegree(degree);
-  return dim == 2 ? degree + 1 : (degree + 1) * (degree + 2) / 2;
+  return dim == 2 ? degree + 1 : (PlainDegree(degree) + 1) * (PlainDegree(degree) + 2) / 2;
 }
 
 /*@
@@ -560,11 +608,11 @@ int DiffuseFitEvaluateBatch(int n, const FitProblem *in, FitWant want, double *w
 LANES_INLINE double HeightOnly(const int m, const int degree, const int terms, const FitSurface *surface,
                                const Lanes *alpha, const double *y)
 {
-  const double(*const B)[2] = surface->scale;
-  Lanes eta[MAX_TANGENTS], p[FIT_MAX_TERMS];
+  Lanes  eta[MAX_TANGENTS], p[FIT_MAX_TERMS];
+  double scaled[2], scale[2][2], second[2];
 
-  for (int k = 0; k < m; k++) eta[k] = Broadcast(B[k][0] * y[0] + (m == 2 ? B[k][1] * y[1] : 0));
-  if (IsRevolved(degree)) eta[1] = Broadcast(B[0][0] * y[1]);
+  ScaledCoordinates(m, degree, surface, y, scaled, scale, second);
+  for (int k = 0; k < (IsRevolved(degree) ? 2 : m); k++) eta[k] = Broadcast(scaled[k]);
   Monomials(m, degree, eta, p);
   return DotTerms(terms, p, alpha)[0];
 }
@@ -580,6 +628,34 @@ LANES_INLINE double HeightAt(const int m, const int degree, const int terms, con
   SurfaceAt(m, degree, terms, surface, alpha, y, &at);
   memcpy(gradient, at.g, m * sizeof(double));
   return at.q;
+}
+
+/*@
+  FitDistance2 - computes rho^2 of a point.
+
+  Not collective
+
+  Input Parameters:
++ dim    - 2 or 3
+. degree - of the fit
+. metric - as in FitProblem
+. bend   - as in FitProblem; read by a fit in bent coordinates only
+- y      - tangent coordinates relative to the slave point, y[2] (length); in 2D y[1] is the distance along the hoop
+
+  Note:
+  Plain C.
+@*/
+double FitDistance2(int dim, int degree, const double (*metric)[2], const FitBend *bend, const double *y)
+{
+  double at[3] = {0}, x[2] = {y[0], y[1]};
+
+  if (dim == 2) return metric[0][0] * (y[0] * y[0] + y[1] * y[1]);
+  if (IsBent(degree)) {
+    BendAt(bend, bend->along[0] * y[0] + bend->along[1] * y[1], at);
+    x[0] += bend->along[1] * at[0];
+    x[1] -= bend->along[0] * at[0];
+  }
+  return metric[0][0] * x[0] * x[0] + (2 * metric[0][1] * x[0] + metric[1][1] * x[1]) * x[1];
 }
 
 /*@

@@ -22,6 +22,13 @@
    distance t = r sin theta from it. Then rho_i^2 = Q (s_i^2 + t_i^2), and p holds the monomials s^a t^b with even b up
    to the degree, because the surface is even in t. The slave point and the foot have t = 0. t_i is no unknown.
 
+   A fit in bent coordinates (degree + FIT_BENT, in 3D) serves surfaces whose faces are much longer than wide and run
+   along curves, like those of a ring. Seen in the tangent plane the rows of such faces bend aside by more than the
+   support is wide, so that a support along straight axes leaves them. With t = along.y
+       y' = y - across (h[0] t^2 + h[1] t^3 + h[2] t^4)
+   takes the place of y in rho and p. At the slave point both agree, and so do their first derivatives. The bend is
+   held like the metric.
+
    The kernel sees points, never elements or nodes. Only points inside the support take part. The result lists them,
    and N and M run over the slave point and these points. */
 #pragma once
@@ -50,6 +57,8 @@ enum {
   FIT_MAX_TERMS  = 15,
   /* Added to the degree of a fit of revolution. */
   FIT_REVOLVED = 100,
+  /* Added to the degree of a fit in bent coordinates. */
+  FIT_BENT = 200,
   /* Lists end at this number of points. The kernel itself takes any number. */
   FIT_MAX_POINTS = 512
 };
@@ -74,8 +83,15 @@ typedef enum { FIT_SURFACE, FIT_GAP_ONLY, FIT_GAP, FIT_FIRST_VARIATION, FIT_SECO
    gap and N are exact in both. */
 typedef enum { FIT_FULL, FIT_DIFFUSE } FitDerivativeKind;
 
+/* How rows of long faces bend in the tangent plane. across is `along`, turned by a right angle to the left. */
 typedef struct {
-  int    dim, degree; /* degree 1, 2 or 4; in 2D also FIT_REVOLVED + one of these */
+  double along[2]; /* unit vector over the tangents */
+  double h[3];     /* of t^2, t^3 and t^4 (length^-1, ^-2, ^-3) */
+} FitBend;
+
+typedef struct {
+  /* degree 1, 2 or 4; in 2D also FIT_REVOLVED + one of these, in 3D FIT_BENT + one of these */
+  int    dim, degree;
   double exponent;    /* of the weight, >= 3: it is twice continuously differentiable at the end of the support */
   /* frame[k]: k-th vector; first the dim - 1 tangents, then the normal out of the master. In 2D the third components
      are not read. */
@@ -86,6 +102,7 @@ typedef struct {
   const double     *x;          /* [n][dim], relative to the slave point */
   const double     *multiplier; /* [n], v > 0 */
   const double     *hoop;       /* [n], t (length), held like the metric; read by a fit of revolution only */
+  FitBend           bend;       /* read by a fit in bent coordinates only */
   FitDerivativeKind derivatives;
 } FitProblem;
 
@@ -93,8 +110,9 @@ typedef struct {
 typedef struct {
   int dim, degree;
   /* The monomials are taken at the scaled tangent coordinates, scale y. */
-  double scale[2][2];
-  double coefficient[FIT_MAX_TERMS]; /* of the monomials, along the normal (length) */
+  double  scale[2][2];
+  FitBend bend;
+  double  coefficient[FIT_MAX_TERMS]; /* of the monomials, along the normal (length) */
 } FitSurface;
 
 /* The factors of M, for callers that need it over fewer unknowns (fitderivatives.h): M_ij = K_i^T J_j + J_i^T K_j^T
@@ -134,5 +152,6 @@ int    FitPointsWanted(int dim, int degree);
 long   FitWorkspace(int dim, int degree, int n);
 int    DiffuseFitEvaluate(const FitProblem *, FitWant, double *workspace, FitResult *);
 int    DiffuseFitEvaluateBatch(int n, const FitProblem *, FitWant, double *workspace, FitResult *);
+double FitDistance2(int dim, int degree, const double (*metric)[2], const FitBend *, const double *y);
 double FitSurfaceHeight(const FitSurface *, const double *y, double *gradient);
 int    FitShape(const FitProblem *, int n, const double *y, const double *factor, double *workspace, double *shape);

@@ -25,6 +25,7 @@ static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, 
   if (in->n_fit) {
     memcpy(problem.frame, in->frame, sizeof(problem.frame));
     memcpy(problem.metric, in->metric, sizeof(problem.metric));
+    if (in->bend) problem.bend = *in->bend;
     if (DiffuseFitEvaluate(&problem, wants[want], in->workspace, &fit) && !(fit.guards & FIT_FAR_FOOT)) {
       out->gap      = fit.gap;
       out->factored = 1;

@@ -17,12 +17,22 @@ typedef struct {
   /* q: gradient of the height; l = lambda.p and dl its gradient. */
   Lanes q[MAX_TANGENTS], l, dl[MAX_TANGENTS];
   Lanes c[MAX_TANGENTS], a[MAX_TANGENTS]; /* gradients of w e and w l */
+  Lanes slope, turn;                      /* of the bend at the point, with its curvature */
 } FitBundle;
 
-/* Fills a bundle. With derivatives == FIT_DIFFUSE the weights count as constants. */
-LANES_INLINE void Bundle(const int m, const int degree, const int terms, const FitArrays *a, const FitState *s,
-                         double exponent, FitDerivativeKind derivatives, int g, FitBundle *b)
+/* Derivative of scaled coordinate k of the points by component c of their position. */
+LANES_INLINE Lanes Turn(const int dim, const int degree, const FitState *s, const FitBundle *b, int k, int c)
 {
+  if (IsBent(degree) && k < dim - 1) return s->G[k][c] - s->across[k] * s->along[c] * b->slope;
+  return Broadcast(s->G[k][c]);
+}
+
+/* Fills a bundle. With derivatives == FIT_DIFFUSE the weights count as constants. */
+LANES_INLINE void Bundle(const int m, const int degree, const int terms, const FitProblem *in, const FitArrays *a,
+                         const FitState *s, FitDerivativeKind derivatives, int g, FitBundle *b)
+{
+  const double exponent = in->exponent;
+
   for (int k = 0; k < m; k++) b->eta[k] = a->eta[k][g];
   if (IsRevolved(degree)) b->eta[1] = a->eta[1][g];
   Monomials(m, degree, b->eta, b->p);
@@ -41,6 +51,13 @@ LANES_INLINE void Bundle(const int m, const int degree, const int terms, const F
     b->dl[k] = DotTerms(terms, s->lambda, b->dp[k]);
     b->c[k]  = b->w1 * b->eta[k] * b->e - b->w * b->q[k];
     b->a[k]  = b->w1 * b->eta[k] * b->l + b->w * b->dl[k];
+  }
+  for (int i = 0; i < LANES && IsBent(degree); i++) {
+    double bend[3];
+
+    BendAt(&in->bend, a->row[g][i], bend);
+    b->slope[i] = bend[1];
+    b->turn[i]  = bend[2];
   }
 }
 
@@ -63,10 +80,11 @@ LANES_INLINE void FirstVariation(const int dim, const int degree, const int term
     FitBundle b;
     Lanes     v[3];
 
-    Bundle(dim - 1, degree, terms, a, s, in->exponent, FIT_FULL, g, &b);
+    Bundle(dim - 1, degree, terms, in, a, s, FIT_FULL, g, &b);
     for (int c = 0; c < dim; c++) {
       v[c] = s->G[dim - 1][c] * b.w * b.l;
-      for (int k = 0; k < dim - 1; k++) v[c] += s->G[k][c] * (b.c[k] * b.l + b.w * b.e * b.dl[k]);
+      for (int k = 0; k < dim - 1; k++)
+        v[c] += Turn(dim, degree, s, &b, k, c) * (b.c[k] * b.l + b.w * b.e * b.dl[k]);
       total[c] += v[c];
     }
     StoreVectors(dim, count, v, N + dim * (1 + g * LANES));
@@ -102,8 +120,8 @@ typedef struct {
 } FitBlock;
 
 /* J^ = A p^ + B Dp^, and C likewise. The coefficients are in space already. */
-LANES_INLINE void PointFactors(const int dim, const int terms, const FitArrays *a, const FitState *s, FitBundle *b,
-                               int g, FitBlock *out)
+LANES_INLINE void PointFactors(const int dim, const int degree, const int terms, const FitArrays *a, const FitState *s,
+                               FitBundle *b, int g, FitBlock *out)
 {
   const int   m  = dim - 1;
   const Lanes we = b->w * b->e, wl = b->w * b->l;
@@ -121,12 +139,12 @@ LANES_INLINE void PointFactors(const int dim, const int terms, const FitArrays *
     A[c] = s->G[m][c] * b->w;
     C[c] = Broadcast(0);
     for (int k = 0; k < m; k++) {
-      A[c] += s->G[k][c] * b->c[k];
-      C[c] -= s->G[k][c] * b->a[k];
+      A[c] += Turn(dim, degree, s, b, k, c) * b->c[k];
+      C[c] -= Turn(dim, degree, s, b, k, c) * b->a[k];
     }
     for (int r = 0; r < 1 + m; r++) {
       U[r] = A[c] * fp[r];
-      for (int k = 0; k < m; k++) U[r] += s->G[k][c] * we * fd[r][k];
+      for (int k = 0; k < m; k++) U[r] += Turn(dim, degree, s, b, k, c) * we * fd[r][k];
     }
     for (int r = 0; r < 1 + m; r++) {
       T[c][r] = Broadcast(0);
@@ -140,8 +158,8 @@ LANES_INLINE void PointFactors(const int dim, const int terms, const FitArrays *
       J[k] = A[c] * p[k];
       K[k] = C[c] * p[k];
       for (int t = 0; t < m; t++) {
-        J[k] += s->G[t][c] * we * b->dp[t][k];
-        K[k] -= s->G[t][c] * wl * b->dp[t][k];
+        J[k] += Turn(dim, degree, s, b, t, c) * we * b->dp[t][k];
+        K[k] -= Turn(dim, degree, s, b, t, c) * wl * b->dp[t][k];
       }
       for (int r = 0; r < 1 + m; r++) K[k] += T[c][r] * s->foot[r][k];
     }
@@ -150,14 +168,21 @@ LANES_INLINE void PointFactors(const int dim, const int terms, const FitArrays *
 }
 
 /* H of LANES points in space. */
-LANES_INLINE void TurnHessian(const int dim, const FitState *s, Lanes (*h)[3], Lanes *out)
+LANES_INLINE void TurnHessian(const int dim, const int degree, const FitState *s, const FitBundle *b, Lanes (*h)[3],
+                              Lanes *out)
 {
+  Lanes bend = Broadcast(0);
+
+  for (int k = 0; k < dim - 1 && IsBent(degree); k++)
+    bend -= s->across[k] * b->turn * (b->c[k] * b->l + b->w * b->e * b->dl[k]);
   for (int c = 0, entry = 0; c < dim; c++) {
     for (int d = 0; d <= c; d++, entry++) {
       out[entry] = Broadcast(0);
       for (int k = 0; k < dim; k++) {
-        for (int l = 0; l < dim; l++) out[entry] += s->G[k][c] * s->G[l][d] * h[k][l];
+        for (int l = 0; l < dim; l++)
+          out[entry] += Turn(dim, degree, s, b, k, c) * Turn(dim, degree, s, b, l, d) * h[k][l];
       }
+      if (IsBent(degree)) out[entry] += bend * (s->along[c] * s->along[d]);
     }
   }
   for (int entry = dim * (dim + 1) / 2; entry < HessianStride(dim); entry++) out[entry] = Broadcast(0);
@@ -170,10 +195,10 @@ LANES_INLINE void Block(const int dim, const int degree, const int terms, const 
   FitBundle b;
   Lanes     h[3][3];
 
-  Bundle(dim - 1, degree, terms, a, s, in->exponent, in->derivatives, g, &b);
+  Bundle(dim - 1, degree, terms, in, a, s, in->derivatives, g, &b);
   PointHessian(dim, degree, s, &b, h);
-  TurnHessian(dim, s, h, out->hessian);
-  PointFactors(dim, terms, a, s, &b, g, out);
+  TurnHessian(dim, degree, s, &b, h, out->hessian);
+  PointFactors(dim, degree, terms, a, s, &b, g, out);
 }
 
 /* Adds the points' own second variations H, in space, to the blocks of the point, of the slave point and of both

@@ -32,6 +32,7 @@ typedef struct {
   const double     *multiplier;     /* of the weights of the fit points */
   const double     *hoop;           /* of the fit points, as in FitProblem */
   const double     *frame, *metric; /* 9 and 4 entries as in FitProblem, held in a solve */
+  const FitBend    *bend;           /* as in FitProblem; NULL: no fit is bent */
   FitDerivativeKind derivatives;
   double           *workspace; /* of the size that the smoother's workspace() returned */
 } SmootherInput;

@@ -97,14 +97,10 @@ void ModelChooseObjective(Model model, PetscReal residual, PetscReal slope)
 /* Turns a step round that leads uphill. Where the tangent is indefinite, Newton's step may lead to a saddle of the
    energy, and the opposite step leads downhill. With loads that follow the surface the work of the residual stands for
    the energy. */
-static PetscErrorCode ModelTurnStep(Model model, SNESLineSearch search, Vec y, PetscReal *slope)
+static PetscErrorCode ModelTurnStep(Model model, Vec y, PetscReal slope)
 {
-  Vec F;
-
   PetscFunctionBeginUser;
-  PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
-  PetscCall(VecDotRealPart(F, y, slope));
-  if (*slope >= 0 || PetscIsInfOrNanReal(*slope)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (slope >= 0 || PetscIsInfOrNanReal(slope)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecScale(y, -1));
   model->work->turned++;
   model->work->uphill = PETSC_TRUE;
@@ -133,12 +129,13 @@ static PetscErrorCode ModelFindStall(Model model, SNESLineSearch search)
 }
 
 /* Changes Newton's step so that its contact is right at its end, and chooses the objective anew from the slope of the
-   energy. A step that leads uphill is turned round. */
+   energy. A step that leads uphill is turned round, unless residuals are compared: the opposite step raises them. */
 static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x, Vec y)
 {
   const PetscBool conservative = ProblemConservative(model->problem);
   SNES            snes;
   PetscReal       slope, energy;
+  Vec             F;
 
   PetscFunctionBeginUser;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
@@ -149,8 +146,10 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
   PetscCall(SNESLineSearchGetSNES(search, &snes));
   if (model->contact && conservative && model->work->energy == 0)
     PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated in this load step */
-  PetscCall(ModelTurnStep(model, search, y, &slope));
+  PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
+  PetscCall(VecDotRealPart(F, y, &slope));
   if (model->contact && conservative) ModelChooseObjective(model, NAN, slope);
+  if (model->work->objective == OBJECTIVE_ENERGY) PetscCall(ModelTurnStep(model, y, slope));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

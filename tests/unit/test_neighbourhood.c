@@ -62,8 +62,8 @@ static void MakeStrip(Strip *s, PetscReal angle, PetscReal wall, SurfaceView *vi
    node on the edge) and of the far side. */
 static void Count(PetscReal angle, PetscReal wall, PetscReal radius, int count[3])
 {
-  const PetscReal foot[3] = {1.5, 0, 0}, up[3] = {0, 1, 0},
-                  metric[9] = {1 / (radius * radius), 0, 0, 0, 1 / (radius * radius), 0, 0, 0, 0};
+  const PetscReal foot[3] = {1.5, 0, 0}, up[3] = {0, 1, 0};
+  const NeighbourhoodSupport support = {.metric = {1 / (radius * radius), 0, 0, 0, 1 / (radius * radius), 0, 0, 0, 0}};
   Strip            strip;
   SurfaceView      view;
   Neighbourhoods   nb;
@@ -72,7 +72,7 @@ static void Count(PetscReal angle, PetscReal wall, PetscReal radius, int count[3
 
   MakeStrip(&strip, angle, wall, &view);
   assert_int_equal(NeighbourhoodsCreate(&view, &nb), PETSC_SUCCESS);
-  assert_int_equal(NeighbourhoodGather(nb, SIDE - 2, foot, up, metric, 1, POINTS, points, &rho2, &n, &found),
+  assert_int_equal(NeighbourhoodGather(nb, SIDE - 2, foot, up, &support, 1, POINTS, points, &rho2, &n, &found),
                    PETSC_SUCCESS);
   assert_int_equal(n, found);
   count[0] = count[1] = count[2] = 0;

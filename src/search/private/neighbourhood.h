@@ -24,6 +24,13 @@ typedef struct {
   const PetscReal *hoop; /* of each point, for fits of revolution; NULL: none */
 } SurfaceView;
 
+/* A support: its metric and how it bends, in space. */
+typedef struct {
+  PetscReal metric[9]; /* row-major 3x3, symmetric, inverse squared lengths */
+  PetscBool bent;
+  PetscReal along[3], across[3], h[3]; /* where it is bent: unit vectors, and coefficients as in FitBend */
+} NeighbourhoodSupport;
+
 typedef struct _n_Neighbourhoods *Neighbourhoods;
 
 PetscErrorCode NeighbourhoodsCreate(const SurfaceView *, Neighbourhoods *);
@@ -32,5 +39,5 @@ PetscBool      NeighbourhoodsIsSharp(Neighbourhoods, PetscInt f);
 PetscBool      NeighbourhoodsMeetSharply(Neighbourhoods, PetscInt f, PetscInt g);
 PetscInt       NeighbourhoodsLinks(Neighbourhoods, PetscInt f, const PetscInt **links);
 PetscErrorCode NeighbourhoodGather(Neighbourhoods, PetscInt start, const PetscReal x0[3], const PetscReal e3[3],
-                                   const PetscReal metric[9], PetscReal limit, PetscInt max, PetscInt *points,
+                                   const NeighbourhoodSupport *, PetscReal limit, PetscInt max, PetscInt *points,
                                    const PetscReal **rho2, PetscInt *n, PetscInt *found);

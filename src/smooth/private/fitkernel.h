@@ -21,8 +21,8 @@ enum {
   FACTORS = LANES * ((2 * FIT_MAX_TERMS + LANES - 1) / LANES),
   /* Most entries of a point's H, filled up to whole vectors. */
   FIT_HESSIAN = 8,
-  /* Vectors per LANES points besides the basis: eta (2), multiplier, inside, power, weight, scratch, H (6). */
-  ARRAYS = 13
+  /* Vectors per LANES points besides the basis: eta (2), multiplier, inside, power, weight, scratch, row, H (6). */
+  ARRAYS = 14
 };
 
 /* Arrays over the points inside the support, in vectors of LANES points. The last vector is filled up with points of
@@ -33,6 +33,7 @@ typedef struct {
   int stride;    /* vectors per row of K and J */
   /* inside: 1 - rho^2; power: v inside^(exponent - 2). */
   Lanes *eta[MAX_TANGENTS], *multiplier, *inside, *power, *weight, *scratch;
+  Lanes *row;   /* t, in bent coordinates */
   Lanes *H;     /* [6][capacity]: xx xy yy xz yz zz */
   Lanes *basis; /* [terms + 1][capacity]: orthonormal basis, then the residual e */
   Lanes *K, *J; /* [terms][stride]: entry (1 + i)*dim + c of a row */
@@ -48,6 +49,8 @@ typedef struct {
   Lanes  foot[ROWS][FIT_MAX_TERMS];                     /* F = p^, Dp^ at the foot, D with respect to y */
   double S[ROWS][ROWS];
   double G[3][3], nu3; /* d = G x */
+  /* In bent coordinates d = G x - across h(along.x), with `along` in space and across in scaled coordinates. */
+  double along[3], across[MAX_TANGENTS];
 } FitState;
 
 #if defined(__AVX512F__)
@@ -108,13 +111,33 @@ LANES_INLINE Lanes Broadcast(double a)
    the hoop. */
 LANES_INLINE int IsRevolved(const int degree)
 {
-  return degree > FIT_REVOLVED;
+  return degree > FIT_REVOLVED && degree < FIT_BENT;
+}
+
+/* Is this the code of a fit in bent coordinates? */
+LANES_INLINE int IsBent(const int degree)
+{
+  return degree > FIT_BENT;
+}
+
+/* How far a row bends aside at t, with its slope and curvature in bend[1] and bend[2]. */
+LANES_INLINE void BendAt(const FitBend *in, double t, double bend[3])
+{
+  bend[0] = t * t * (in->h[0] + t * (in->h[1] + t * in->h[2]));
+  bend[1] = t * (2 * in->h[0] + t * (3 * in->h[1] + t * 4 * in->h[2]));
+  bend[2] = 2 * in->h[0] + t * (6 * in->h[1] + t * 12 * in->h[2]);
+}
+
+/* The bend's `across` in scaled coordinates. */
+LANES_INLINE void BendAcross(const FitBend *in, const double (*scale)[2], double across[2])
+{
+  for (int k = 0; k < 2; k++) across[k] = -scale[k][0] * in->along[1] + scale[k][1] * in->along[0];
 }
 
 /* Degree of the polynomial itself. */
 LANES_INLINE int PlainDegree(const int degree)
 {
-  return IsRevolved(degree) ? degree - FIT_REVOLVED : degree;
+  return IsRevolved(degree) ? degree - FIT_REVOLVED : IsBent(degree) ? degree - FIT_BENT : degree;
 }
 
 /* Position of s^(k-b) t^b among the monomials. Those without t come first in a fit of revolution. */
@@ -204,6 +227,9 @@ LANES_INLINE void ToOrthonormal(const int terms, const FitState *s, Lanes *p)
   case 31: body(3, 1, 3);                                   \
   case 32: body(3, 2, 6);                                   \
   case 34: body(3, 4, 15);                                  \
+  case 30 + FIT_BENT + 1: body(3, FIT_BENT + 1, 3);         \
+  case 30 + FIT_BENT + 2: body(3, FIT_BENT + 2, 6);         \
+  case 30 + FIT_BENT + 4: body(3, FIT_BENT + 4, 15);        \
   }
 
 /* Length of a row of FitFactors: terms of K, terms of J, filled up with zeros. */
