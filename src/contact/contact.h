@@ -69,6 +69,7 @@ typedef struct {
   PetscReal pivot, amplified; /* worst guards: smallest pivot, largest sum of absolute shape values */
   PetscReal smoothing_error;  /* largest distance of a master node near the foot to the fit (length) */
   PetscReal facet_error;      /* largest distance between facets and fit at a slave point (length) */
+  PetscReal apart_over_h;     /* the same where the facets are within a face of the slave, over the size of that */
 } ContactFits;
 
 /* A slave node in a message: gmsh's tag and reference coordinates. */

@@ -58,8 +58,10 @@ static PetscErrorCode TermOverlapExplained(const ContactPair *pair, PetscInt c, 
     const PetscInt q = pair->term_point[k];
     PetscBool      found;
 
-    if (!pair->lists->fit_n[q] || PetscIsNanReal(pair->point_gap[q])) continue;
-    apart = PetscMax(apart, PetscMax(pair->lists->residual[q], PointOffset(pair, q)));
+    if (PetscIsNanReal(pair->point_gap[q])) continue;
+    apart = PetscMax(apart, PointOffset(pair, q));
+    if (!pair->lists->fit_n[q]) continue;
+    apart = PetscMax(apart, pair->lists->residual[q]);
     PetscCall(ContactPointEvaluate(pair, pair->facets, pair->lists, q, -1, SMOOTHER_GAP, &found));
     if (found) apart = PetscMax(apart, PetscAbsReal(pair->work->result.gap - pair->point_gap[q]));
   }

@@ -447,7 +447,7 @@ typedef struct {
   PetscInt  points, neighbours;
   PetscInt  within, within_low; /* not beyond a free edge of the master; of these, those of degree 2 and less */
   PetscReal least_neighbours, least_pivot; /* negative, as a maximum is taken */
-  PetscReal most_neighbours, amplified, residual, facets;
+  PetscReal most_neighbours, amplified, residual, facets, apart;
 } FitTally;
 
 /* Adds slave point q, which has a master near, to the counts. */
@@ -477,6 +477,8 @@ static PetscErrorCode TallyPoint(const ContactPair *pair, PetscInt q, FitTally *
   tally->amplified        = PetscMax(tally->amplified, lists->amplified[q]);
   tally->residual         = PetscMax(tally->residual, lists->residual[q]);
   if (within) tally->facets = PetscMax(tally->facets, PetscAbsReal(facets - result->gap));
+  if (within && PetscAbsReal(facets) < pair->slaves->size[q])
+    tally->apart = PetscMax(tally->apart, PetscAbsReal(facets - result->gap) / pair->slaves->size[q]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -485,7 +487,8 @@ static PetscErrorCode TallyReduce(MPI_Comm comm, FitTally *tally)
 {
   PetscInt  count[RUNGS + 5];
   PetscReal most[] = {tally->least_neighbours, tally->least_pivot, tally->most_neighbours,
-                      tally->amplified,        tally->residual,    tally->facets};
+                      tally->amplified,        tally->residual,    tally->facets,
+                      tally->apart};
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(count, tally->rung, RUNGS + 1));
@@ -494,7 +497,7 @@ static PetscErrorCode TallyReduce(MPI_Comm comm, FitTally *tally)
   count[RUNGS + 3] = tally->within;
   count[RUNGS + 4] = tally->within_low;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, RUNGS + 5, MPIU_INT, MPI_SUM, comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 6, MPIU_REAL, MPI_MAX, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 7, MPIU_REAL, MPI_MAX, comm));
   PetscCall(PetscArraycpy(tally->rung, count, RUNGS + 1));
   tally->points           = count[RUNGS + 1];
   tally->neighbours       = count[RUNGS + 2];
@@ -506,6 +509,7 @@ static PetscErrorCode TallyReduce(MPI_Comm comm, FitTally *tally)
   tally->amplified        = most[3];
   tally->residual         = most[4];
   tally->facets           = most[5];
+  tally->apart            = most[6];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -544,6 +548,7 @@ PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
                         .facets          = tally.rung[RUNGS],
                         .amplified       = tally.amplified,
                         .smoothing_error = tally.residual,
+                        .apart_over_h    = tally.apart,
                         .facet_error     = tally.facets};
   for (int r = 1; r < RUNGS; r++)
     *(r <= RUNG_WIDER ? &fits->wider : r <= RUNG_DEGREE_2 ? &fits->degree_2 : &fits->linear) += tally.rung[r];

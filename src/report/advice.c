@@ -11,6 +11,8 @@
 #define ADVICE_FACETS 10
 /* Part of the slave points that may be on the lower rungs. Free ends and corners of a surface put some points there. */
 #define ADVICE_FALL_BACKS 0.1
+/* Part of a face of the slave by which the smooth surface and the master's faces may be apart where they meet. */
+#define ADVICE_APART 0.05
 /* Parts of the steps that may fail or be taken back before another step size is cheaper. */
 #define ADVICE_FAILED   0.25
 #define ADVICE_REPEATED 0.5
@@ -169,6 +171,15 @@ static double FitsFallBack(const RunFigures *figures, const PairFigures *pair, c
   if (low <= ADVICE_FALL_BACKS * pair->fits.within) return 0;
   snprintf(text, ADVICE_TEXT, "%s: %lld of %lld slave points have no fit of their degree", pair->name, (long long)low,
            (long long)pair->fits.within);
+  return 1;
+}
+
+static double FitsAreApart(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  (void)figures;
+  if (!pair->quality.nodes || !(pair->fits.apart_over_h > ADVICE_APART)) return 0;
+  snprintf(text, ADVICE_TEXT, "%s: the smooth surface is up to %.2g of a face of the slave off the faces of '%s'",
+           pair->name, (double)pair->fits.apart_over_h, pair->scene->master);
   return 1;
 }
 
@@ -362,6 +373,7 @@ static const Situation situations[] = {
   {.pair = SlipTurns, .changes = {CHANGE_SHORTER}},
   {.pair = FacetsAreCoarse, .changes = {CHANGE_DIFFUSE, CHANGE_FINER_MASTER}},
   {.pair = FitsFallBack, .changes = {CHANGE_FINER_MASTER, CHANGE_SYMMETRY, CHANGE_DEGREE_2}},
+  {.pair = FitsAreApart, .changes = {CHANGE_FINER_MASTER}},
   {.pair = WindowIsMissed, .changes = {CHANGE_WHEN_CONVERGED, CHANGE_WIDER_WINDOW, CHANGE_RANGE}},
   {.pair = UpdatesAreFew, .changes = {CHANGE_STIFFER, CHANGE_UPDATES, CHANGE_WIDER_WINDOW}},
   {.body = BodyLocks, .changes = {CHANGE_AUTO, CHANGE_SECOND_ORDER}},

@@ -176,6 +176,9 @@ static void test_pairs(void **state)
   c.pair.fits.within_low = 3;
   Expect(&c, "3 of 20 slave points");
   Good(&c);
+  c.pair.fits.apart_over_h = 0.2;
+  Expect(&c, "the smooth surface is up to 0.2 of a face of the slave off the faces of 'foot': a finer or more even mesh");
+  Good(&c);
   c.pair.quality.sagitta = 2e-3;
   Expect(&c, "smoother=diffuse");
   Good(&c);

@@ -103,6 +103,7 @@ typedef struct {
   double   *x, *multiplier, *taper, *hoop, *workspace;
   int      *used;
   PetscReal plane[3]; /* normal of the single reference plane of a global frame */
+  PetscReal residual; /* of the last fit: largest distance to it of a point in the inner half of the support */
 } FitSupport;
 
 /* candidate.c */

@@ -1,0 +1,31 @@
+// A wire whose end has been pointed and put through a conical die with a land and a relief, as a stranger would draw
+// it: the die's lines have few long faces. Lengths in mm; radius x, axis y.
+DefineConstant[ die_size = 4, size = 0.7 ];
+R = 5; r = 4.5; slope = Tan(8 * Pi / 180);
+cone = (R - r) / slope;
+Point(1) = {0, -12, 0};     Point(2) = {R, -12, 0};
+Point(3) = {0, -cone, 0};   Point(4) = {R, -cone, 0};
+Point(5) = {0, 0, 0};       Point(6) = {r, 0, 0};
+Point(7) = {0, 4, 0};       Point(8) = {r, 4, 0};
+Line(1) = {1, 2};  Line(2) = {3, 4};  Line(3) = {5, 6};  Line(4) = {7, 8};
+Line(5) = {2, 4};  Line(6) = {4, 6};  Line(7) = {6, 8};
+Line(8) = {1, 3};  Line(9) = {3, 5};  Line(10) = {5, 7};
+Curve Loop(1) = {1, 5, -2, -8};  Plane Surface(1) = {1};
+Curve Loop(2) = {2, 6, -3, -9};  Plane Surface(2) = {2};
+Curve Loop(3) = {3, 7, -4, -10};  Plane Surface(3) = {3};
+Transfinite Curve {1, 2, 3, 4} = Round(R / size) + 1;
+Transfinite Curve {5, 8} = Round((12 - cone) / size) + 1;
+Transfinite Curve {6, 9} = Round(cone / size) + 1;
+Transfinite Curve {7, 10} = Round(4 / size) + 1;
+Transfinite Surface {1, 2, 3};
+Recombine Surface {1, 2, 3};
+Point(10) = {R + 1.5 * slope, -cone - 1.5, 0};  Point(11) = {r, 0, 0};  Point(12) = {r, 1.5, 0};
+Point(13) = {r + 0.5, 2.5, 0};
+Line(20) = {10, 11};  Line(21) = {11, 12};  Line(22) = {12, 13};
+Transfinite Curve {20} = Max(1, Round(5 / die_size)) + 1;
+Transfinite Curve {21, 22} = Max(1, Round(1.5 / die_size)) + 1;
+Physical Surface("wire") = {1, 2, 3};
+Physical Curve("axis") = {8, 9, 10};
+Physical Curve("skin") = {5, 6, 7};
+Physical Curve("front") = {4};
+Physical Curve("die") = {20, 21, 22};
