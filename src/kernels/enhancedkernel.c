@@ -28,8 +28,8 @@ enum { MAX_ITERATIONS = 40 };
 enum { RENEWED_FIRST = 2, RENEWED_AGAIN = 5 };
 /* Newton's method has converged when the energy of a correction is below this part of the element's energy. */
 static const double converged_energy = 1e-16;
-/* Round-off error of the strains where a body turns: they are differences of numbers about 1. Energies count as equal if
-   their difference is below that of such strains, or below the relative round-off error of a sum over the points. */
+/* Round-off error of the strains where a body turns: they are differences of numbers about 1. Energies count as equal
+   if their difference is below that of such strains, or below the relative round-off error of a sum over the points. */
 static const double strain_round_off = 1e-14, energy_round_off = 1e-13;
 /* Square of a strain that is negligible, for elements that have no energy. It is far above the round-off of
    displacements and far below any strain of interest. */

@@ -6,9 +6,9 @@
 static void Evaluate(const Lanes H[9], const Lanes *dilatation, int n, const Lanes constants[], Lanes *W, Lanes P[9],
                      Lanes A[MATERIAL_TANGENT_SIZE])
 {
-  const Lanes lambda = constants[0], mu = constants[1];
-  LawMotion   m;
-  Lanes       pressure;
+  const Lanes  lambda = constants[0], mu = constants[1];
+  LawMotion    m;
+  Lanes        pressure;
   const Lanes *G = m.G, *e = m.e;
 
   (void)n;
@@ -16,7 +16,8 @@ static void Evaluate(const Lanes H[9], const Lanes *dilatation, int n, const Lan
   pressure = lambda * m.log_J;
   for (int i = 0; i < 3; i++) { /* P = mu (F - F^-T) + lambda ln J F^-T with F - F^-T = (F F^T - 1) F^-T */
     for (int j = 0; j < 3; j++)
-      P[3 * i + j] = mu * (e[3 * i] * G[j] + e[3 * i + 1] * G[3 + j] + e[3 * i + 2] * G[6 + j]) + pressure * G[3 * i + j];
+      P[3 * i + j] =
+        mu * (e[3 * i] * G[j] + e[3 * i + 1] * G[3 + j] + e[3 * i + 2] * G[6 + j]) + pressure * G[3 * i + j];
   }
   if (W) *W = 0.5 * mu * m.trace - mu * m.log_J + 0.5 * pressure * m.log_J; /* I1 - 3 = tr(F F^T - 1) */
   if (A) { /* A_iIjJ = mu delta_ij delta_IJ + lambda G_iI G_jJ + (mu - lambda ln J) G_iJ G_jI */
