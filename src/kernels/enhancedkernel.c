@@ -28,8 +28,9 @@ enum { MAX_ITERATIONS = 40 };
 enum { RENEWED_FIRST = 2, RENEWED_AGAIN = 5 };
 /* Newton's method has converged when the energy of a correction is below this part of the element's energy. */
 static const double converged_energy = 1e-16;
-/* Relative round-off error of an energy that is a sum over the points. Two energies this close count as equal. */
-static const double energy_round_off = 1e-13;
+/* Round-off error of the strains where a body turns: they are differences of numbers about 1. Energies count as equal
+   if their difference is below that of such strains, or below the relative round-off error of a sum over the points. */
+static const double strain_round_off = 1e-14, energy_round_off = 1e-13;
 /* Square of a strain that is negligible, for elements that have no energy. It is far above the round-off of
    displacements and far below any strain of interest. */
 static const double converged_strain2 = 1e-20;
@@ -236,10 +237,12 @@ LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const 
   int left = 0;
 
   for (int lane = 0; lane < LANES; lane++) {
-    double work = 0; /* twice the energy that the correction releases */
+    const double before = modes_state->W[lane], scale = modes_state->scale[lane];
+    const double round_off = energy_round_off * before + strain_round_off * sqrt(scale / converged_strain2 * before);
+    double       work      = 0; /* twice the energy that the correction releases */
 
     if (modes_state->active[lane] == 0) continue;
-    if ((*W)[lane] > modes_state->W[lane] * (1 + energy_round_off) + modes_state->scale[lane]) {
+    if ((*W)[lane] > before + round_off + scale) {
       for (int k = 0; k < modes; k++) {
         modes_state->gone[k][lane] /= 2;
         x->b[k][lane] -= modes_state->gone[k][lane];
@@ -253,7 +256,7 @@ LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const 
       x->b[k][lane] -= d[k][lane];
       work += fabs(f[k][lane] * d[k][lane]);
     }
-    modes_state->active[lane] = !(work <= converged_energy * (*W)[lane] + modes_state->scale[lane]);
+    modes_state->active[lane] = !(work <= converged_energy * (*W)[lane] + scale);
     left += modes_state->active[lane] != 0;
   }
   return left;

@@ -126,26 +126,32 @@ PetscBool FlankFaces(const Nearest *look, const Candidate *c)
 }
 
 /*@
-  FlankIsOwn - says whether a candidate shares a node with the slave point's own face; it is then not its master.
+  FlankIsOwn - says whether a candidate is the slave point's own face, or the point is a node of it; it is then not its
+  master.
 
   Not collective
 
   Input Parameters:
 + look - the slave point
 - c    - the candidate
+
+  Note:
+  A neighbour of a point's face may be its master where the surface is folded between the two, so that they face each
+  other. Points of the two faces near their common edge then are nearly in contact, whatever the angle of the fold.
 @*/
 PetscBool FlankIsOwn(const Nearest *look, const Candidate *c)
 {
-  const NeighbourLists lists = look->lists;
+  const NeighbourLists lists  = look->lists;
+  PetscInt             shared = 0;
 
   for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++) {
     const PetscInt p = c->facet.nodes[a];
 
     if (look->one_body && lists->point_image[p]) continue; /* the mirror image of a body is another body */
     for (PetscInt k = 0; k < look->own; k++)
-      if (lists->point_node[lists->point_ptr[p]] == lists->slave_node[lists->slave_ptr[look->q] + k]) return PETSC_TRUE;
+      shared += lists->point_node[lists->point_ptr[p]] == lists->slave_node[lists->slave_ptr[look->q] + k];
   }
-  return PETSC_FALSE;
+  return (PetscBool)(shared == look->own || (shared > 0 && !FlankFaces(look, c)));
 }
 
 /* Is a facet behind the slave point, beyond its own body? Only facets that face the point can be taken for partners. */

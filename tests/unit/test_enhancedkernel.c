@@ -188,10 +188,53 @@ static void ModesWithoutRestAreReported(void **state)
   for (int k = 0; k < 64; k++) assert_true(isfinite(result.K[k]));
 }
 
+/* A thin box that is bent a little and turned by one radian: its strains are differences of numbers about 1, and its
+   modes must come to rest all the same. The force then has the tangent as its derivative. */
+static void ForceIsSmoothWhereTheElementTurns(void **state)
+{
+  static const MaterialLaw laws[] = {MATERIAL_SVK, MATERIAL_NEO_HOOKEAN, MATERIAL_ISOCHORIC_NEO_HOOKEAN};
+  const double             turn = 1, bend = 0.1, step = 1e-7;
+
+  (void)state;
+  for (int c = 0; c < 6; c++) {
+    const int        solid  = c / 3, dim = solid ? 3 : 2;
+    const KernelCase kernel = {.type        = solid ? ELEMENT_HEX8 : ELEMENT_QUAD4,
+                               .geometry    = solid ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN,
+                               .kinematics  = KINEMATICS_FINITE,
+                               .law         = laws[c % 3],
+                               .formulation = FORMULATION_ENHANCED};
+    double           X[MAX_DOFS], u[MAX_DOFS], moved[MAX_DOFS], error = 0, size = 0;
+    Result           here, plus, minus;
+
+    Box(kernel.type, 0.01, X);
+    for (int a = 0; a < ElementGet(kernel.type)->nodes; a++) {
+      const double x = X[a * dim] + bend * X[a * dim] * X[a * dim + 1], y = X[a * dim + 1];
+
+      for (int i = 0; i < dim; i++) u[a * dim + i] = 0;
+      u[a * dim]     = cos(turn) * x - sin(turn) * y - X[a * dim];
+      u[a * dim + 1] = sin(turn) * x + cos(turn) * y - X[a * dim + 1];
+    }
+    Evaluate(&kernel, X, u, poisson, &here);
+    for (int j = 0; j < here.dofs; j++) {
+      memcpy(moved, u, sizeof(u));
+      moved[j] += step;
+      Evaluate(&kernel, X, moved, poisson, &plus);
+      moved[j] -= 2 * step;
+      Evaluate(&kernel, X, moved, poisson, &minus);
+      for (int i = 0; i < here.dofs; i++) {
+        error = fmax(error, fabs((plus.f[i] - minus.f[i]) / (2 * step) - here.K[i * here.dofs + j]));
+        size  = fmax(size, fabs(here.K[i * here.dofs + j]));
+      }
+    }
+    assert_near(error, 0, 1e-6 * size);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(BendingEnergyIsABeams),
+    cmocka_unit_test(ForceIsSmoothWhereTheElementTurns),
     cmocka_unit_test(CompressedElementsDoNotHourglass),
     cmocka_unit_test(ModesWithoutRestAreReported),
   };

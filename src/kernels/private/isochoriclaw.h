@@ -26,6 +26,27 @@ typedef struct {
   Lanes w, w1, w2, w11, w12, w22;
 } IsochoricEnergy;
 
+/* Where det(b) - 1 is smaller than this, it is taken from e = b - 1. Of larger ones det(F) keeps more digits. */
+static const double small_square = 0.5;
+
+/* Computes ln J = ln(det b)/2 from e = b - 1, b = F F^T. Differences of ln J and invariants of e then keep their digits
+   where a body turns: the round-off of e, which is that of numbers about 1, is the same in both. */
+LANES_INLINE void LogarithmOfVolume(const Lanes *dilatation, const Lanes e[9], Lanes *log_J)
+{
+  const Lanes m0 = e[4] * e[8] - e[5] * e[7], m1 = e[5] * e[6] - e[3] * e[8], m2 = e[3] * e[7] - e[4] * e[6];
+  const Lanes less_1 = e[0] + e[4] + e[8] + m0 + (e[0] * e[4] - e[1] * e[3]) + (e[0] * e[8] - e[2] * e[6]) +
+                       e[0] * m0 + e[1] * m1 + e[2] * m2;
+
+  for (int lane = 0; lane < LANES; lane++) {
+    const double less = (*dilatation)[lane];
+
+    if (!(1 + less > MATERIAL_LEAST_J))
+      (*log_J)[lane] = log(MATERIAL_LEAST_J);
+    else
+      (*log_J)[lane] = fabs(less_1[lane]) < small_square ? 0.5 * log1p(less_1[lane]) : log1p(less);
+  }
+}
+
 LANES_INLINE void LawMotionStart(const Lanes H[9], const Lanes *dilatation, LawMotion *m)
 {
   Lanes inverse_J;
@@ -35,7 +56,6 @@ LANES_INLINE void LawMotionStart(const Lanes H[9], const Lanes *dilatation, LawM
     const double J = 1 + (*dilatation)[lane];
 
     inverse_J[lane] = 1 / (J > MATERIAL_LEAST_J ? J : MATERIAL_LEAST_J);
-    m->log_J[lane]  = J > MATERIAL_LEAST_J ? log1p((*dilatation)[lane]) : log(MATERIAL_LEAST_J);
   }
   for (int i = 0; i < 3; i++) {
     for (int j = 0; j < 3; j++) {
@@ -50,6 +70,7 @@ LANES_INLINE void LawMotionStart(const Lanes H[9], const Lanes *dilatation, LawM
         H[3 * i + j] + H[3 * j + i] + H[3 * i] * H[3 * j] + H[3 * i + 1] * H[3 * j + 1] + H[3 * i + 2] * H[3 * j + 2];
   }
   m->trace = m->e[0] + m->e[4] + m->e[8];
+  LogarithmOfVolume(dilatation, m->e, &m->log_J);
 }
 
 /* D = factor (dev M) G with a symmetric M */
