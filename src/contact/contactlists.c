@@ -221,7 +221,7 @@ static PetscErrorCode PairListsMotion(Contact contact, const ContactPair *pair, 
 + contact - the contact; its state is not touched
 . u       - local displacements of the accepted state, u[n_nodes*dim] (length), ghosts included
 . t       - its load parameter
-. t_next  - load parameter to which the step goes, for the extrapolation of offsets
+. t_next  - load parameter to which the step goes, for the extrapolation of offsets and the penalty of what sticks
 - motion  - relative motion that the lists must be good for (length)
 
   Note:
@@ -254,7 +254,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
       pair->factor_high[q] = 2;
     }
     if (pair->friction) PetscCall(ContactPairProject(contact, pair, u, t));
-    if (pair->friction) PetscCall(FrictionBegin(pair, t));
+    if (pair->friction) PetscCall(FrictionBegin(pair, t, t_next));
     pair->lost    = (ContactLost){0, NAN, 0, -1};
     pair->updates = 0;
   }

@@ -497,8 +497,9 @@ static void TermMaterial(const ContactPair *pair, PetscInt c, PetscReal t, Petsc
 
 /* Sets the penalty of what sticks for the step: the automatic one with the factor of the state, or, where the scene
    names the elastic slip at which nodes begin to slip, one with which each of them can bear its bound at the accepted
-   pressures. The tractions are state and no slips, so that the penalty may change from step to step. */
-static PetscErrorCode SetStiffness(ContactPair *pair, PetscReal t)
+   pressures, where the step begins and where it goes to: mu may follow the load. The tractions are state and no slips,
+   so that the penalty may change from step to step. */
+static PetscErrorCode SetStiffness(ContactPair *pair, PetscReal t, PetscReal t_next)
 {
   const PetscReal slip = pair->scene->stick_slip;
   PetscReal       most = 0;
@@ -507,14 +508,17 @@ static PetscErrorCode SetStiffness(ContactPair *pair, PetscReal t)
   pair->friction->stiffness = pair->friction->automatic * pair->now.stick;
   if (slip == 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt c = 0; c < pair->n; c++) {
-    FrictionInput in;
-    LawValue      value;
-    PetscReal     area;
+    LawValue  value;
+    PetscReal area;
 
     ContactTermLaw(pair, c, t, &value, NULL, &area);
     if (!(value.pressure > 0)) continue;
-    TermMaterial(pair, c, t, value.pressure, &in);
-    most = PetscMax(most, FrictionBound(&in, value.pressure) / (slip * pair->size[c]));
+    for (int end = 0; end < 2; end++) {
+      FrictionInput in;
+
+      TermMaterial(pair, c, end ? t_next : t, value.pressure, &in);
+      most = PetscMax(most, FrictionBound(&in, value.pressure) / (slip * pair->size[c]));
+    }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPIU_MAX, pair->mesh->comm));
   pair->friction->stiffness = most > FRICTION_SLIGHT * pair->friction->automatic ? most : pair->friction->automatic;
@@ -527,13 +531,14 @@ static PetscErrorCode SetStiffness(ContactPair *pair, PetscReal t)
   Collective
 
   Input Parameters:
-+ pair - the pair, projected with its lists at the accepted displacements
-- t    - load parameter of the accepted state
++ pair   - the pair, projected with its lists at the accepted displacements
+. t      - load parameter of the accepted state
+- t_next - load parameter to which the step goes
 @*/
-PetscErrorCode FrictionBegin(ContactPair *pair, PetscReal t)
+PetscErrorCode FrictionBegin(ContactPair *pair, PetscReal t, PetscReal t_next)
 {
   PetscFunctionBeginUser;
-  PetscCall(SetStiffness(pair, t));
+  PetscCall(SetStiffness(pair, t, t_next));
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) PetscCall(AnchorPoint(pair, q, t));
   for (PetscInt c = 0; c < pair->n; c++) PetscCall(BeginTerm(pair, c, t));
   PetscFunctionReturn(PETSC_SUCCESS);

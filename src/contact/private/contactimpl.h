@@ -225,7 +225,7 @@ PetscErrorCode ContactVectorsFree(ContactVectors *);
 PetscErrorCode FrictionCreate(ContactPair *);
 PetscErrorCode FrictionDestroy(Friction *);
 PetscErrorCode FrictionForget(const ContactPair *);
-PetscErrorCode FrictionBegin(ContactPair *, PetscReal t);
+PetscErrorCode FrictionBegin(ContactPair *, PetscReal t, PetscReal t_next);
 PetscErrorCode FrictionAnchorLate(ContactPair *, PetscReal t, PetscBool *made);
 void           FrictionAnchorFrame(const ContactPair *, PetscInt q, FrictionFrame *);
 PetscErrorCode FrictionTerm(const ContactPair *, PetscInt term, PetscReal t, FrictionInput *, FrictionTraction *,
