@@ -171,8 +171,9 @@ typedef struct {
   char         *file, *directory; /* file as the user gave it; its directory, where relative paths start */
   char         *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
   char         *name;
-  char         *mesh_file; /* path with which the process can open the file */
-  int           order;     /* of the elements, 1 or 2; 0 stands for that of the .msh file */
+  char         *mesh_file;    /* path with which the process can open the file */
+  PetscBool     foreign_mesh; /* the mesh file is one of another program, by its ending */
+  int           order;        /* of the elements, 1 or 2; 0 stands for that of the .msh file */
   int           n_parameters;
   ScenePair    *parameters; /* of the .geo file */
   Geometry      geometry;

@@ -42,9 +42,10 @@ const SchemaKey SchemaKeys[] = {
   {"name", NAME, .help = "name of the run and of its results; the default is the name of the scene file"},
   {"mesh", MAP, REQUIRED, .help = "the mesh and its source"},
   {"mesh.file", FILENAME, REQUIRED,
-   .help = "a .geo file, from which gmsh makes the mesh, or a .msh file of version 4.1"},
+   .help = "a .geo file, from which gmsh makes the mesh; a .msh file; or a mesh of another program (.inp, .med, .unv, "
+           ".cgns, .bdf, .nas, .vtk, .vtu), which is converted once"},
   {"mesh.order", INTEGER, .range = "[1, 2]",
-   .help = "order of the elements; the default is 1 for a .geo file, and that of the file for a .msh file"},
+   .help = "order of the elements; the default is 1 for a .geo file, and that of the file for the others"},
   {"mesh.parameters", FREE, .help = "numbers and texts that are passed to the .geo file"},
   {"geometry", CHOICE, .values = "solid | plane_strain | axisymmetric", .preset = "solid",
    .help = "geometry of the model; for axisymmetric, x is the radius and y is the axial coordinate"},
