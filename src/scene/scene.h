@@ -50,13 +50,13 @@ typedef struct {
   double point[3]; /* reference coordinates */
 } SceneEnd;
 
-typedef enum { LOAD_DISPLACEMENT, LOAD_PRESSURE, LOAD_TRACTION, LOAD_BODY_FORCE } LoadKind;
+typedef enum { LOAD_DISPLACEMENT, LOAD_PRESSURE, LOAD_TRACTION, LOAD_FORCE, LOAD_BODY_FORCE } LoadKind;
 typedef struct {
   char    *path, *region; /* the region is a physical surface, for a body force a physical volume */
   LoadKind kind;
   int      has[3]; /* of LOAD_DISPLACEMENT: which components are imposed */
-  /* Displacement (length), traction (force per reference area) or body force (force per reference volume). A pressure
-     (stress) is value[0]. */
+  /* Displacement (length), traction (force per reference area), force in all, or body force (force per reference
+     volume). A pressure (stress) is value[0]. */
   double     value[3];
   Expression expression[3]; /* in place of value, where it is not NULL; it has a variable */
   int        follower;      /* 1 if a pressure acts on the deformed face */
