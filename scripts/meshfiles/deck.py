@@ -317,6 +317,13 @@ class Deck:
             mesh.notes.append(f"{count} elements of type {kind} were left out")
         return mesh
 
+    def row(self, node):
+        """Index in the mesh of a node by its number."""
+        return self._row[node]
+
+    def has_row(self, node):
+        return node in self._row
+
     def _add(self, mesh, name, numbers):
         by_shape = {}
         for number in numbers:
@@ -349,7 +356,7 @@ class Deck:
             if label in ("SPOS", "SNEG", "") and all(self._is_face(mesh, number) for number in numbers):
                 self._add(mesh, name, numbers)
             else:
-                self._add_labelled(mesh, group, numbers, label, name)
+                self.add_labelled(mesh, group, numbers, label, name)
 
     def _is_face(self, mesh, number):
         return number in self._place_of and SHAPES[self._place_of[number][0]].dim == mesh.dim - 1
@@ -358,7 +365,7 @@ class Deck:
     def _numbers(table, text, where):
         return [int(text)] if text.isdigit() else resolve(table, text, where)
 
-    def _add_labelled(self, mesh, group, numbers, label, name):
+    def add_labelled(self, mesh, group, numbers, label, name):
         """Adds the faces with a label such as S2; without a label, all outer faces of these elements."""
         if label and not (label[0] == "S" and label[1:].isdigit()):
             raise MeshError(f"*SURFACE {name}: the label '{label}' is not available; there are S1 to S6")

@@ -1,6 +1,7 @@
 /* Mesh files of other programs become .msh files, see meshimport.h. */
 #include "meshimport.h"
 #include "base/hash.h"
+#include "base/scripts.h"
 #include "gmshfile.h"
 #include "gmshprocess.h"
 #include "meshdraft.h"
@@ -44,44 +45,6 @@ PetscBool MeshImportNeeded(Scene scene)
     version[0] = '\0';
   fclose(stream);
   return version[0] && strcmp(version, "4.1") ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* Finds the folder of the scripts: that of the environment variable, that of the source tree above build/, or that of
-   an installed program. */
-static PetscBool FindHome(char home[PETSC_MAX_PATH_LEN])
-{
-  const char *const places[] = {"..", "../share/burnish", "../.."};
-  const char       *given    = getenv(HOME_VARIABLE);
-  char              program[PETSC_MAX_PATH_LEN], script[2 * PETSC_MAX_PATH_LEN];
-  ssize_t           n;
-
-  if (given) {
-    snprintf(home, PETSC_MAX_PATH_LEN, "%s", given);
-    snprintf(script, sizeof(script), "%s/" CONVERTER, home);
-    return access(script, R_OK) ? PETSC_FALSE : PETSC_TRUE;
-  }
-  n = readlink("/proc/self/exe", program, sizeof(program) - 1);
-  if (n < 0) return PETSC_FALSE;
-  program[n]             = '\0';
-  *strrchr(program, '/') = '\0';
-  for (size_t i = 0; i < sizeof(places) / sizeof(*places); i++) {
-    if (snprintf(home, PETSC_MAX_PATH_LEN, "%s/%s", program, places[i]) >= PETSC_MAX_PATH_LEN) continue;
-    snprintf(script, sizeof(script), "%s/" CONVERTER, home);
-    if (!access(script, R_OK)) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
-/* The Python of `make deps` where there is one, else the one of PATH. */
-static void FindPython(const char *home, char python[2 * PETSC_MAX_PATH_LEN])
-{
-  const char *const places[] = {"build/venv/bin/python", "venv/bin/python"};
-
-  for (size_t i = 0; i < sizeof(places) / sizeof(*places); i++) {
-    snprintf(python, 2 * PETSC_MAX_PATH_LEN, "%s/%s", home, places[i]);
-    if (!access(python, X_OK)) return;
-  }
-  snprintf(python, 2 * PETSC_MAX_PATH_LEN, "python3");
 }
 
 /* Finds the name of the file that an *INCLUDE card reads. */
@@ -138,18 +101,21 @@ static PetscErrorCode BodyNames(Scene scene, char **names)
 }
 
 /* Runs the converter, which may write in the draft's folder only. */
-static PetscErrorCode Convert(Scene scene, const char *home, const char *names, const char *file, Complaint *complaint)
+static PetscErrorCode Convert(Scene scene, const char *names, const char *file, Complaint *complaint)
 {
   MeshDraft   draft;
-  char        python[2 * PETSC_MAX_PATH_LEN], script[2 * PETSC_MAX_PATH_LEN], dim[16], *output;
+  char        python[SCRIPTS_PATH], script[SCRIPTS_PATH], dim[16], *output;
   const char *said;
   int         status;
 
   PetscFunctionBeginUser;
-  MeshDraftCreate(file, &draft, complaint);
+  if (!ScriptsFind(CONVERTER, script, python))
+    Complain(complaint,
+             "%s: '%s' must be converted by " CONVERTER ", which is not found; set " SCRIPTS_VARIABLE
+             " to the folder in which scripts/" CONVERTER " is",
+             SceneWhere(scene, "mesh", "file"), scene->mesh_file);
+  if (!complaint->text[0]) MeshDraftCreate(file, &draft, complaint);
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  FindPython(home, python);
-  snprintf(script, sizeof(script), "%s/" CONVERTER, home);
   snprintf(dim, sizeof(dim), "%d", scene->dim);
   const char *const arguments[] = {python,     "-B",  script, scene->mesh_file, draft.mesh, "--dim", dim,
                                    "--bodies", names, NULL};
@@ -182,11 +148,11 @@ static PetscErrorCode Convert(Scene scene, const char *home, const char *names, 
 
   Note:
   This is meant for one rank. HASH stands for the contents of the file and of what it includes, the names of the bodies,
-  the dimension and the version of the converter. The scripts are looked for in $BURNISH_HOME, else beside the program.
+  the dimension and the version of the converter. The converter is found by ScriptsFind().
 @*/
 PetscErrorCode MeshImport(Scene scene, const char *directory, char *file, PetscReal *seconds, Complaint *complaint)
 {
-  char           home[PETSC_MAX_PATH_LEN], *names, text[16];
+  char          *names, text[16];
   uint64_t       hash = HASH_START;
   PetscLogDouble start, end;
   struct stat    there;
@@ -208,13 +174,7 @@ PetscErrorCode MeshImport(Scene scene, const char *directory, char *file, PetscR
   snprintf(file, PETSC_MAX_PATH_LEN, "%s/mesh-%016llx.msh", directory, (unsigned long long)hash);
   if (stat(file, &there)) {
     PetscCall(PetscTime(&start));
-    if (FindHome(home))
-      PetscCall(Convert(scene, home, names, file, complaint));
-    else
-      Complain(complaint,
-               "%s: '%s' must be converted by " CONVERTER ", which is not found; set " HOME_VARIABLE
-               " to the folder that holds it",
-               SceneWhere(scene, "mesh", "file"), scene->mesh_file);
+    PetscCall(Convert(scene, names, file, complaint));
     PetscCall(PetscTime(&end));
     *seconds = (PetscReal)(end - start);
   }
