@@ -11,9 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Folder that holds `scripts`, where it is not found beside the program. */
-#define HOME_VARIABLE "BURNISH_HOME"
-#define CONVERTER     "scripts/convert_mesh.py"
+#define CONVERTER "convert_mesh.py"
 /* Counts the changes after which the converter makes other meshes of the same files. */
 #define CONVERTER_VERSION "1"
 /* Files that a deck includes may include others. A circle of them would never end. */
