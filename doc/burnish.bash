@@ -2,6 +2,7 @@
 _burnish() {
   local word=${COMP_WORDS[COMP_CWORD]} last=${COMP_WORDS[COMP_CWORD - 1]}
   case $last in
+  -import) COMPREPLY=($(compgen -f -X '!*.inp' -- "$word") $(compgen -d -S / -- "$word")) ;;
   -o | -restart) COMPREPLY=($(compgen -d -- "$word")) ;;
   -set)
     compopt -o nospace 2>/dev/null

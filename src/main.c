@@ -1,7 +1,10 @@
 /* The program burnish: the command line, signals and exit statuses around the library. */
 #include <signal.h>
+#include <stdio.h>
+#include <unistd.h>
 #include "burnish.h"
 #include "base/interruption.h"
+#include "base/scripts.h"
 #include "scene/commandline.h"
 
 /* Prints the one message of wrong input. All ranks call it, rank 0 prints. */
@@ -82,6 +85,20 @@ static PetscErrorCode Obey(const CommandLine *command, BurnishStatus *status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Becomes the script that makes a scene of a deck. It returns only if that fails. */
+static BurnishStatus ImportDeck(const CommandLine *command)
+{
+  char script[SCRIPTS_PATH], python[SCRIPTS_PATH];
+
+  if (ScriptsFind("import_deck.py", script, python)) {
+    execlp(python, python, "-B", script, command->deck, command->scene, (char *)NULL);
+    fprintf(stderr, "burnish: there is no Python here (%s); `make deps` installs one\n", python);
+  } else
+    fprintf(stderr, "burnish: scripts/import_deck.py is not found; set " SCRIPTS_VARIABLE
+                    " to the folder in which scripts/import_deck.py is\n");
+  return BURNISH_FAILED;
+}
+
 /* Rank 0 has printed its message before any rank ends, because MPI_Finalize() in PetscFinalize() waits for all ranks. A
    launcher that ends the job at the first status that is not 0 therefore finds the message written. */
 int main(int argc, char **argv)
@@ -90,6 +107,7 @@ int main(int argc, char **argv)
   BurnishStatus status = BURNISH_DONE;
 
   CommandLineParse(argc, argv, &command);
+  if (command.mode == COMMAND_IMPORT && !command.complaint[0]) return ImportDeck(&command);
   if (command.mode == COMMAND_RUN) InterruptionInstall(command.time_limit);
   if (PetscInitialize(&command.argc, &command.argv, NULL, NULL)) return BURNISH_FAILED;
   signal(SIGPIPE, SIG_IGN); /* a reader of the terminal's text may leave before its end */

@@ -255,11 +255,80 @@ static PetscErrorCode DeadLoadSurface(Loads loads, PetscReal t, DeadLoad *dead)
     MeshGatherNodes(mesh, face->nodes, nodes, mesh->coords, X);
     PetscCall(PetscArrayzero(fe, face->nodes * mesh->dim));
     FaceLoadKernel(type, mesh->dim, loads->scene->geometry,
-                   load->kind == LOAD_TRACTION ? FACE_TRACTION : FACE_DEAD_PRESSURE, X, zero, value, stride, fe, NULL,
+                   load->kind == LOAD_PRESSURE ? FACE_DEAD_PRESSURE : FACE_TRACTION, X, zero, value, stride, fe, NULL,
                    NULL);
     ShareForces(&dead->shares, f, mesh->dim, face->nodes, fe, NULL);
     DeadLoadAdd(loads, face->nodes, nodes, fe, dead);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Area of the faces of a group, of all ranks. */
+static PetscErrorCode GroupArea(Loads loads, const MeshGroup *group, PetscReal *area)
+{
+  const int       dim    = loads->mesh->dim;
+  const PetscReal one[3] = {1, 0, 0};
+  PetscInt        nodes[FACE_MAX_NODES];
+  double          X[FACE_MAX_NODES * 3], zero[FACE_MAX_NODES * 3] = {0}, fe[FACE_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  *area = 0;
+  for (PetscInt f = 0; f < group->n_faces; f++) {
+    const ElementType type = MeshFaceNodes(loads->mesh, group, f, nodes);
+    const Element    *face = ElementGetFace(type);
+
+    MeshGatherNodes(loads->mesh, face->nodes, nodes, loads->mesh->coords, X);
+    PetscCall(PetscArrayzero(fe, face->nodes * dim));
+    FaceLoadKernel(type, dim, loads->scene->geometry, FACE_TRACTION, X, zero, one, 0, fe, NULL, NULL);
+    for (int a = 0; a < face->nodes; a++) *area += PetscAbsReal(fe[a * dim]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, area, 1, MPIU_REAL, MPI_SUM, loads->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives each node of a group without faces an equal part of a force. Each rank does so for its own nodes. */
+static PetscErrorCode DeadLoadNodes(Loads loads, PetscReal t, DeadLoad *dead)
+{
+  Mesh             mesh  = loads->mesh;
+  const SceneLoad *load  = dead->load;
+  const PetscReal  X[3]  = {0, 0, 0};
+  PetscInt         count = 0;
+  PetscMPIInt      rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  for (PetscInt i = 0; i < dead->group->n_nodes; i++) count += mesh->node_owner[dead->group->nodes[i]] == rank;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  for (int c = 0; c < mesh->dim; c++) {
+    PetscReal value = load->expression[c] ? SceneLoadValue(load, c, X, t) : load->value[c];
+
+    if (LoadVaries(load) && !SceneLoadVaries(load, c)) value *= HistoryValue(&load->history, t);
+    for (PetscInt i = 0; i < dead->group->n_nodes; i++) {
+      const PetscInt node = dead->group->nodes[i];
+
+      if (mesh->node_owner[node] != rank) continue;
+      loads->dense[node * mesh->dim + c] = value / (PetscReal)count;
+      dead->force2 += PetscSqr(value / (PetscReal)count);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Spreads a force evenly over the faces of its group, or over its nodes where it has no faces. */
+static PetscErrorCode DeadLoadForce(Loads loads, PetscReal t, DeadLoad *dead)
+{
+  const PetscInt n = loads->mesh->n_nodes * loads->mesh->dim;
+  PetscReal      area;
+
+  PetscFunctionBeginUser;
+  PetscCall(GroupArea(loads, dead->group, &area));
+  if (area == 0) {
+    PetscCall(DeadLoadNodes(loads, t, dead));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(DeadLoadSurface(loads, t, dead));
+  for (PetscInt i = 0; i < n; i++) loads->dense[i] /= area;
+  dead->force2 /= PetscSqr(area);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -315,7 +384,9 @@ static PetscErrorCode DeadLoadAssemble(Loads loads, PetscReal t, DeadLoad *dead)
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(loads->dense, n));
   dead->force2 = 0;
-  if (dead->group)
+  if (dead->load->kind == LOAD_FORCE)
+    PetscCall(DeadLoadForce(loads, t, dead));
+  else if (dead->group)
     PetscCall(DeadLoadSurface(loads, t, dead));
   else
     PetscCall(DeadLoadVolume(loads, t, dead));

@@ -34,10 +34,12 @@ static void CheckFinite(Mesh mesh, Scene scene, const SceneLoad *load, int compo
 {
   static const char *const        displacements[] = {"ux", "uy", "uz"},
                            *const tractions[]     = {"traction.0", "traction.1", "traction.2"},
+                           *const totals[]        = {"force.0", "force.1", "force.2"},
                            *const forces[]        = {"body_force.0", "body_force.1", "body_force.2"};
   const char                     *key             = load->kind == LOAD_DISPLACEMENT ? displacements[component]
                                                     : load->kind == LOAD_PRESSURE   ? "pressure"
                                                     : load->kind == LOAD_TRACTION   ? tractions[component]
+                                                    : load->kind == LOAD_FORCE      ? totals[component]
                                                                                     : forces[component];
   PetscReal                       X[3];
 

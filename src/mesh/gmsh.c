@@ -6,6 +6,7 @@
 #include "geoscript.h"
 #include "gmshfile.h"
 #include "gmshprocess.h"
+#include "meshdraft.h"
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
@@ -166,42 +167,18 @@ static PetscBool IsNumber(const char *text)
   return *text && !*end ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Tells whether the file ends as gmsh ends one. On a full disk gmsh leaves a part of it, or nothing, and reports
- * success. */
-static PetscErrorCode MeshIsWhole(const char *file, PetscBool *whole)
-{
-  char  *text, *line;
-  size_t size;
-
-  PetscFunctionBeginUser;
-  *whole = PETSC_FALSE;
-  PetscCall(GmshFileLoad(file, &text, &size));
-  if (!text) PetscFunctionReturn(PETSC_SUCCESS);
-  while (size && isspace((unsigned char)text[size - 1])) size--;
-  text[size] = '\0';
-  line       = text + size;
-  while (line > text && line[-1] != '\n') line--;
-  *whole = strncmp(line, "$End", 4) ? PETSC_FALSE : PETSC_TRUE;
-  PetscCall(PetscFree(text));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Runs gmsh on the .geo, in a folder of its own, beyond which it may not write unless the user trusts the scene. The
    mesh gets its name when it is whole. */
 static PetscErrorCode MeshGeometry(Scene scene, const char *file, PetscBool trust, Complaint *complaint)
 {
-  char folder[PETSC_MAX_PATH_LEN + TEXT_PARTS_IN_NAME], temporary[sizeof(folder) + 8], dim[16], order[16], errors[1024],
-    *output;
+  MeshDraft    draft;
+  char         dim[16], order[16], errors[1024], *output;
   const char **arguments;
   int          n = 0, status;
-  struct stat  made;
-  PetscBool    whole;
 
   PetscFunctionBeginUser;
-  snprintf(folder, sizeof(folder), "%s.%d", file, (int)getpid());
-  snprintf(temporary, sizeof(temporary), "%s/mesh", folder);
-  if (mkdir(folder, 0777) && errno != EEXIST)
-    Complain(complaint, "cannot make the directory '%s' for a mesh: %s", folder, strerror(errno));
+  MeshDraftCreate(file, &draft, complaint);
+  if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   snprintf(dim, sizeof(dim), "-%d", scene->dim);
   snprintf(order, sizeof(order), "%d", PetscMax(scene->order, 1));
   const char *const fixed[] = {"gmsh",
@@ -226,41 +203,17 @@ static PetscErrorCode MeshGeometry(Scene scene, const char *file, PetscBool trus
     arguments[n++] = scene->parameters[i].value;
   }
   arguments[n++] = "-o";
-  arguments[n++] = temporary;
+  arguments[n++] = draft.mesh;
   arguments[n]   = NULL;
-  PetscCall(GmshExecute((char *const *)arguments, trust ? NULL : folder, &output, &status));
+  PetscCall(GmshExecute((char *const *)arguments, trust ? NULL : draft.folder, &output, &status));
   ErrorLines(output, errors, sizeof(errors));
-  PetscCall(MeshIsWhole(temporary, &whole));
   if (status || errors[0])
     ComplainFailed(scene, status, errors, output, complaint);
-  else if (stat(temporary, &made))
+  else if (access(draft.mesh, F_OK))
     Complain(complaint, "%s: gmsh wrote no mesh for '%s'", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
-  else if (!whole)
-    Complain(complaint, "cannot write '%s': gmsh left a part of it; is the disk full?", file);
-  else if (rename(temporary, file))
-    Complain(complaint, "cannot write '%s': %s", file, strerror(errno));
-  unlink(temporary);
-  rmdir(folder);
+  PetscCall(MeshDraftFinish(&draft, file, complaint));
   PetscCall(PetscFree(output));
   PetscCall(PetscFree(arguments));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Makes the directory for meshes and those above it. */
-static PetscErrorCode MakeDirectories(const char *directory, Complaint *complaint)
-{
-  char path[PETSC_MAX_PATH_LEN];
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscStrncpy(path, directory, sizeof(path)));
-  for (char *at = path + 1; *path && *at; at++) {
-    if (*at != '/') continue;
-    *at = '\0';
-    mkdir(path, 0777);
-    *at = '/';
-  }
-  if (mkdir(path, 0777) && errno != EEXIST)
-    Complain(complaint, "cannot make the directory '%s' for meshes: %s", directory, strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -327,8 +280,7 @@ PetscErrorCode GmshGenerate(Scene scene, const char *directory, PetscBool trust,
              (unsigned long long)(hash >> (64 - 4 * VERSION_DIGITS)));
     if (open || stat(file, &there)) {
       PetscCall(PetscTime(&start));
-      PetscCall(MakeDirectories(directory, complaint));
-      if (!complaint->text[0]) PetscCall(MeshGeometry(scene, file, trust, complaint));
+      PetscCall(MeshGeometry(scene, file, trust, complaint));
       PetscCall(PetscTime(&end));
       *seconds = (PetscReal)(end - start);
     }

@@ -8,6 +8,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
+/* A line of comments that starts so is for the user. */
+#define NOTE "note: "
+
 enum {
   GMSH_POINT   = 15, /* gmsh's type number of a point */
   GMSH_QUAD8   = 16, /* gmsh's type numbers of the serendipity elements */
@@ -504,14 +507,29 @@ static void ReadClosing(Reader *r, PetscBool anywhere)
     r->at = (size_t)(end - r->data) + strlen(closing);
 }
 
+/* Keeps the notes among the comments of the file. */
+static PetscErrorCode ReadComments(Reader *r)
+{
+  const size_t start = strlen(NOTE);
+  char         line[512];
+
+  PetscFunctionBeginUser;
+  while (r->at < r->size && r->data[r->at] != '$') {
+    const size_t used = r->mesh->notes ? strlen(r->mesh->notes) : 0;
+
+    ReadLine(r, line, sizeof(line));
+    if (strncmp(line, NOTE, start)) continue;
+    PetscCall(PetscRealloc(used + strlen(line) + 2, &r->mesh->notes));
+    snprintf(r->mesh->notes + used, strlen(line) + 2, "%s\n", line + start);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static const struct {
   const char *name;
   PetscErrorCode (*read)(Reader *);
-} Sections[] = {{"$MeshFormat", ReadFormat},
-                {"$PhysicalNames", ReadPhysicalNames},
-                {"$Entities", ReadEntities},
-                {"$Nodes", ReadNodes},
-                {"$Elements", ReadElements}};
+} Sections[] = {{"$MeshFormat", ReadFormat}, {"$PhysicalNames", ReadPhysicalNames}, {"$Entities", ReadEntities},
+                {"$Nodes", ReadNodes},       {"$Elements", ReadElements},           {"$Comments", ReadComments}};
 /* One bit for each section, by its place in Sections. */
 enum { SEEN_FORMAT = 1, SEEN_NAMES = 2, SEEN_NODES = 8, SEEN_ELEMENTS = 16 };
 
@@ -637,6 +655,7 @@ PetscErrorCode GmshReset(GmshMesh *mesh)
   for (int i = 0; i < mesh->n_physicals; i++) PetscCall(PetscFree(mesh->physicals[i].name));
   PetscCall(PetscFree(mesh->blocks));
   PetscCall(PetscFree(mesh->physicals));
+  PetscCall(PetscFree(mesh->notes));
   PetscCall(PetscFree2(mesh->node_tag, mesh->coords));
   *mesh = (GmshMesh){0};
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -3,6 +3,7 @@
 #include "cellfaces.h"
 #include "gmsh.h"
 #include "meshdistribution.h"
+#include "meshimport.h"
 #include "meshtools.h"
 #include "pressurenodesimpl.h"
 #include "base/refusal.h"
@@ -16,7 +17,8 @@
 #define PLACE_ROUND_OFF 1e-9
 
 /*@
-  MeshGenerate - makes the scene's mesh file from a .geo with gmsh, or returns the scene's .msh file.
+  MeshGenerate - makes the scene's mesh file from a .geo with gmsh or from a mesh of another program, or returns the
+  scene's .msh file.
 
   Collective
 
@@ -31,24 +33,25 @@
 - seconds - wall time of gmsh (s); 0 if gmsh did not run
 
   Note:
-  A mesh is made once for each content and kept as mesh-HASH.msh. Refuses a file that is neither .geo nor .msh, and a
-  file that gmsh refuses. Refuses a .geo that runs programs or writes files, unless `trust` is set.
+  A mesh is made once for each content and kept as mesh-HASH.msh. Refuses a file that gmsh or the converter refuses.
+Refuses a .geo that runs programs or writes files, unless `trust` is set.
 @*/
 PetscErrorCode MeshGenerate(MPI_Comm comm, Scene scene, const char *directory, PetscBool trust, char *file,
                             PetscReal *seconds)
 {
   const char *ending    = strrchr(scene->mesh_file, '.');
   Complaint   complaint = {""};
+  PetscBool   foreign   = PETSC_FALSE;
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   *seconds = 0;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!ending || (strcmp(ending, ".geo") && strcmp(ending, ".msh"))) {
-    PetscCall(RefuseInput(comm, "%s: '%s' is neither a .geo nor a .msh file", SceneWhere(scene, "mesh", "file"),
-                          scene->mesh_file));
-  }
-  if (!strcmp(ending, ".msh"))
+  if (!rank) foreign = MeshImportNeeded(scene);
+  PetscCallMPI(MPI_Bcast(&foreign, 1, MPIU_BOOL, 0, comm));
+  if (foreign) {
+    if (!rank) PetscCall(MeshImport(scene, directory, file, seconds, &complaint));
+  } else if (!strcmp(ending, ".msh"))
     PetscCall(PetscStrncpy(file, scene->mesh_file, PETSC_MAX_PATH_LEN));
   else if (!rank)
     PetscCall(GmshGenerate(scene, directory, trust, file, seconds, &complaint));
@@ -229,6 +232,7 @@ PetscErrorCode MeshDestroy(Mesh *destroyed)
   PetscCall(RootRigidDestroy(mesh));
   PetscCall(PetscFree5(mesh->node_id, mesh->node_tag, mesh->node_owner, mesh->node_owner_local, mesh->coords));
   PetscCall(PetscFree(mesh->tools));
+  PetscCall(PetscFree(mesh->notes));
   PetscCall(
     PetscFree6(mesh->cell_id, mesh->cell_type, mesh->cell_ptr, mesh->cell_nodes, mesh->cell_body, mesh->cell_tag));
   PetscCall(PetscFree(mesh->global_dofs));

@@ -88,6 +88,7 @@ typedef struct {
   int          n_tools;
   MeshTool    *tools;
   Partition    partition;
+  char        *notes; /* on rank 0: what a converter changed, in lines; NULL: nothing */
   /* The fields below are for the files of this folder only. */
   PetscSF    node_sf;     /* from ghost nodes to their owners' nodes */
   PetscInt  *global_dofs; /* NULL until MeshSetConstraints() */

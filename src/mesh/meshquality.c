@@ -87,8 +87,7 @@ static PetscErrorCode DropFormulations(Mesh mesh, Scene scene)
     if (HasFormulation(mesh, scene, c)) has[mesh->cell_body[c]] = PETSC_TRUE;
   for (int b = 0; b < scene->n_bodies; b++) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &has[b], sizeof(PetscBool), MPI_BYTE, MPI_BOR, mesh->comm));
-    if (scene->bodies[b].chosen && !has[b] && !scene->bodies[b].rigid)
-      scene->bodies[b].formulation = FORMULATION_FULL;
+    if (scene->bodies[b].chosen && !has[b] && !scene->bodies[b].rigid) scene->bodies[b].formulation = FORMULATION_FULL;
   }
   PetscCall(PetscFree(has));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -275,6 +274,8 @@ static void PrintReport(Mesh mesh, int n_bodies, const ReportRow bodies[], int n
   for (int r = 0; r < mesh->n_rigid; r++) name = Width(name, mesh->rigid[r].name);
   fprintf(stream, "mesh     %" PetscInt_FMT " cells of order %d, %" PetscInt_FMT " nodes, diagonal %g\n",
           mesh->n_cells_global, mesh->order, mesh->n_body_global, (double)mesh->size);
+  for (const char *line = mesh->notes; line && *line; line += strcspn(line, "\n") + 1)
+    fprintf(stream, "         %.*s\n", (int)strcspn(line, "\n"), line);
   fprintf(stream, "         %-*s %9s %11s  %7s %7s %9s  %s\n", name, "body", "nodes", "volume", "quality", "least",
           "in cell", "cells");
   for (int b = 0; b < n_bodies; b++)

@@ -402,7 +402,9 @@ PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, Ro
   PetscCall(RootMeshNumberNodes(root));
   FindBox(scene, root, mesh);
   CheckPlane(scene, file, root, mesh->size, complaint);
-  mesh->order = root->n_cells ? root->cell_block[0]->element->order : 1;
+  mesh->notes      = root->gmsh.notes;
+  root->gmsh.notes = NULL;
+  mesh->order      = root->n_cells ? root->cell_block[0]->element->order : 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

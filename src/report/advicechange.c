@@ -23,7 +23,7 @@
 /* What a change moves. Changes of one axis add up or oppose each other. */
 typedef enum {
   AXIS_STIFFNESS, /* of a pair's penalty */
-  AXIS_STICK, /* stiffness of what sticks by friction */
+  AXIS_STICK,     /* stiffness of what sticks by friction */
   AXIS_WINDOW,
   AXIS_RANGE,
   AXIS_UPDATES,
@@ -289,7 +289,7 @@ static void WriteStabilise(const ChangePlace *at, char *text, size_t size)
 static const SceneLoad *ForceLoad(Scene scene)
 {
   for (int i = 0; i < scene->n_loads; i++)
-    if (scene->loads[i].kind == LOAD_PRESSURE || scene->loads[i].kind == LOAD_TRACTION) return &scene->loads[i];
+    if (scene->loads[i].kind >= LOAD_PRESSURE && scene->loads[i].kind <= LOAD_FORCE) return &scene->loads[i];
   return NULL;
 }
 
@@ -510,7 +510,7 @@ static const Change changes[CHANGES] = {
   [CHANGE_FREE_PENALTY]   = {"contact.*.penalty", AXIS_STIFFNESS, 1, PenaltyIsChosen, WriteFreePenalty},
   [CHANGE_STIFFER]        = {"contact.*.penalty.scale", AXIS_STIFFNESS, 1, PenaltyIsFixed, WriteStiffer},
   [CHANGE_SOFTER]         = {"contact.*.penalty.scale", AXIS_STIFFNESS, -1, PenaltyIsStiff, WriteSofter},
-  [CHANGE_STICK]           = {"contact.*.friction.stick", AXIS_STICK, 1, HasFriction, WriteStick},
+  [CHANGE_STICK]          = {"contact.*.friction.stick", AXIS_STICK, 1, HasFriction, WriteStick},
   [CHANGE_WIDER_WINDOW]   = {"contact.*.penalty.g_max", AXIS_WINDOW, 1, HasWindow, WriteWindow},
   [CHANGE_RANGE]          = {"contact.*.penalty.range", AXIS_RANGE, 1, IsAdjusted, WriteRange},
   [CHANGE_UPDATES]        = {"contact.*.penalty.max_updates", AXIS_UPDATES, 1, IsAugmented, WriteUpdates},

@@ -9,6 +9,7 @@ static const char Usage[] =
   "usage: burnish [-check | -mesh] SCENE.yaml [-o DIR] [-set KEY=VALUE]... [-overwrite] [-quiet] [-trust] [PETSc "
   "options]\n"
   "       burnish -restart DIR [-set KEY=VALUE]... [-quiet] [-trust] [PETSc options]\n"
+  "       burnish -import DECK.inp [SCENE.yaml]\n"
   "       burnish -help | -version";
 
 /* Keeps a complaint with the usage, unless an earlier argument has caused one already. */
@@ -77,7 +78,10 @@ static void CommandLineCheck(CommandLine *line)
     CommandLineComplain(line, "goes without -restart, which overwrites nothing", "-overwrite");
   if (line->restart && line->mode != COMMAND_RUN)
     CommandLineComplain(line, "goes without -check and -mesh", "-restart");
-  if (!line->restart && !line->scene) CommandLineComplain(line, "no scene file", "command line");
+  if (line->mode == COMMAND_IMPORT && (line->restart || line->directory || line->n_set))
+    CommandLineComplain(line, "goes with a deck and the name of a scene only", "-import");
+  if (!line->restart && !line->scene && line->mode != COMMAND_IMPORT)
+    CommandLineComplain(line, "no scene file", "command line");
 }
 
 /* Takes argv[*i] with its value if it is an option of Burnish. Returns 0 if it is none. */
@@ -105,6 +109,9 @@ static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
     line->trust = 1;
   } else if (!strcmp(word, "-restart")) {
     line->restart = CommandLineValue(line, argc, argv, i, "needs the directory of a run");
+  } else if (!strcmp(word, "-import")) {
+    line->mode = COMMAND_IMPORT;
+    line->deck = CommandLineValue(line, argc, argv, i, "needs a deck of Abaqus or CalculiX (.inp)");
   } else if (!strcmp(word, "-time_limit")) {
     CommandLineSetLimit(line, CommandLineValue(line, argc, argv, i, "needs seconds"));
   } else
@@ -213,6 +220,7 @@ void CommandLineHelp(FILE *file)
         "  [mpirun -n N] burnish -restart DIR goes on from the checkpoint in DIR, on any number of ranks\n"
         "  burnish -check SCENE.yaml          reads, meshes, validates and reports; solves nothing\n"
         "  burnish -mesh SCENE.yaml           only makes the mesh file\n"
+        "  burnish -import DECK.inp           makes a scene and a mesh of a deck of Abaqus or CalculiX\n"
         "  burnish -help | -version\n\n"
         "  -o DIR           where results go (default out/NAME)\n"
         "  -set KEY=VALUE   overrides or adds one value of the scene by its path, such as contact.0.smoother=facet or\n"

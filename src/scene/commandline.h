@@ -9,11 +9,12 @@
 
 #define BURNISH_VERSION "0.1.0"
 
-typedef enum { COMMAND_RUN, COMMAND_CHECK, COMMAND_MESH, COMMAND_HELP, COMMAND_VERSION } CommandMode;
+typedef enum { COMMAND_RUN, COMMAND_CHECK, COMMAND_MESH, COMMAND_IMPORT, COMMAND_HELP, COMMAND_VERSION } CommandMode;
 
 typedef struct {
   CommandMode mode;
   char       *scene;      /* path of the scene file, or NULL */
+  char       *deck;       /* value of -import, or NULL */
   char       *directory;  /* value of -o, or NULL */
   char       *restart;    /* value of -restart, or NULL */
   double      time_limit; /* value of -time_limit in seconds, or 0 for no limit */

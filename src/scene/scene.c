@@ -28,6 +28,16 @@ static PetscErrorCode SceneReadPairs(Scene scene, const char *key, int *n, Scene
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Tells whether a file has the ending of a mesh file of another program. */
+static PetscBool IsForeignMesh(const char *ending)
+{
+  static const char *const endings[] = {".inp", ".med", ".unv", ".cgns", ".bdf", ".nas", ".vtk", ".vtu"};
+
+  for (size_t i = 0; i < sizeof(endings) / sizeof(*endings); i++)
+    if (!strcmp(ending, endings[i])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 static PetscErrorCode SceneReadMesh(Scene scene)
 {
   const char *file = SchemaText(SceneDocument(scene), "mesh.file"), *dot = strrchr(file, '.');
@@ -35,8 +45,11 @@ static PetscErrorCode SceneReadMesh(Scene scene)
   char        path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
-  if (!geo && (!dot || strcmp(dot, ".msh")))
-    PetscCall(SceneRefuse(scene, "mesh", "file", "is no mesh file; allowed: a .geo or a .msh file", file));
+  scene->foreign_mesh = dot ? IsForeignMesh(dot) : PETSC_FALSE;
+  if (!geo && !scene->foreign_mesh && (!dot || strcmp(dot, ".msh")))
+    PetscCall(SceneRefuse(scene, "mesh", "file",
+                          "is no mesh file; allowed: .geo, .msh, .inp, .med, .unv, .cgns, .bdf, .nas, .vtk, .vtu",
+                          file));
   if (snprintf(path, sizeof path, "%s%s%s", file[0] == '/' ? "" : scene->directory, file[0] == '/' ? "" : "/", file) >=
       (int)sizeof path)
     PetscCall(SceneRefuse(scene, "mesh", "file", "the path is too long", NULL));

@@ -50,13 +50,13 @@ typedef struct {
   double point[3]; /* reference coordinates */
 } SceneEnd;
 
-typedef enum { LOAD_DISPLACEMENT, LOAD_PRESSURE, LOAD_TRACTION, LOAD_BODY_FORCE } LoadKind;
+typedef enum { LOAD_DISPLACEMENT, LOAD_PRESSURE, LOAD_TRACTION, LOAD_FORCE, LOAD_BODY_FORCE } LoadKind;
 typedef struct {
   char    *path, *region; /* the region is a physical surface, for a body force a physical volume */
   LoadKind kind;
   int      has[3]; /* of LOAD_DISPLACEMENT: which components are imposed */
-  /* Displacement (length), traction (force per reference area) or body force (force per reference volume). A pressure
-     (stress) is value[0]. */
+  /* Displacement (length), traction (force per reference area), force in all, or body force (force per reference
+     volume). A pressure (stress) is value[0]. */
   double     value[3];
   Expression expression[3]; /* in place of value, where it is not NULL; it has a variable */
   int        follower;      /* 1 if a pressure acts on the deformed face */
@@ -171,8 +171,9 @@ typedef struct {
   char         *file, *directory; /* file as the user gave it; its directory, where relative paths start */
   char         *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
   char         *name;
-  char         *mesh_file; /* path with which the process can open the file */
-  int           order;     /* of the elements, 1 or 2; 0 stands for that of the .msh file */
+  char         *mesh_file;    /* path with which the process can open the file */
+  PetscBool     foreign_mesh; /* the mesh file is one of another program, by its ending */
+  int           order;        /* of the elements, 1 or 2; 0 stands for that of the .msh file */
   int           n_parameters;
   ScenePair    *parameters; /* of the .geo file */
   Geometry      geometry;

@@ -101,7 +101,7 @@ static PetscErrorCode SceneReadLoadValues(Scene scene, SceneLoad *load, const ch
   KeyPathJoin(path, load->path, kind);
   for (int k = 0; k < scene->dim; k++) {
     index[0] = (char)('0' + k);
-    if (load->kind == LOAD_TRACTION || load->kind == LOAD_BODY_FORCE)
+    if (load->kind >= LOAD_TRACTION)
       PetscCall(SceneReadValue(scene, path, index, &load->value[k], &load->expression[k]));
     else if (load->kind == LOAD_DISPLACEMENT ? load->has[k] : !k)
       PetscCall(SceneReadValue(scene, load->path, load->kind == LOAD_PRESSURE ? kind : Displacements[k],
@@ -111,6 +111,19 @@ static PetscErrorCode SceneReadLoadValues(Scene scene, SceneLoad *load, const ch
                             "stands beside an expression with t, which is the value at t itself; allowed: one of them",
                             NULL));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses a force that differs from place to place: it is the sum over all places. */
+static PetscErrorCode SceneCheckForce(Scene scene, const SceneLoad *load)
+{
+  PetscFunctionBeginUser;
+  for (int c = 0; c < scene->dim; c++)
+    for (int k = EXPRESSION_X; k <= EXPRESSION_THETA; k++)
+      if (load->expression[c] && ExpressionUses(load->expression[c], (ExpressionVariable)k))
+        PetscCall(SceneRefuse(scene, load->path, "force",
+                              "differs from place to place; allowed: numbers or expressions of t (traction may differ)",
+                              NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -184,7 +197,7 @@ static PetscErrorCode SceneReadWhere(Scene scene, SceneLoad *load)
 
 static PetscErrorCode SceneReadLoad(Scene scene, SceneLoad *load)
 {
-  static const char *const Kinds[] = {"displacement", "pressure", "traction", "body_force"};
+  static const char *const Kinds[] = {"displacement", "pressure", "traction", "force", "body_force"};
   int                      kinds   = 0;
   const char              *region;
 
@@ -199,7 +212,7 @@ static PetscErrorCode SceneReadLoad(Scene scene, SceneLoad *load)
   }
   if (kinds != 1)
     PetscCall(SceneRefuse(scene, load->path, "",
-                          "allowed: exactly one of displacement (ux, uy, uz), pressure, traction, body_force",
+                          "allowed: exactly one of displacement (ux, uy, uz), pressure, traction, force, body_force",
                           kinds ? "has more than one kind;" : "has no kind;"));
   region = load->kind == LOAD_BODY_FORCE ? "volume" : "surface";
   if (!SceneHas(scene, load->path, region))
@@ -217,6 +230,7 @@ static PetscErrorCode SceneReadLoad(Scene scene, SceneLoad *load)
     PetscCall(
       SceneRefuse(scene, load->path, "follower", "only a pressure follows the face; allowed: with pressure", NULL));
   PetscCall(SceneReadLoadValues(scene, load, Kinds[load->kind]));
+  if (load->kind == LOAD_FORCE) PetscCall(SceneCheckForce(scene, load));
   PetscCall(SceneReadHistory(scene, load->path, &load->history));
   PetscCall(SceneReadWhere(scene, load));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -42,9 +42,10 @@ const SchemaKey SchemaKeys[] = {
   {"name", NAME, .help = "name of the run and of its results; the default is the name of the scene file"},
   {"mesh", MAP, REQUIRED, .help = "the mesh and its source"},
   {"mesh.file", FILENAME, REQUIRED,
-   .help = "a .geo file, from which gmsh makes the mesh, or a .msh file of version 4.1"},
+   .help = "a .geo file, from which gmsh makes the mesh; a .msh file; or a mesh of another program (.inp, .med, .unv, "
+           ".cgns, .bdf, .nas, .vtk, .vtu), which is converted once"},
   {"mesh.order", INTEGER, .range = "[1, 2]",
-   .help = "order of the elements; the default is 1 for a .geo file, and that of the file for a .msh file"},
+   .help = "order of the elements; the default is 1 for a .geo file, and that of the file for the others"},
   {"mesh.parameters", FREE, .help = "numbers and texts that are passed to the .geo file"},
   {"geometry", CHOICE, .values = "solid | plane_strain | axisymmetric", .preset = "solid",
    .help = "geometry of the model; for axisymmetric, x is the radius and y is the axial coordinate"},
@@ -144,8 +145,9 @@ const SchemaKey SchemaKeys[] = {
            "the plane no z. An expression with t is the value at t itself and takes no history, not even the default "
            "one. Of functions there are sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, exp, ln, log10, "
            "sqrt, abs, sign, min and max, besides pi, ^ for powers, comparisons and a ? b : c"},
-  {"loads.*", MAP, .help = "displacement components, a pressure, a traction or a body force"},
-  {"loads.*.surface", TEXT, .help = "physical surface on which a displacement, a pressure or a traction acts"},
+  {"loads.*", MAP, .help = "displacement components, a pressure, a traction, a force or a body force"},
+  {"loads.*.surface", TEXT, .help = "physical surface on which a displacement, a pressure, a traction or a force acts; for displacements and "
+           "forces it may be a curve or points"},
   {"loads.*.volume", TEXT, .help = "physical volume on which a body force acts"},
   {"loads.*.ux|uy", REAL | FORMULA, .unit = "length", .help = "imposed displacement component"},
   {"loads.*.uz", REAL | FORMULA, SOLID, .unit = "length", .help = "imposed displacement component"},
@@ -162,6 +164,10 @@ const SchemaKey SchemaKeys[] = {
    .help = "end at which the fluid of where: open leaks, like from; the default in two dimensions is the other end of "
            "the loaded line, else no leak is looked for"},
   {"loads.*.traction", POINT | FORMULA, .unit = "force per reference area", .help = "traction of fixed direction"},
+  {"loads.*.force", POINT | FORMULA, .unit = "force",
+   .help = "force of fixed direction in all: spread evenly over the faces of a surface, or in equal parts over the nodes "
+           "of a curve or of points; in the plane per thickness, axisymmetric over 360 degrees; an expression may have t "
+           "only"},
   {"loads.*.body_force", POINT | FORMULA, .unit = "force per reference volume",
    .help = "body force, such as the weight"},
   {"loads.*.history", HISTORY, .preset = "[[0, 0], [1, 1]]",

@@ -42,7 +42,6 @@ refused("triangles with enhanced strains", "formulation: enhanced is for quad4 a
 serendipity = gmsh("serendipity.msh", "-format", "msh41", "-order", "2", "-setnumber",
                    "Mesh.SecondOrderIncomplete", "1")
 refused("serendipity mesh", "SecondOrderIncomplete", f"mesh.file={serendipity}", "mesh.order=2")
-refused("msh 2.2", r"2\.2.*4\.1|4\.1.*2\.2", f"mesh.file={gmsh('old.msh', '-format', 'msh22')}")
 truncated = good.with_name("truncated.msh")
 truncated.write_text(text[: 2 * len(text) // 3])
 refused("truncated mesh", "truncated.msh", f"mesh.file={truncated}")

@@ -34,6 +34,7 @@ typedef struct {
   GmshPhysical *physicals; /* by descending dimension, then by tag */
   int           n_blocks;
   GmshBlock    *blocks; /* those that belong to a physical group */
+  char         *notes;  /* lines of the file's comments that start with "note: ", without these words; may be NULL */
 } GmshMesh;
 
 PetscErrorCode GmshRead(const char *file, GmshMesh *, Complaint *);

@@ -1,0 +1,91 @@
+/* Mesh files in the making, see meshdraft.h. */
+#include "meshdraft.h"
+#include "gmshfile.h"
+#include <ctype.h>
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Makes the directories above a path. */
+static void MakeDirectoriesAbove(const char *path, Complaint *complaint)
+{
+  char directory[PETSC_MAX_PATH_LEN];
+
+  snprintf(directory, sizeof(directory), "%s", path);
+  for (char *at = directory + 1; *at; at++) {
+    if (*at != '/') continue;
+    *at = '\0';
+    if (mkdir(directory, 0777) && errno != EEXIST)
+      Complain(complaint, "cannot make the directory '%s' for meshes: %s", directory, strerror(errno));
+    *at = '/';
+  }
+}
+
+/*@
+  MeshDraftCreate - makes the folder in which a program makes a mesh.
+
+  Not collective
+
+  Input Parameter:
+. file - path that the mesh shall have; the directories above it are made
+
+  Output Parameters:
++ draft     - the folder, and the file that the program shall write
+- complaint - says what cannot be made
+@*/
+void MeshDraftCreate(const char *file, MeshDraft *draft, Complaint *complaint)
+{
+  snprintf(draft->folder, sizeof(draft->folder), "%s.%d", file, (int)getpid());
+  snprintf(draft->mesh, sizeof(draft->mesh), "%s/mesh", draft->folder);
+  MakeDirectoriesAbove(file, complaint);
+  if (!complaint->text[0] && mkdir(draft->folder, 0777) && errno != EEXIST)
+    Complain(complaint, "cannot make the directory '%s' for a mesh: %s", draft->folder, strerror(errno));
+}
+
+/* Tells whether the file ends as a mesh ends. On a full disk gmsh leaves a part of it, or nothing, and reports
+   success. */
+static PetscErrorCode IsWhole(const char *file, PetscBool *whole)
+{
+  char  *text, *line;
+  size_t size;
+
+  PetscFunctionBeginUser;
+  *whole = PETSC_FALSE;
+  PetscCall(GmshFileLoad(file, &text, &size));
+  if (!text) PetscFunctionReturn(PETSC_SUCCESS);
+  while (size && isspace((unsigned char)text[size - 1])) size--;
+  text[size] = '\0';
+  line       = text + size;
+  while (line > text && line[-1] != '\n') line--;
+  *whole = strncmp(line, "$End", 4) ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MeshDraftFinish - gives the mesh its name, if nothing went wrong, and removes the folder.
+
+  Not collective
+
+  Input Parameters:
++ draft - from MeshDraftCreate()
+- file  - path that the mesh gets
+
+  Input/Output Parameter:
+. complaint - with a complaint the mesh is dropped; says if the file is not whole or cannot get its name
+@*/
+PetscErrorCode MeshDraftFinish(MeshDraft *draft, const char *file, Complaint *complaint)
+{
+  PetscBool whole;
+
+  PetscFunctionBeginUser;
+  PetscCall(IsWhole(draft->mesh, &whole));
+  if (!complaint->text[0] && !whole)
+    Complain(complaint, "cannot write '%s': a part of it is there; is the disk full?", file);
+  if (!complaint->text[0] && rename(draft->mesh, file))
+    Complain(complaint, "cannot write '%s': %s", file, strerror(errno));
+  unlink(draft->mesh);
+  rmdir(draft->folder);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

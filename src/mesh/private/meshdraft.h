@@ -1,0 +1,16 @@
+/* A mesh file in the making. A program that makes a mesh writes it in a folder of its own, beside the place where the
+   file shall stand. It gets its name when it is whole, so that no run meets a part of a mesh.
+
+   MeshDraftCreate() makes the folder and those above it, MeshDraftFinish() gives the file its name and removes the
+   folder. For one rank. */
+#pragma once
+#include "base/complaint.h"
+#include <petscsys.h>
+
+typedef struct {
+  char folder[PETSC_MAX_PATH_LEN + 16]; /* the only one in which the program may write */
+  char mesh[PETSC_MAX_PATH_LEN + 32];   /* the file that it writes */
+} MeshDraft;
+
+void           MeshDraftCreate(const char *file, MeshDraft *, Complaint *);
+PetscErrorCode MeshDraftFinish(MeshDraft *, const char *file, Complaint *);
