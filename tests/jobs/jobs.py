@@ -223,7 +223,4 @@ JOBS = [
     Job("pipe_flared", "pipe end flared on a cone", [
         Answer("rim", 3.940, 0.07, "limit"),
     ], steps=35, picture=["--mirror", "x"], stiff=["stepping.dt_max=0.02"]),
-    Job("disc_coined", "ridge coined into a disc", [
-        Answer("rim", 0.1, 1, "limit"),
-    ], steps=50, picture=["--mirror", "x"], stiff=["stepping.dt_max=0.02"]),
 ]

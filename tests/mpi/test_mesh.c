@@ -637,7 +637,7 @@ typedef struct {
 } Wrong;
 
 static const Wrong wrong[] = {
-  {"4.1 0 8", "2.2 0 8", "", "", {"two.msh: file format 2.2 is not read", "gmsh"}},
+  {"4.1 0 8", "2.2 0 8", "", "", {"two.msh' is not taken: gmsh cannot read it", "mesh.file"}},
   {"$MeshFormat\n4.1", "$Junk\n4.1", "", "", {"is no gmsh mesh", ""}},
   {"$PhysicalNames\n5\n1 1 \"left\"\n1 4 \"middle\"\n1 5 \"tool\"\n2 2 \"a\"\n2 3 \"b\"\n$EndPhysicalNames\n",
    "",
