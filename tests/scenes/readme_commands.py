@@ -27,6 +27,8 @@ LIKE = {
     f"{PYTHON} scripts/o_ring_calculix.py --solid": f"{PYTHON} scripts/o_ring_calculix.py --help",
     "build/tests/incompressible meshes runs/records/incompressible_rates.csv": "test -s "
     "runs/records/incompressible_rates.csv",
+    "build/burnish -import tests/scenes/deck_stack.inp": "rm -f out/deck_stack.*; build/burnish -import "
+    "tests/scenes/deck_stack.inp out/deck_stack.yaml",
     f"{PYTHON} -m http.server -d out/site": f"timeout 1 {PYTHON} -m http.server 0 -d out/site; test $? = 124",
     "mpirun -x OPENBLAS_CORETYPE": "mpirun -x OPENBLAS_CORETYPE -n 2 build/burnish -version",
     "make install PREFIX=$HOME/.local": "test -x prefix/bin/burnish || "
