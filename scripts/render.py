@@ -94,7 +94,10 @@ class Picture:
         self.coloured[self.triangles] = True
         inked = numpy.concatenate(
             [values[self.coloured & (slave | (not self.contact))] for _, _, values, slave, _, _ in states])
-        low, high = numpy.nanmin(inked), numpy.nanmax(inked)
+        inked = inked[numpy.isfinite(inked)]
+        if not inked.size:
+            raise ValueError(f"render.py: {field} has no value in {run.path}: no slave surface met anything")
+        low, high = inked.min(), inked.max()
         low = min(low, 0) if self.contact or field in ("von_mises", "plastic_strain") else low
         self.norm = plt.Normalize(low, high if high > low else low + 1)
         self.map = plt.get_cmap("YlOrRd" if self.contact else "viridis")
@@ -126,6 +129,13 @@ class Picture:
         up = {"y": [0, 1, 2], "z": [1, 2, 0]}[self.options.up]  # sideways, upward, towards
         azimuth = numpy.degrees(numpy.arctan2(out[up[0]], out[up[2]])) if abs(out[up[1]]) < 0.9 else 0
         return azimuth + ISOMETRIC[0], numpy.clip(numpy.degrees(numpy.arcsin(out[up[1]])), -50, 50) or ISOMETRIC[1]
+
+    def unit(self, field=None):
+        """The unit of a field in brackets, where --units names it: of a length or a stress."""
+        field = field or self.field
+        if not self.options.units or field in ("plastic_strain", "penalty"):
+            return ""
+        return f" ({self.options.units[field not in ('displacement', *DISPLACEMENT, 'gap', 'penetration')]})"
 
     def canvas(self, state, width):
         _, x, values, slave, _, tools = state
@@ -164,14 +174,15 @@ class Picture:
         figure.clear()
         axes = figure.add_axes((0.13, 0.14, 0.70, 0.78) if self.run.skin.plane else (0.01, 0.02, 0.84, 0.90))
         axes.imshow(self.canvas(state, width), origin="lower", extent=frame, interpolation="antialiased")
-        axes.set_title(f"{label(self.field)}, t = {state[0]:.4g}", fontsize=11)
+        axes.set_title(f"{label(self.field)}{self.unit()}, t = {state[0]:.4g}", fontsize=11)
         if self.run.skin.plane:
             for points, lines in state[5]:
                 for copy in mirrored(points, self.options.mirror):
                     axes.add_collection(LineCollection(copy[lines][:, :, :2], colors="k", linewidths=1.5))
             if self.contact:
                 self.ridge(axes, state)
-            axes.set(xlim=frame[:2], ylim=frame[2:], xlabel="x", ylabel="y")
+            axes.set(xlim=frame[:2], ylim=frame[2:], xlabel=f"x{self.unit('ux')}",
+                     ylabel=f"y{self.unit('uy')}")
         else:
             axes.set_axis_off()
             triad(figure, self.view)
@@ -216,6 +227,8 @@ def options():
     parser.add_argument("--up", choices=("y", "z"), default="y", help="axis that points upwards")
     parser.add_argument("--mirror", default="", metavar="AXES",
                         help="adds the mirror images across these axes, such as xz")
+    parser.add_argument("--units", type=lambda text: text.split(","), metavar="LENGTH,STRESS",
+                        help="units to be written into the picture, such as mm,MPa; a run does not know its own")
     parser.add_argument("--animate", action="store_true", help="all written steps as a GIF")
     parser.add_argument("--width", type=int, default=900, help="of the picture, in pixels")
     parser.add_argument("-o", dest="file", type=pathlib.Path,
@@ -223,6 +236,8 @@ def options():
     chosen = parser.parse_args()
     if set(chosen.mirror) - set("xyz"):
         parser.error("--mirror: allowed are x, y and z")
+    if chosen.units and len(chosen.units) != 2:
+        parser.error("--units: allowed are two words apart by a comma, such as --units mm,MPa")
     if chosen.view and len(chosen.view) != 2:
         parser.error("--view: allowed are two angles apart by a comma, such as --view=-35,20")
     return chosen
@@ -242,7 +257,12 @@ def main():
         if not -len(run.steps) <= step < len(run.steps):
             sys.exit(f"render.py: --step {step}: {run.path} has steps 0 to {len(run.steps) - 1}")
         steps = range(len(run.steps)) if chosen.animate else [step]
-        picture = Picture(run, field, steps, chosen)
+        try:
+            picture = Picture(run, field, steps, chosen)
+        except ValueError as error:
+            if chosen.field:
+                sys.exit(str(error))
+            continue
         figure = picture.figure(chosen.width)
         file = chosen.file or pathlib.Path(chosen.directory) / f"{field}.{'gif' if chosen.animate else 'png'}"
         if chosen.animate:

@@ -4,6 +4,9 @@
 #include "base/timing.h"
 #include <string.h>
 
+/* Room for the name of a surface in a message. The scene allows 127 characters. */
+enum { SURFACE_NAME = 128 };
+
 /* The two sides of one contact pair */
 typedef struct {
   int          pair;
@@ -93,6 +96,17 @@ PetscErrorCode CertificateDestroy(Certificate *certificate)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes a finding if it is worse than the worst one so far. The largest depth over the face counts in any case. */
+static PetscBool TakeFinding(const Finding *here, Finding *worst)
+{
+  const PetscReal over_h = PetscMax(here->over_h, worst->over_h);
+  const PetscBool worse  = (PetscBool)FindingWorse(here, worst);
+
+  if (worse) *worst = *here;
+  worst->over_h = over_h;
+  return worse;
+}
+
 /* Judges points and edges of one side against the pieces of the other one. Crossings of edges are seen from the
    slave's side alone. */
 static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, int s, PetscReal overlap, Finding *worst)
@@ -100,6 +114,7 @@ static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, in
   const Side own  = pair->side[s];
   PieceList *list = &pair->near[1 - s];
   Look      *look = &certificate->look;
+  Finding    here = {.kind = FINDING_NONE};
   Box        near;
 
   PetscFunctionBeginUser;
@@ -116,8 +131,10 @@ static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, in
   }
   PetscCheck(LookBegin(own->dim, list, look), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for %" PetscInt_FMT " faces",
              list->n);
-  for (PetscInt i = 0; i < own->n_points; i++) PointFinding(look, &own->points[i], worst);
-  for (PetscInt i = 0; i < own->n_edges; i++) EdgeFinding(look, &own->edges[i], s == 0, worst);
+  for (PetscInt i = 0; i < own->n_points; i++) PointFinding(look, &own->points[i], &here);
+  for (PetscInt i = 0; i < own->n_edges; i++) EdgeFinding(look, &own->edges[i], s == 0, &here);
+  here.side = s;
+  TakeFinding(&here, worst);
   LookEnd(look);
   PetscCheck(!look->failed, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the faces that a node crosses");
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -214,7 +231,6 @@ static PetscErrorCode WorstOfAll(MPI_Comm comm, Finding *worst, int *pair)
   } Sent;
   const Sent  mine = {*worst, *pair};
   Sent       *all;
-  PetscReal   over_h = worst->over_h;
   PetscMPIInt ranks;
 
   PetscFunctionBeginUser;
@@ -224,18 +240,13 @@ static PetscErrorCode WorstOfAll(MPI_Comm comm, Finding *worst, int *pair)
   PetscCallMPI(MPI_Allgather(&mine, sizeof(mine), MPI_BYTE, all, sizeof(mine), MPI_BYTE, comm));
   *worst = all[0].finding;
   *pair  = all[0].pair;
-  for (int r = 0; r < ranks; r++) {
-    over_h = PetscMax(over_h, all[r].finding.over_h);
-    if (!FindingWorse(&all[r].finding, worst)) continue;
-    *worst = all[r].finding;
-    *pair  = all[r].pair;
-  }
-  worst->over_h = over_h;
+  for (int r = 1; r < ranks; r++)
+    if (TakeFinding(&all[r].finding, worst)) *pair = all[r].pair;
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Writes who did what: nodes, face, place. */
+/* Writes who did what: nodes, face, place, and the surfaces of both. */
 static PetscErrorCode Describe(Certificate certificate, const Finding *finding, int pair, char *text, size_t size)
 {
   static const char *const what[FINDING_KINDS] = {[FINDING_DEPTH]  = "stands",
@@ -245,17 +256,23 @@ static PetscErrorCode Describe(Certificate certificate, const Finding *finding, 
   const PetscBool          tool                = (PetscBool)(finding->tag[0] < 0);
   const long long          first               = tool ? -1 - finding->tag[0] : finding->tag[0],
                   second                       = tool ? -1 - finding->tag[1] : finding->tag[1];
-  char who[96], face[64] = "the tool";
+  char         who[96], face[64 + SURFACE_NAME] = "the tool";
+  ContactSides of;
 
   PetscFunctionBeginUser;
+  ContactPairSides(certificate->contact, pair, &of);
   if (finding->tag[1])
     PetscCall(PetscSNPrintf(who, sizeof(who), "the edge of the nodes %lld and %lld", first, second));
   else
     PetscCall(PetscSNPrintf(who, sizeof(who), "node %lld", first));
-  if (finding->face) PetscCall(PetscSNPrintf(face, sizeof(face), "face %ld", finding->face));
-  PetscCall(PetscSNPrintf(text, size, "contact '%s': %s (%.5g, %.5g, %.5g) %s %.3g deep, at %s; allowed are %.3g",
+  if (finding->face)
+    PetscCall(PetscSNPrintf(face, sizeof(face), "face %ld of '%s'", finding->face,
+                            finding->side || !of.scene->master ? of.scene->slave : of.scene->master));
+  PetscCall(PetscSNPrintf(text, size,
+                          "contact '%s': %s (%.5g, %.5g, %.5g) of '%s' %s %.3g deep, at %s; allowed are %.3g",
                           ContactPairName(certificate->contact, pair), who, (double)(finding->X[0] + centre[0]),
-                          (double)(finding->X[1] + centre[1]), (double)(finding->X[2] + centre[2]), what[finding->kind],
+                          (double)(finding->X[1] + centre[1]), (double)(finding->X[2] + centre[2]),
+                          finding->side && of.scene->master ? of.scene->master : of.scene->slave, what[finding->kind],
                           finding->depth, face, finding->allowed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -274,11 +291,12 @@ static PetscErrorCode Describe(Certificate certificate, const Finding *finding, 
 - size        - of the text
 
   Output Parameters:
-+ holds - the same on all ranks, and on any number of them
-- text  - what was found and where, if the step does not hold
++ holds  - the same on all ranks, and on any number of them
+. excess - if the step does not hold because of a depth: this depth over what is allowed; else INFINITY
+- text   - what was found and where, if the step does not hold
 @*/
 PetscErrorCode CertificateCheck(Certificate certificate, const PetscReal *u_0, PetscReal t_0, const PetscReal *u,
-                                PetscReal t, PetscBool *holds, char *text, size_t size)
+                                PetscReal t, PetscBool *holds, PetscReal *excess, char *text, size_t size)
 {
   const PetscReal *const states[2] = {u_0, u};
   const PetscReal        ts[2]     = {t_0, t};
@@ -287,23 +305,20 @@ PetscErrorCode CertificateCheck(Certificate certificate, const PetscReal *u_0, P
   int                    pair = -1;
 
   PetscFunctionBeginUser;
-  *holds = PETSC_TRUE;
+  *holds  = PETSC_TRUE;
+  *excess = INFINITY;
   if (!certificate) PetscFunctionReturn(PETSC_SUCCESS);
   TimingBegin(TIMING_CERTIFICATE);
   for (int k = 0; k < certificate->n; k++) {
     Finding here = {.kind = FINDING_NONE};
 
     PetscCall(JudgePair(certificate, &certificate->pairs[k], states, ts, &here));
-    here.over_h = PetscMax(here.over_h, worst.over_h);
-    if (pair < 0 || FindingWorse(&here, &worst)) {
-      worst = here;
-      pair  = certificate->pairs[k].pair;
-    }
-    worst.over_h = here.over_h;
+    if (TakeFinding(&here, &worst) || pair < 0) pair = certificate->pairs[k].pair;
   }
   ToolsPlace(certificate->mesh, u, t);
   PetscCall(WorstOfAll(certificate->mesh->comm, &worst, &pair));
   *holds  = (PetscBool)(worst.kind == FINDING_NONE);
+  *excess = worst.kind == FINDING_DEPTH ? worst.ratio : INFINITY;
   figures = &certificate->figures;
   figures->steps++;
   figures->refused += !*holds;

@@ -24,7 +24,7 @@ typedef struct {
 PetscErrorCode CertificateCreate(Mesh, Scene, Loads, Contact, Certificate *);
 PetscErrorCode CertificateDestroy(Certificate *);
 PetscErrorCode CertificateCheck(Certificate, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t,
-                                PetscBool *holds, char *text, size_t size);
+                                PetscBool *holds, PetscReal *excess, char *text, size_t size);
 void           CertificateBalance(Certificate, PetscReal force, PetscReal moment);
 void           CertificateGetFigures(Certificate, CertificateFigures *);
 PetscErrorCode CertificateArchive(Certificate, Archive);

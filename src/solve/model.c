@@ -206,7 +206,7 @@ PetscErrorCode ModelCertify(Model model, SolveReport *report)
 
   PetscFunctionBeginUser;
   PetscCall(CertificateCheck(model->certificate, model->work->accepted_u, model->work->accepted_t, model->u, model->t,
-                             &holds, report->detail, sizeof(report->detail)));
+                             &holds, &report->excess, report->detail, sizeof(report->detail)));
   if (!holds) report->result = SOLVE_UNCERTIFIED;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -75,6 +75,7 @@ typedef struct {
   PetscInt    damped;           /* pseudo-time steps with a viscous restraint; 0: a static solve */
   PetscReal   damping;          /* energy that the restraint took */
   char        jump[256];        /* the node that jumped to another equilibrium, and how far; empty: none did */
+  PetscReal   excess;           /* SOLVE_UNCERTIFIED: depth over what is allowed; INFINITY: it is no depth */
   char        detail[256];      /* where a failed solve failed, in gmsh's tags */
   Failure     failure;          /* more about a failed solve */
 } SolveReport;

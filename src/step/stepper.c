@@ -15,6 +15,9 @@
 #define STEPPER_GAIN 0.9
 /* A failed step is tried again with this part of its dt. */
 #define STEPPER_CUT 0.5
+/* The load at which depths exceed what the certificate allows is sought to this part of load and depth. What is allowed
+   is no more accurate. */
+#define STEPPER_DEPTH 0.02
 /* A step stretches to the next landing point if that is at most this many dt away. At sqrt(2) the one longer step
    differs from dt by the same factor as two shorter ones. */
 #define STEPPER_STRETCH 1.4142135623730951
@@ -386,6 +389,14 @@ static PetscErrorCode ReportFailure(StepperReport *report, PetscReal t, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is the load known at which faces cross deeper than is allowed, to a part of it, and is the depth there close to that
+   bound? Shorter steps would only come closer to it. */
+static PetscBool BoundIsReached(const SolveReport *solve, PetscReal dt, PetscReal end)
+{
+  return (PetscBool)(solve->result == SOLVE_UNCERTIFIED && solve->excess <= 1 + STEPPER_DEPTH &&
+                     dt <= STEPPER_DEPTH * end);
+}
+
 /* What the lag of plastic bodies in a step uses of what the scene allows: 1 is all of it. It is measured against the
    plastic work of the step, or against what the mean step of that length has where this one has less. */
 static PetscReal LagUsed(LoadStepper stepper, const PlasticPath *path, PetscReal dt)
@@ -523,7 +534,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
                            (solve.result == SOLVE_ADRIFT && !solve.newton));
     if (failures >= STEPPER_STATIC && !singular) continue; /* a damped solve of the same dt comes next */
     stepper->size.dt = STEPPER_CUT * dt;
-    if (stepper->size.dt < stepper->size.dt_min || singular) {
+    if (stepper->size.dt < stepper->size.dt_min || singular || BoundIsReached(&solve, dt, end)) {
       PetscCall(ReportFailure(report, t, end, first, dt, stepper->size.dt_min, record->attempts, &solve));
       PetscFunctionReturn(PETSC_SUCCESS);
     }

@@ -28,7 +28,7 @@ COUNTS = ("step", "newton", "attempts", "contact_nodes", "nodes_in", "nodes_out"
 # What summary.json may say differently of a run in parts: time, memory, and how often it went on. On other ranks also
 # their number, how the mesh lies on them, and the round-off of the linear solver.
 OWN = ("wall_s", "cpu_s", "seconds", "peak_rss_mb", "restarts", "mesh_s")
-CLOCK = "writing took"
+CLOCK = ("writing took", "search took")
 SHORT = ("stepping.initial=0.06", "output={every: 1, checkpoint: 1}")
 OF_RANKS = ("ranks", "partition", "linear.largest_residual", "certificate.residual", "certificate.force_balance",
             "certificate.moment_balance")

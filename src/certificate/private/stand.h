@@ -41,6 +41,7 @@ typedef struct {
   double      over_h;  /* depth without what geometry explains, over the size of the smaller face */
   long        tag[2];  /* gmsh's tags of the point or of an edge; of a tool -1 - tag. The second is 0 for a point */
   long        face;    /* gmsh's tag of the face that was passed or is stood in */
+  int         side;    /* that of the point or edge: 0 the slave's, 1 the master's */
   Place       X;       /* reference place (length) */
 } Finding;
 
