@@ -57,7 +57,7 @@ for name, overrides in (("plane, rigid", RIGID), ("plane", ()), ("solid, rigid",
 for ranks in (1, 3):
     refused = run(args, SCENES / "ridge.yaml", out=f"refused-np{ranks}", ranks=ranks, must=2)
     check.holds(f"the certificate refuses the ridge, {ranks} ranks",
-                re.search(r"cannot be certified; contact 'edge': node \d+ \(0, 0, 0\) stands ", refused.text))
+                re.search(r"cannot be certified; contact 'edge': node \d+ \(0, 0, 0\) of 'ridge' stands ", refused.text))
 
 # A master wider than the slave: seven nodes on it, five of them under the slave.
 wide = run(args, SCENES / "stack.yaml", out="wide",
