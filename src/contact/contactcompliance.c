@@ -1,6 +1,7 @@
 /* First variations of contact by its penalties: the forces that stiffer penalties add where nothing moves, and how the
    loads of the pairs change along the motion that follows. What is in contact stays so, and what slips goes on
    slipping. No step is taken, so that no digits are lost. */
+#include "base/largest.h"
 #include "contactimpl.h"
 
 /* Present areas of slave nodes are compared to both sides along a motion, where it is this part of the mean size of the
@@ -214,14 +215,10 @@ static PetscErrorCode AddAreaChange(Contact contact, int p, const PetscReal *rea
 static PetscErrorCode SumChanges(const ContactPair *pair, const ContactNodes *nodes, const PairChange *change,
                                  const PetscReal *pressure, ContactLoad *load)
 {
-  PetscReal sum[7] = {0}, peak = 0;
-  struct {
-    double peak;
-    int    rank;
-  } mine = {0, 0}, most;
+  PetscReal   sum[7] = {0}, largest = 0, peak = 0;
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(pair->mesh->comm, &mine.rank));
   for (PetscInt c = 0; c < nodes->n; c++) {
     for (int d = 0; d < 3 && pair->friction; d++) sum[4 + d] += change->on_node[3 * c + d];
     if (!(nodes->force[c] > 0)) continue;
@@ -229,13 +226,13 @@ static PetscErrorCode SumChanges(const ContactPair *pair, const ContactNodes *no
     sum[1] += nodes->force[c] * nodes->pressure[c];
     sum[2] += change->force[c];
     sum[3] += change->force[c] * nodes->pressure[c] + nodes->force[c] * pressure[c];
-    if (nodes->pressure[c] <= mine.peak) continue;
-    mine.peak = nodes->pressure[c];
-    peak      = pressure[c];
+    if (nodes->pressure[c] <= largest) continue;
+    largest = nodes->pressure[c];
+    peak    = pressure[c];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 7, MPIU_REAL, MPIU_SUM, pair->mesh->comm));
-  PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, pair->mesh->comm));
-  PetscCallMPI(MPI_Bcast(&peak, 1, MPIU_REAL, most.rank, pair->mesh->comm));
+  PetscCall(LargestOfRanks(pair->mesh->comm, largest, NULL, &rank, NULL));
+  PetscCallMPI(MPI_Bcast(&peak, 1, MPIU_REAL, rank, pair->mesh->comm));
   *load = (ContactLoad){.force    = sum[2],
                         .pressure = sum[0] > 0 ? (sum[3] - sum[1] / sum[0] * sum[2]) / sum[0] : 0,
                         .peak     = peak,

@@ -1,5 +1,6 @@
 /* Penalties and multipliers of a pair over the steps: how they follow the penetrations, and how penetrations relate
    to their window. */
+#include "base/largest.h"
 #include "contactimpl.h"
 #include "penaltyrule.h"
 
@@ -334,14 +335,11 @@ PetscErrorCode ContactPairWindow(Contact contact, int p, ContactWindow *window)
 PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
 {
   PetscReal largest,
-    worst[5] = {-1, 0, 0, 0, 0}; /* tag, penetration, penalty, pair, whether the penalty is at its bound */
-  struct {
-    double factor;
-    int    rank;
-  } mine = {0, 0}, most;
+    outermost = 0,
+    worst[5]  = {-1, 0, 0, 0, 0}; /* tag, penetration, penalty, pair, whether the penalty is at its bound */
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &mine.rank));
   PetscCall(LargestForce(contact, &largest));
   for (int p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
@@ -353,17 +351,17 @@ PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
       const PetscReal   factor =
         outside > 0 ? penetration / rule.g_max : rule.g_min / PetscMax(penetration, PETSC_SMALL * rule.g_min);
 
-      if (!outside || factor <= mine.factor) continue;
-      mine.factor = factor;
-      worst[0]    = contact->mesh->node_tag[pair->node[c]];
-      worst[1]    = penetration;
-      worst[2]    = pair->now.penalty[c];
-      worst[3]    = p;
-      worst[4]    = outside > 0 && pair->now.penalty[c] >= rule.most;
+      if (!outside || factor <= outermost) continue;
+      outermost = factor;
+      worst[0]  = contact->mesh->node_tag[pair->node[c]];
+      worst[1]  = penetration;
+      worst[2]  = pair->now.penalty[c];
+      worst[3]  = p;
+      worst[4]  = outside > 0 && pair->now.penalty[c] >= rule.most;
     }
   }
-  PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, contact->mesh->comm));
-  PetscCallMPI(MPI_Bcast(worst, 5, MPIU_REAL, most.rank, contact->mesh->comm));
+  PetscCall(LargestOfRanks(contact->mesh->comm, outermost, NULL, &rank, NULL));
+  PetscCallMPI(MPI_Bcast(worst, 5, MPIU_REAL, rank, contact->mesh->comm));
   PetscCall(PetscSNPrintf(text, size, "contact '%s': node %.0f is the farthest outside, penetration %g, penalty %g%s",
                           ContactPairName(contact, (int)worst[3]), (double)worst[0], (double)worst[1], (double)worst[2],
                           worst[4] > 0 ? " (penalty.range allows no more)" : ""));

@@ -1,4 +1,5 @@
 /* What contact shows to reports, probes and results. Nothing here changes the state. */
+#include "base/largest.h"
 #include "contactimpl.h"
 #include "penaltyrule.h"
 
@@ -360,7 +361,8 @@ PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscRea
 {
   Mesh               mesh = contact->mesh;
   const ContactPair *pair = &contact->pairs[p];
-  PetscReal found[5]      = {-1, 0, 0, 0, 0}; /* 1: a node of the slave surface, 2: with a finite gap; gap; position */
+  PetscMPIInt        rank;
+  PetscReal found[5] = {-1, 0, 0, 0, 0}; /* 1: a node of the slave surface, 2: with a finite gap; gap; position */
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < pair->slave->group->n_nodes; i++) {
@@ -375,16 +377,8 @@ PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscRea
     found[0] = 2;
     found[1] = pair->now.gap[c];
   }
-  {
-    struct {
-      double found;
-      int    rank;
-    } mine = {found[0], 0}, best;
-
-    PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
-    PetscCallMPI(MPI_Allreduce(&mine, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));
-    PetscCallMPI(MPI_Bcast(found, 5, MPIU_REAL, best.rank, mesh->comm));
-  }
+  PetscCall(LargestOfRanks(mesh->comm, found[0], NULL, &rank, NULL));
+  PetscCallMPI(MPI_Bcast(found, 5, MPIU_REAL, rank, mesh->comm));
   *gap = found[0] < 0 ? NAN : found[1];
   if (found[0] == 1) PetscCall(SearchDistance(pair->search, u, t, &found[2], gap));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -486,9 +480,9 @@ static PetscErrorCode TallyPoint(const ContactPair *pair, PetscInt q, FitTally *
 static PetscErrorCode TallyReduce(MPI_Comm comm, FitTally *tally)
 {
   PetscInt  count[RUNGS + 5];
-  PetscReal most[] = {tally->least_neighbours, tally->least_pivot, tally->most_neighbours,
-                      tally->amplified,        tally->residual,    tally->facets,
-                      tally->apart};
+  PetscReal most[] = {
+    tally->least_neighbours, tally->least_pivot, tally->most_neighbours, tally->amplified, tally->residual,
+    tally->facets,           tally->apart};
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(count, tally->rung, RUNGS + 1));

@@ -1,4 +1,5 @@
 /* Slave points that were lost behind their master, passed through it or jumped out of it since the step began. */
+#include "base/largest.h"
 #include "contactimpl.h"
 
 /* A foot that is this little past the edge of a facet is on it, in face sizes. Nodes often lie exactly over nodes. */
@@ -166,29 +167,25 @@ void ContactForgetLost(Contact contact)
 @*/
 PetscErrorCode ContactLocateLost(Contact contact, PetscBool *lost, char *text, size_t size)
 {
-  PetscReal worst[5] = {0, 0, 0, 0, 0}; /* depth, gap, face size, tag, pair */
-  char      now[64]  = "with no master near";
-  struct {
-    double depth;
-    int    rank;
-  } mine = {0, 0}, most;
+  PetscReal   worst[5] = {0, 0, 0, 0, 0}, most; /* depth, gap, face size, tag, pair */
+  char        now[64]  = "with no master near";
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &mine.rank));
   for (int p = 0; p < contact->n_pairs; p++) {
     const ContactLost *here = &contact->pairs[p].lost;
 
     if (here->depth <= worst[0]) continue;
-    worst[0] = mine.depth = here->depth;
-    worst[1]              = here->gap;
-    worst[2]              = here->size;
-    worst[3]              = contact->mesh->node_tag[here->node];
-    worst[4]              = p;
+    worst[0] = here->depth;
+    worst[1] = here->gap;
+    worst[2] = here->size;
+    worst[3] = contact->mesh->node_tag[here->node];
+    worst[4] = p;
   }
-  PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, contact->mesh->comm));
-  *lost = most.depth > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(LargestOfRanks(contact->mesh->comm, worst[0], &most, &rank, NULL));
+  *lost = most > 0 ? PETSC_TRUE : PETSC_FALSE;
   if (!*lost) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Bcast(worst, 5, MPIU_REAL, most.rank, contact->mesh->comm));
+  PetscCallMPI(MPI_Bcast(worst, 5, MPIU_REAL, rank, contact->mesh->comm));
   if (!PetscIsNanReal(worst[1]))
     PetscCall(PetscSNPrintf(now, sizeof(now), "%.3g in front of another part of it", (double)worst[1]));
   PetscCall(PetscSNPrintf(

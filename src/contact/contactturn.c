@@ -1,4 +1,5 @@
 /* Slave points in contact that go over an edge between two facets, where their normal jumps. */
+#include "base/largest.h"
 #include "contact/contactturn.h"
 #include "contactimpl.h"
 
@@ -52,28 +53,25 @@ static PetscErrorCode PairTurn(Contact contact, ContactPair *pair, const PetscRe
 PetscErrorCode ContactLocateTurn(Contact contact, const PetscReal *u, const PetscReal *u_ahead, PetscReal t,
                                  PetscBool *found, ContactPlace *place)
 {
-  Mesh      mesh      = contact->mesh;
-  PetscReal values[4] = {0};
-  PetscInt  node      = -1;
-  struct {
-    double value;
-    int    rank;
-  } mine = {TURN_AT_ONCE, 0}, most;
+  Mesh        mesh      = contact->mesh;
+  PetscReal   values[4] = {0}, mine = TURN_AT_ONCE, most;
+  PetscInt    node = -1;
+  PetscMPIInt rank;
+  PetscBool   here;
 
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
-    if (pair->master && !pair->fit.fitted) PetscCall(PairTurn(contact, pair, u, u_ahead, t, &mine.value, &node));
+    if (pair->master && !pair->fit.fitted) PetscCall(PairTurn(contact, pair, u, u_ahead, t, &mine, &node));
   }
-  PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
-  PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));
-  *found = most.value > TURN_AT_ONCE ? PETSC_TRUE : PETSC_FALSE;
-  if (*found && most.rank == mine.rank) {
+  PetscCall(LargestOfRanks(mesh->comm, mine, &most, &rank, &here));
+  *found = most > TURN_AT_ONCE ? PETSC_TRUE : PETSC_FALSE;
+  if (*found && here) {
     values[0] = (PetscReal)mesh->node_tag[node];
     MeshNodePlace(mesh, node, &values[1]);
   }
-  PetscCallMPI(MPI_Bcast(values, 4, MPIU_REAL, most.rank, mesh->comm));
+  PetscCallMPI(MPI_Bcast(values, 4, MPIU_REAL, rank, mesh->comm));
   *place = (ContactPlace){.tag = (PetscInt)values[0], .X = {values[1], values[2], values[3]}};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,4 +1,5 @@
 /* Where a solve failed: the nodes with the largest residuals. */
+#include "base/largest.h"
 #include "solve/failure.h"
 #include "kernels/umat.h"
 
@@ -36,23 +37,21 @@ static int NodeBody(Mesh mesh, PetscInt node)
 /* Finds the node with the largest square of all ranks and sets its square to 0. *found: there was one. */
 static PetscErrorCode TakeLargest(Mesh mesh, Contact contact, PetscReal *square, FailureNode *node, PetscBool *found)
 {
-  PetscReal values[7] = {0, 0, 0, 0, 0, NAN, -1}; /* tag, X, residual, gap, body */
-  PetscInt  at        = -1;
-  struct {
-    double value;
-    int    rank;
-  } mine = {0, 0}, most;
+  PetscReal   values[7] = {0, 0, 0, 0, 0, NAN, -1}; /* tag, X, residual, gap, body */
+  PetscInt    at        = -1;
+  PetscReal   largest   = 0, most;
+  PetscMPIInt rank;
+  PetscBool   here;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
-    if (!(square[n] > mine.value)) continue;
-    mine.value = square[n];
-    at         = n;
+    if (!(square[n] > largest)) continue;
+    largest = square[n];
+    at      = n;
   }
-  PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));
-  *found = most.value > 0 ? PETSC_TRUE : PETSC_FALSE;
-  if (*found && most.rank == mine.rank) {
+  PetscCall(LargestOfRanks(mesh->comm, largest, &most, &rank, &here));
+  *found = most > 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (*found && here) {
     values[0] = (PetscReal)mesh->node_tag[at];
     MeshNodePlace(mesh, at, &values[1]);
     values[4]  = PetscSqrtReal(square[at]);
@@ -60,7 +59,7 @@ static PetscErrorCode TakeLargest(Mesh mesh, Contact contact, PetscReal *square,
     values[6]  = NodeBody(mesh, at);
     square[at] = 0;
   }
-  PetscCallMPI(MPI_Bcast(values, 7, MPIU_REAL, most.rank, mesh->comm));
+  PetscCallMPI(MPI_Bcast(values, 7, MPIU_REAL, rank, mesh->comm));
   *node = (FailureNode){.place    = {.tag = (PetscInt)values[0], .X = {values[1], values[2], values[3]}},
                         .residual = values[4],
                         .gap      = values[5],

@@ -1,4 +1,5 @@
 /* Jumps to another equilibrium: a load that a body cannot carry any more makes it snap through. */
+#include "base/largest.h"
 #include "modelimpl.h"
 
 /* A node jumps that moves this many times as fast for the load as the fastest one did in the step before. Along a path
@@ -29,11 +30,9 @@ PetscErrorCode ModelFindJump(Model model, SolveReport *report)
   const int       dim     = mesh->dim;
   const PetscReal allowed = JUMP_FASTER * work->rate * (model->t - work->accepted_t);
   PetscInt        at      = -1;
-  PetscReal       X[3];
-  struct {
-    double square;
-    int    rank;
-  } mine = {0, 0}, most;
+  PetscReal       X[3], farthest = 0, most;
+  PetscMPIInt     rank;
+  PetscBool       here;
 
   PetscFunctionBeginUser;
   if (!report->turned && !report->damped) PetscFunctionReturn(PETSC_SUCCESS);
@@ -44,26 +43,25 @@ PetscErrorCode ModelFindJump(Model model, SolveReport *report)
     }
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
   for (PetscInt n = 0; n < mesh->n_body_nodes; n++) {
     PetscReal square = 0;
 
     for (int d = 0; d < dim; d++) square += PetscSqr(model->u[n * dim + d] - work->accepted_u[n * dim + d]);
-    if (square <= mine.square) continue;
-    mine.square = square;
-    at          = n;
+    if (square <= farthest) continue;
+    farthest = square;
+    at       = n;
   }
-  PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));
-  if (most.square <= PetscSqr(allowed)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (most.rank == mine.rank) {
+  PetscCall(LargestOfRanks(mesh->comm, farthest, &most, &rank, &here));
+  if (most <= PetscSqr(allowed)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (here) {
     MeshNodePlace(mesh, at, X);
     PetscCall(PetscSNPrintf(report->jump, sizeof(report->jump),
                             "node %" PetscInt_FMT
                             " (%.5g, %.5g, %.5g) moved by %.3g, %.2g times as far for the load as "
                             "in the step before",
-                            mesh->node_tag[at], (double)X[0], (double)X[1], (double)X[2], sqrt(most.square),
-                            sqrt(most.square) * JUMP_FASTER / (double)allowed));
+                            mesh->node_tag[at], (double)X[0], (double)X[1], (double)X[2], sqrt((double)most),
+                            sqrt((double)most) * JUMP_FASTER / (double)allowed));
   }
-  PetscCallMPI(MPI_Bcast(report->jump, sizeof(report->jump), MPI_CHAR, most.rank, mesh->comm));
+  PetscCallMPI(MPI_Bcast(report->jump, sizeof(report->jump), MPI_CHAR, rank, mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
