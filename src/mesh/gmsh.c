@@ -9,7 +9,6 @@
 #include "meshdraft.h"
 #include <ctype.h>
 #include <dirent.h>
-#include <errno.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -22,8 +21,6 @@
 /* The digits behind these stand for the version of gmsh. They are apart so that a machine without gmsh finds a mesh of
    the same content. */
 #define VERSION_DIGITS 4
-/* Room in a path, in bytes, for "/mesh-", hash, process number and ending. */
-#define TEXT_PARTS_IN_NAME 64
 
 /* Appends a line of gmsh's output to a message. */
 static void AppendLine(const char *line, char *text, size_t size)
@@ -244,7 +241,7 @@ made anew each time.
 PetscErrorCode GmshGenerate(Scene scene, const char *directory, PetscBool trust, char *file, PetscReal *seconds,
                             Complaint *complaint)
 {
-  char           prefix[TEXT_PARTS_IN_NAME], *version;
+  char           prefix[MESH_NAME_ROOM], *version;
   uint64_t       content = 0;
   PetscBool      found, open = PETSC_FALSE;
   struct stat    there;
@@ -253,12 +250,7 @@ PetscErrorCode GmshGenerate(Scene scene, const char *directory, PetscBool trust,
   PetscFunctionBeginUser;
   *seconds = 0;
   *file    = '\0';
-  if (stat(scene->mesh_file, &there))
-    Complain(complaint, "%s: there is no file '%s'", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
-  else if (!S_ISREG(there.st_mode))
-    Complain(complaint, "%s: '%s' is no file", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
-  if (strlen(directory) + TEXT_PARTS_IN_NAME > PETSC_MAX_PATH_LEN)
-    Complain(complaint, "the path '%s' is too long", directory);
+  MeshDraftCheck(scene, directory, complaint);
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(HashScene(scene, trust, &content, &open, complaint));
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);

@@ -23,6 +23,30 @@ static void MakeDirectoriesAbove(const char *path, Complaint *complaint)
 }
 
 /*@
+  MeshDraftCheck - checks that the scene's mesh file is there, to make a mesh of it.
+
+  Not collective
+
+  Input Parameters:
++ scene     - its mesh file is looked for
+- directory - where mesh files are kept
+
+  Output Parameter:
+. complaint - says that there is no such file, or that paths of meshes would be too long
+@*/
+void MeshDraftCheck(Scene scene, const char *directory, Complaint *complaint)
+{
+  struct stat there;
+
+  if (stat(scene->mesh_file, &there))
+    Complain(complaint, "%s: there is no file '%s'", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
+  else if (!S_ISREG(there.st_mode))
+    Complain(complaint, "%s: '%s' is no file", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
+  if (strlen(directory) + MESH_NAME_ROOM > PETSC_MAX_PATH_LEN)
+    Complain(complaint, "the path '%s' is too long", directory);
+}
+
+/*@
   MeshDraftCreate - makes the folder in which a program makes a mesh.
 
   Not collective

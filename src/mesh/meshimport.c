@@ -9,7 +9,6 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #define CONVERTER "convert_mesh.py"
 /* Counts the changes after which the converter makes other meshes of the same files. */
@@ -19,8 +18,6 @@
 /* What the converter says of its failure starts so and is repeated up to this length. */
 #define SAID           "Error: "
 #define MESSAGE_LENGTH 600
-/* Room in a path, in bytes, for "/mesh-", hash and ending. */
-#define TEXT_PARTS_IN_NAME 64
 
 /*@
   MeshImportNeeded - tells whether the scene's mesh file has to be converted.
@@ -158,12 +155,7 @@ PetscErrorCode MeshImport(Scene scene, const char *directory, char *file, PetscR
   PetscFunctionBeginUser;
   *seconds = 0;
   *file    = '\0';
-  if (stat(scene->mesh_file, &there))
-    Complain(complaint, "%s: there is no file '%s'", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
-  else if (!S_ISREG(there.st_mode))
-    Complain(complaint, "%s: '%s' is no file", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
-  if (strlen(directory) + TEXT_PARTS_IN_NAME > PETSC_MAX_PATH_LEN)
-    Complain(complaint, "the path '%s' is too long", directory);
+  MeshDraftCheck(scene, directory, complaint);
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(HashFile(scene->mesh_file, 0, &hash));
   PetscCall(BodyNames(scene, &names));
