@@ -44,6 +44,8 @@ typedef struct {
   PetscReal       *force, force2; /* force2: sum of squares of the unassembled nodal forces */
   const History   *history;       /* NULL where it varies */
   LoadShares       shares;
+  PetscReal        area;  /* of a force: area of the group's faces, of all ranks */
+  PetscInt         nodes; /* of a force on a group without faces: its nodes, of all ranks */
 } DeadLoad;
 
 typedef struct {
@@ -286,19 +288,30 @@ static PetscErrorCode GroupArea(Loads loads, const MeshGroup *group, PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds what a force is shared out over: the area of its group, or the number of nodes where it has no faces. */
+static PetscErrorCode DeadLoadMeasure(Loads loads, DeadLoad *dead)
+{
+  const Mesh  mesh = loads->mesh;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCall(GroupArea(loads, dead->group, &dead->area));
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  for (PetscInt i = 0; i < dead->group->n_nodes; i++) dead->nodes += mesh->node_owner[dead->group->nodes[i]] == rank;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &dead->nodes, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Gives each node of a group without faces an equal part of a force. Each rank does so for its own nodes. */
 static PetscErrorCode DeadLoadNodes(Loads loads, PetscReal t, DeadLoad *dead)
 {
-  Mesh             mesh  = loads->mesh;
-  const SceneLoad *load  = dead->load;
-  const PetscReal  X[3]  = {0, 0, 0};
-  PetscInt         count = 0;
+  Mesh             mesh = loads->mesh;
+  const SceneLoad *load = dead->load;
+  const PetscReal  X[3] = {0, 0, 0};
   PetscMPIInt      rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
-  for (PetscInt i = 0; i < dead->group->n_nodes; i++) count += mesh->node_owner[dead->group->nodes[i]] == rank;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, mesh->comm));
   for (int c = 0; c < mesh->dim; c++) {
     PetscReal value = load->expression[c] ? SceneLoadValue(load, c, X, t) : load->value[c];
 
@@ -307,8 +320,8 @@ static PetscErrorCode DeadLoadNodes(Loads loads, PetscReal t, DeadLoad *dead)
       const PetscInt node = dead->group->nodes[i];
 
       if (mesh->node_owner[node] != rank) continue;
-      loads->dense[node * mesh->dim + c] = value / (PetscReal)count;
-      dead->force2 += PetscSqr(value / (PetscReal)count);
+      loads->dense[node * mesh->dim + c] = value / (PetscReal)dead->nodes;
+      dead->force2 += PetscSqr(value / (PetscReal)dead->nodes);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -318,17 +331,15 @@ static PetscErrorCode DeadLoadNodes(Loads loads, PetscReal t, DeadLoad *dead)
 static PetscErrorCode DeadLoadForce(Loads loads, PetscReal t, DeadLoad *dead)
 {
   const PetscInt n = loads->mesh->n_nodes * loads->mesh->dim;
-  PetscReal      area;
 
   PetscFunctionBeginUser;
-  PetscCall(GroupArea(loads, dead->group, &area));
-  if (area == 0) {
+  if (dead->area == 0) {
     PetscCall(DeadLoadNodes(loads, t, dead));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(DeadLoadSurface(loads, t, dead));
-  for (PetscInt i = 0; i < n; i++) loads->dense[i] /= area;
-  dead->force2 /= PetscSqr(area);
+  for (PetscInt i = 0; i < n; i++) loads->dense[i] /= dead->area;
+  dead->force2 /= PetscSqr(dead->area);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -444,6 +455,7 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
       DeadLoad *dead = &loads->dead[loads->n_dead++];
 
       *dead = (DeadLoad){.load = load, .group = group, .history = history};
+      if (load->kind == LOAD_FORCE) PetscCall(DeadLoadMeasure(loads, dead));
       PetscCall(DeadLoadAssemble(loads, loads->t, dead));
     }
   }
