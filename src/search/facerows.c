@@ -4,7 +4,7 @@
 
 /* Length over width of the faces at which supports begin to follow their rows, and from which on they do so wholly.
    Right-angled triangles of equal legs have 1.7, and a support along straight axes does not miss rows of faces of 2. */
-#define ROWS_FROM 2
+#define ROWS_FROM   2
 #define ROWS_WHOLLY 4
 /* Faces count for a row up to this rho^2, as for lists of points. */
 #define ROWS_MARGIN 1.7
@@ -19,7 +19,7 @@
 /* How far a row bends aside at the end of the support, over the support's half width, from which on coordinates begin
    to bend with it, and from which on they do so wholly. A straight support still holds a row that bends by a part of
    its width, and the wiggles of uneven faces are far below that. */
-#define ROWS_BENDS 0.25
+#define ROWS_BENDS        0.25
 #define ROWS_BENDS_WHOLLY 1.
 /* The circle of a row is found in this many passes. Each takes what the higher powers are wrong by to a tenth, and they
    are small. */
@@ -91,7 +91,7 @@ static PetscReal Extent(const FaceShape *shape, const PetscReal *direction)
 static void FindLongest(const PetscReal *normal, FaceShape *shape)
 {
   PetscReal e[2][3] = {{0}}, C[2][2] = {{0}}, angle;
-  int       least   = 0;
+  int       least = 0;
 
   for (int d = 1; d < 3; d++)
     if (PetscAbsReal(normal[d]) < PetscAbsReal(normal[least])) least = d;
@@ -131,8 +131,8 @@ static const FaceShape *Shape(FaceRows rows, PetscInt f)
   for (int d = 0; d < 3; d++) shape->centre[d] /= shape->area;
   for (int q = 0; q < rule->n; q++)
     for (int i = 0; i < 9; i++)
-      shape->covariance[i / 3][i % 3] += area[q] / shape->area * (r[q][i / 3] - shape->centre[i / 3]) *
-                                         (r[q][i % 3] - shape->centre[i % 3]);
+      shape->covariance[i / 3][i % 3] +=
+        area[q] / shape->area * (r[q][i / 3] - shape->centre[i / 3]) * (r[q][i % 3] - shape->centre[i % 3]);
   FindLongest(&view->normals[3 * f], shape);
   return shape;
 }
@@ -291,8 +291,7 @@ static void FindBend(const RowSums *sums, const PetscReal radius[2], FaceRow *ro
   *slope     = c[1] / radius[1];
   row->bends = row->share * SmoothStep((aside - ROWS_BENDS) / (ROWS_BENDS_WHOLLY - ROWS_BENDS));
   row->h[0]  = row->bends * c[2] / PetscSqr(radius[1]);
-  row->h[1]  = 0;
-  row->h[2]  = row->h[0] * quartic / PetscSqr(radius[1]);
+  row->h[1]  = row->h[0] * quartic / PetscSqr(radius[1]);
 }
 
 /* Adds the ways from a face to its neighbours that were not reached in an earlier ring, and queues new ones. */
@@ -360,8 +359,8 @@ PetscErrorCode FaceRowsFollow(FaceRows rows, PetscInt start, const PetscReal foo
   const PetscReal  size  = support * PetscSqrtReal(shape->area / SurfaceNodesPerFace(rows->view->facets[start].type)),
                   aspect = shape->length / shape->width,
                   radius[2] = {size / PetscSqrtReal(aspect), size * PetscSqrtReal(aspect)};
-  FacePlace *place = &rows->place[start];
-  RowSums    sums  = {0};
+  FacePlace *place          = &rows->place[start];
+  RowSums    sums           = {0};
   PetscReal  v[3], e[3], across[3], slope, length;
 
   PetscFunctionBeginUser;

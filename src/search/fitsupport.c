@@ -16,8 +16,8 @@
 #define FIT_STRAYS 0.25
 
 /* A fit that misses points in the inner half of its support by more than this part of their spacing is not taken: it is
-   no surface through them. Few long faces that meet at corners make such fits. Of 57 scenes the largest miss is 0.12, at
-   the rim of a cone; three faces of a drawing die had 5. */
+   no surface through them. Few long faces that meet at corners make such fits. Of 57 scenes the largest miss is 0.12,
+   at the rim of a cone; three faces of a drawing die had 5. */
 #define FIT_MISSES 0.25
 
 /* The ladder of fall-backs: wider supports, then lower degrees, until every guard holds. Degree 0 means the degree
@@ -139,8 +139,7 @@ PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const Sea
                             lists->point_hoop};
   for (PetscInt i = 0; i < n && first; i++) FaceSpacing(fit, i);
   PetscCall(NeighbourhoodsCreate(&fit->view, &fit->neighbourhoods));
-  if (lists->dim == 3 && !s->fit->global_frame)
-    PetscCall(FaceRowsCreate(&fit->view, fit->neighbourhoods, &fit->rows));
+  if (lists->dim == 3 && !s->fit->global_frame) PetscCall(FaceRowsCreate(&fit->view, fit->neighbourhoods, &fit->rows));
   PetscCall(PetscMalloc7(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier,
                          FIT_MAX_POINTS, &fit->taper,
                          FitWorkspace(lists->dim, FitDegreeCode(s->fit, s->fit->degree), FIT_MAX_POINTS),
@@ -174,7 +173,7 @@ PetscErrorCode FitSupportDestroy(FitSupport *fit)
    that of the hoop. */
 static void SupportInSpace(const FitProblem *problem, NeighbourhoodSupport *support)
 {
-  const int dim = problem->dim;
+  const int dim                 = problem->dim;
   const double(*const frame)[3] = problem->frame, (*const metric)[2] = problem->metric, *along = problem->bend.along;
   PetscReal *space = support->metric;
 
@@ -187,8 +186,8 @@ static void SupportInSpace(const FitProblem *problem, NeighbourhoodSupport *supp
   }
   if (dim == 2) space[8] = metric[0][0];
   support->bent = (PetscBool)(problem->degree > FIT_BENT);
+  memcpy(support->h, problem->bend.h, sizeof(support->h));
   for (int d = 0; d < 3; d++) {
-    support->h[d]      = problem->bend.h[d];
     support->along[d]  = along[0] * frame[0][d] + along[1] * frame[1][d];
     support->across[d] = along[0] * frame[1][d] - along[1] * frame[0][d];
   }
@@ -284,15 +283,15 @@ static void FollowRow(const FaceRow *row, const FitFoot *at, FitProblem *problem
     for (int d = 0; d < 3; d++) problem->bend.along[k] += problem->frame[k][d] * row->along[d];
   length = hypot(problem->bend.along[0], problem->bend.along[1]);
   for (int k = 0; k < 2; k++) problem->bend.along[k] /= length;
-  for (int k = 0; k < 3; k++) problem->bend.h[k] = row->h[k];
+  memcpy(problem->bend.h, row->h, sizeof(problem->bend.h));
   for (int d = 0; d < 3; d++) {
     along[d]  = problem->bend.along[0] * problem->frame[0][d] + problem->bend.along[1] * problem->frame[1][d];
     across[d] = problem->bend.along[0] * problem->frame[1][d] - problem->bend.along[1] * problem->frame[0][d];
   }
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
-      covariance[i][j] += row->share * (row->length2 * along[i] * along[j] + row->width2 * across[i] * across[j] -
-                                        covariance[i][j]);
+      covariance[i][j] +=
+        row->share * (row->length2 * along[i] * along[j] + row->width2 * across[i] * across[j] - covariance[i][j]);
   *area += row->share * (row->area - *area);
 }
 
@@ -316,8 +315,8 @@ static inline PetscReal FitResidual(const int dim, const FitProblem *problem, co
   return most;
 }
 
-/* Does a fit miss the points through which it is made, by more than FIT_MISSES of their spacing? area: of a point, in 2D
-   its length. */
+/* Does a fit miss the points through which it is made, by more than FIT_MISSES of their spacing? area: of a point, in
+   2D its length. */
 static PetscBool FitMisses(FitSupport *fit, const FitProblem *problem, const FitResult *result, PetscReal area)
 {
   fit->residual = problem->dim == 3 ? FitResidual(3, problem, result) : FitResidual(2, problem, result);
@@ -332,15 +331,15 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
 {
   const FitSettings *settings = fit->s->fit;
   const int          dim = fit->lists->dim, lower = Ladder[rung].degree,
-            degree        = FitDegreeCode(settings, lower ? PetscMin(lower, settings->degree) : settings->degree);
-  const int        wanted = settings->integral ? FitTerms(dim, degree) : FitPointsWanted(dim, degree);
-  double           covariance[3][3], area;
-  const PetscReal *rho2, support = settings->support * Ladder[rung].widen;
-  const PetscBool  upright = (PetscBool)(settings->global_frame || at->upright);
+            degree            = FitDegreeCode(settings, lower ? PetscMin(lower, settings->degree) : settings->degree);
+  const int            wanted = settings->integral ? FitTerms(dim, degree) : FitPointsWanted(dim, degree);
+  double               covariance[3][3], area;
+  const PetscReal     *rho2, support = settings->support * Ladder[rung].widen;
+  const PetscBool      upright = (PetscBool)(settings->global_frame || at->upright);
   NeighbourhoodSupport space;
-  FaceRow          row = {.share = 0};
-  PetscInt         n, found, inside;
-  int              passes;
+  FaceRow              row = {.share = 0};
+  PetscInt             n, found, inside;
+  int                  passes;
 
   PetscFunctionBeginUser;
   *holds   = PETSC_FALSE;
@@ -460,7 +459,7 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   lists->amplified[q] = result.amplified;
   lists->gap[q]       = result.gap;
   for (int d = 0; d < 3; d++) lists->normal[3 * q + d] = result.normal[d];
-  lists->residual[q]  = fit->residual;
+  lists->residual[q] = fit->residual;
   for (int i = 0; i < 9; i++) lists->frame[9 * q + i] = problem.frame[i / 3][i % 3];
   for (int i = 0; i < 4; i++) lists->metric[4 * q + i] = problem.metric[i / 2][i % 2];
   if (problem.degree > FIT_BENT) {

@@ -1,5 +1,6 @@
 /* Walks from facet to facet around a foot and gathers the fit points within the support. */
 #include "neighbourhood.h"
+#include "smooth/diffusefit.h"
 
 /* Facets and points whose normal makes a larger angle with that of the frame belong to another flank: cos 60
    degrees. */
@@ -198,14 +199,11 @@ static inline PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscRea
                              const NeighbourhoodSupport *support)
 {
   const PetscReal *x = &view->x[p * view->dim], *metric = support->metric;
-  PetscReal        a = x[0] - x0[0], b = x[1] - x0[1],
-            c = view->dim == 3 ? x[2] - x0[2]
-                : view->hoop   ? view->hoop[p]
-                               : 0;
+  PetscReal a = x[0] - x0[0], b = x[1] - x0[1], c = view->dim == 3 ? x[2] - x0[2] : view->hoop ? view->hoop[p] : 0;
 
   if (support->bent) {
-    const PetscReal *along = support->along, *h = support->h, t = along[0] * a + along[1] * b + along[2] * c,
-                    bend = t * t * (h[0] + t * (h[1] + t * h[2]));
+    const PetscReal *along = support->along,
+                    bend   = FitBendAside(support->h, along[0] * a + along[1] * b + along[2] * c);
 
     a -= bend * support->across[0];
     b -= bend * support->across[1];

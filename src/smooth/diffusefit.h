@@ -25,7 +25,7 @@
    A fit in bent coordinates (degree + FIT_BENT, in 3D) serves surfaces whose faces are much longer than wide and run
    along curves, like those of a ring. Seen in the tangent plane the rows of such faces bend aside by more than the
    support is wide, so that a support along straight axes leaves them. With t = along.y
-       y' = y - across (h[0] t^2 + h[1] t^3 + h[2] t^4)
+       y' = y - across (h[0] t^2 + h[1] t^4)
    takes the place of y in rho and p. At the slave point both agree, and so do their first derivatives. The bend is
    held like the metric.
 
@@ -83,16 +83,22 @@ typedef enum { FIT_SURFACE, FIT_GAP_ONLY, FIT_GAP, FIT_FIRST_VARIATION, FIT_SECO
    gap and N are exact in both. */
 typedef enum { FIT_FULL, FIT_DIFFUSE } FitDerivativeKind;
 
+/* How far a row bends aside at t: the function of FitBend. */
+static inline double FitBendAside(const double h[2], double t)
+{
+  return t * t * (h[0] + t * (t * h[1]));
+}
+
 /* How rows of long faces bend in the tangent plane. across is `along`, turned by a right angle to the left. */
 typedef struct {
   double along[2]; /* unit vector over the tangents */
-  double h[3];     /* of t^2, t^3 and t^4 (length^-1, ^-2, ^-3) */
+  double h[2];     /* of t^2 and t^4 (length^-1, length^-3) */
 } FitBend;
 
 typedef struct {
   /* degree 1, 2 or 4; in 2D also FIT_REVOLVED + one of these, in 3D FIT_BENT + one of these */
   int    dim, degree;
-  double exponent;    /* of the weight, >= 3: it is twice continuously differentiable at the end of the support */
+  double exponent; /* of the weight, >= 3: it is twice continuously differentiable at the end of the support */
   /* frame[k]: k-th vector; first the dim - 1 tangents, then the normal out of the master. In 2D the third components
      are not read. */
   double frame[3][3];

@@ -12,13 +12,13 @@ typedef struct _n_FaceRows *FaceRows;
 
 /* The rows around a foot. */
 typedef struct {
-  PetscReal share;          /* 0: the faces are about as long as wide, and the rest is not set; 1: much longer */
-  PetscReal normal[3];      /* unit, mean of the faces' normals */
+  PetscReal share;           /* 0: the faces are about as long as wide, and the rest is not set; 1: much longer */
+  PetscReal normal[3];       /* unit, mean of the faces' normals */
   PetscReal length2, width2; /* mean second moments of the faces along and across the rows (length^2) */
-  PetscReal area;           /* mean area of the faces per node (length^2) */
-  PetscReal along[3];       /* unit, of the row through the foot, square to the normal for which rows were followed */
-  PetscReal bends;          /* 0: coordinates stay straight; 1: they bend wholly with the row */
-  PetscReal h[3];           /* of the bend, as in FitBend */
+  PetscReal area;            /* mean area of the faces per node (length^2) */
+  PetscReal along[3];        /* unit, of the row through the foot, square to the normal for which rows were followed */
+  PetscReal bends;           /* 0: coordinates stay straight; 1: they bend wholly with the row */
+  PetscReal h[2];            /* of the bend, as in FitBend */
 } FaceRow;
 
 PetscErrorCode FaceRowsCreate(const SurfaceView *, Neighbourhoods, FaceRows *);

@@ -28,7 +28,7 @@ typedef struct {
 typedef struct {
   PetscReal metric[9]; /* row-major 3x3, symmetric, inverse squared lengths */
   PetscBool bent;
-  PetscReal along[3], across[3], h[3]; /* where it is bent: unit vectors, and coefficients as in FitBend */
+  PetscReal along[3], across[3], h[2]; /* where it is bent: unit vectors, and coefficients as in FitBend */
 } NeighbourhoodSupport;
 
 typedef struct _n_Neighbourhoods *Neighbourhoods;

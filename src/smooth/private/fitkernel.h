@@ -123,9 +123,9 @@ LANES_INLINE int IsBent(const int degree)
 /* How far a row bends aside at t, with its slope and curvature in bend[1] and bend[2]. */
 LANES_INLINE void BendAt(const FitBend *in, double t, double bend[3])
 {
-  bend[0] = t * t * (in->h[0] + t * (in->h[1] + t * in->h[2]));
-  bend[1] = t * (2 * in->h[0] + t * (3 * in->h[1] + t * 4 * in->h[2]));
-  bend[2] = 2 * in->h[0] + t * (6 * in->h[1] + t * 12 * in->h[2]);
+  bend[0] = FitBendAside(in->h, t);
+  bend[1] = t * (2 * in->h[0] + t * (t * 4 * in->h[1]));
+  bend[2] = 2 * in->h[0] + t * (t * 12 * in->h[1]);
 }
 
 /* The bend's `across` in scaled coordinates. */
