@@ -206,7 +206,7 @@ class Deck:
         self.cards = read_cards(file)
         self.whole = _Part()
         self.left_out = {}  # types of elements that were not read
-        self._offset = 0
+        self._offset, self._copies = 0, {}  # of the next copy of a part; of each copy by its name
         self._read()
 
     def _read(self):
@@ -227,7 +227,7 @@ class Deck:
                 self._read_card(part, card)
 
     def _read_card(self, part, card):
-        target, sets = part, card.parameters.get("INSTANCE")
+        instance = card.parameters.get("INSTANCE")
         if card.name == "NODE":
             _read_nodes(part, card)
         elif card.name == "ELEMENT":
@@ -235,22 +235,21 @@ class Deck:
             if kind is not None:
                 self.left_out[kind or "without a type"] = self.left_out.get(kind, 0) + len(card.lines)
         elif card.name in ("NSET", "ELSET"):
-            table = target.nsets if card.name == "NSET" else target.elsets
+            table = part.nsets if card.name == "NSET" else part.elsets
             before = len(table.get(_key(table, card.parameters.get(card.name, "")), []))
             _read_set(table, card, card.name)
-            if sets:
+            if instance:
                 members = table[_key(table, card.parameters[card.name])]
-                members[before:] = [self._number(sets, member, card.name, card) for member in members[before:]]
+                members[before:] = [self._number(instance, member, card) for member in members[before:]]
         elif card.name == "SURFACE":
             _read_surface(part, card)
         elif card.name == "SOLID SECTION" and "ELSET" in card.parameters:
             part.sections.append(card.parameters["ELSET"])
 
-    def _number(self, instance, member, kind, card):
+    def _number(self, instance, member, card):
         """Number in the assembly of a part's node or element, or the name of the copy's set."""
-        for name, offset in getattr(self, "_copies", {}).items():
-            if name == instance.upper():
-                return member + offset if isinstance(member, int) else f"{instance}.{member}"
+        if instance.upper() in self._copies:
+            return member + self._copies[instance.upper()] if isinstance(member, int) else f"{instance}.{member}"
         raise MeshError(f"{card.where}: there is no instance '{instance}'")
 
     def _place(self, parts, card, own):
@@ -260,7 +259,7 @@ class Deck:
         if part is None:
             raise MeshError(f"{card.where}: there is no part '{card.parameters.get('PART', '')}'")
         offset = self._offset
-        self._copies = {**getattr(self, "_copies", {}), name.upper(): offset}
+        self._copies[name.upper()] = offset
         move = _motion(card)
         for table in (part, own):
             for number, place in table.nodes.items():

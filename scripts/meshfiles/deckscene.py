@@ -59,7 +59,7 @@ class DeckScene:
         self.materials, self.sections = {}, []
         self.interactions, self.pairs, self.amplitudes = {}, [], {}
         self.actions, self._made = {}, {}
-        self.steps, self.nlgeom, self.first = 0, False, None
+        self.nlgeom, self.first, self.period = False, None, 1.0
         self._read()
         self.mesh.complete()
         self.mesh.merge_faces()
@@ -175,9 +175,8 @@ class DeckScene:
         if amplitude:
             if amplitude not in self.amplitudes:
                 raise MeshError(f"{card.where}: there is no *AMPLITUDE '{card.parameters['AMPLITUDE']}'")
-            period = getattr(self, "period", 1.0)
-            points = [(start + (end - start) * t / period, value * factor) for t, factor in self.amplitudes[amplitude]
-                      if t <= period * (1 + 1e-12)]
+            points = [(start + (end - start) * t / self.period, value * factor)
+                      for t, factor in self.amplitudes[amplitude] if t <= self.period * (1 + 1e-12)]
         else:
             points = [(start, action.last()), (end, value)]
         action.points = [point for point in action.points if point[0] < points[0][0] - 1e-12] + points

@@ -261,24 +261,28 @@ static void test_linear(void **state)
   PartsDestroy(&parts);
 }
 
+/* Two blocks one above the other, 0.1 apart, in the plane without Poisson's ratio: the upper one is pressed down by
+   0.3. The pair's other keys and the rest of the scene follow. */
+static const PartsBlock column[] = {{"lower", 2, 1, {0, 1}, {0, 1}}, {"upper", 2, 1, {0, 1}, {1.1, 1.7}}};
+#define COLUMN                                                                        \
+  "geometry: plane_strain\nkinematics: small\nbodies:\n"                              \
+  "  - {volume: lower, material: {law: linear, E: 1000, nu: 0}}\n"                    \
+  "  - {volume: upper, material: {law: linear, E: 500, nu: 0}}\n"                     \
+  "supports: [{surface: lower_bottom, ux: 0, uy: 0}, {surface: upper_top, ux: 0}]\n"  \
+  "loads: [{surface: upper_top, uy: -0.3}]\n"                                         \
+  "contact: [{name: joint, slave: lower_top, master: upper_bottom, smoother: facet, " \
+  "formulation: node_to_surface"
+
 /* Two blocks in line, 0.1 apart, pressed by 0.3: springs in series, which the linear step with contact finds. */
 static void test_linear_contact(void **state)
 {
-  static const PartsBlock column[]   = {{"lower", 2, 1, {0, 1}, {0, 1}}, {"upper", 2, 1, {0, 1}, {1.1, 1.7}}};
-  static const char       text[]     = "geometry: plane_strain\nkinematics: small\nbodies:\n"
-                                       "  - {volume: lower, material: {law: linear, E: 1000, nu: 0}}\n"
-                                       "  - {volume: upper, material: {law: linear, E: 500, nu: 0}}\n"
-                                       "supports: [{surface: lower_bottom, ux: 0, uy: 0}, {surface: upper_top, ux: 0}]\n"
-                                       "loads: [{surface: upper_top, uy: -0.3}]\n"
-                                       "contact: [{name: joint, slave: lower_top, master: upper_bottom, smoother: facet, "
-                                       "formulation: node_to_surface, penalty: {initial: 2000}}]\n"
-                                       "solver: {type: direct, tolerance: 1e-12}\n";
-  const double            compliance = 1 / 1000. + 0.6 / 500. + 1 / 2000.;
-  const double            pressure = 0.2 / compliance, share = 1 / 2000. / compliance;
-  PenaltyError            error;
-  PetscReal               force[3];
-  SolveReport             report;
-  Model                   model;
+  static const char text[]     = COLUMN ", penalty: {initial: 2000}}]\nsolver: {type: direct, tolerance: 1e-12}\n";
+  const double      compliance = 1 / 1000. + 0.6 / 500. + 1 / 2000.;
+  const double      pressure = 0.2 / compliance, share = 1 / 2000. / compliance;
+  PenaltyError      error;
+  PetscReal         force[3];
+  SolveReport       report;
+  Model             model;
 
   (void)state;
   PartsCreate(2, column, NULL, text, &parts);
@@ -303,19 +307,11 @@ static void test_linear_contact(void **state)
    next one does not take it for a raise that brought too little. */
 static void test_raise_for_depth(void **state)
 {
-  static const PartsBlock column[] = {{"lower", 2, 1, {0, 1}, {0, 1}}, {"upper", 2, 1, {0, 1}, {1.1, 1.7}}};
-  static const char       text[]   = "geometry: plane_strain\nkinematics: small\nbodies:\n"
-                                     "  - {volume: lower, material: {law: linear, E: 1000, nu: 0}}\n"
-                                     "  - {volume: upper, material: {law: linear, E: 500, nu: 0}}\n"
-                                     "supports: [{surface: lower_bottom, ux: 0, uy: 0}, {surface: upper_top, ux: 0}]\n"
-                                     "loads: [{surface: upper_top, uy: -0.3}]\n"
-                                     "contact: [{name: joint, slave: lower_top, master: upper_bottom, smoother: facet, "
-                                     "formulation: node_to_surface}]\n"
-                                     "certificate: {penetration: 1e-12}\nsolver: {type: direct, tolerance: 1e-12}\n";
-  PetscReal               factor[PENALTY_SOURCES];
-  PetscBool               stiffened;
-  SolveReport             report;
-  Model                   model;
+  static const char text[] = COLUMN "}]\ncertificate: {penetration: 1e-12}\nsolver: {type: direct, tolerance: 1e-12}\n";
+  PetscReal         factor[PENALTY_SOURCES];
+  PetscBool         stiffened;
+  SolveReport       report;
+  Model             model;
 
   (void)state;
   PartsCreate(2, column, NULL, text, &parts);
