@@ -7,18 +7,22 @@ import numpy
 from meshfiles.deck import resolve
 from meshfiles.mesh import MeshError
 from meshfiles.projection import put_on_surface
+from meshfiles.shapes import SHAPES
 
 AXES = "xyz"
 # Cards that make the mesh, or that are read where they belong
 TAKEN = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLID SECTION", "PART", "END PART", "ASSEMBLY", "END ASSEMBLY",
          "INSTANCE", "END INSTANCE", "MATERIAL", "ELASTIC", "HYPERELASTIC", "PLASTIC", "DENSITY", "BOUNDARY", "CLOAD",
          "DLOAD", "DSLOAD", "CONTACT PAIR", "SURFACE INTERACTION", "SURFACE BEHAVIOR", "FRICTION", "AMPLITUDE", "STEP",
-         "END STEP", "STATIC", "ENDSTEP", "TIME POINTS"}
+         "END STEP", "STATIC", "ENDSTEP", "TIME POINTS", "CHANGE FRICTION"}
 # Cards that ask for output, name things or steer another program's solver
 SILENT = {"HEADING", "PREPRINT", "NODE PRINT", "NODE FILE", "NODE OUTPUT", "EL PRINT", "EL FILE", "ELEMENT OUTPUT",
           "CONTACT FILE", "CONTACT PRINT", "CONTACT OUTPUT", "OUTPUT", "RESTART", "CONTROLS", "PHYSICAL CONSTANTS",
           "SECTION PRINT", "ENERGY PRINT", "ENERGY FILE", "MONITOR", "NO PRINT", "SECTION CONTROLS", "SYSTEM"}
+# Cards that have no effect unless a temperature is prescribed; velocities at the start have none on static steps
+HEAT = {"EXPANSION", "INITIAL CONDITIONS", "CONDUCTIVITY", "SPECIFIC HEAT"}
 STIFFEST = 1e3  # a slope above this many times E over the size of a face presses nothing out of round-off
+SWITCH = 1e-3  # part of a step in which friction changes from its old value to its new one
 LEAST_STEP = 1e-3  # of the load parameter, as the first step of the scene: many decks ask for tiny ones without need
 
 
@@ -53,17 +57,23 @@ class DeckScene:
         self.missing, self.changed = [], []
         self.axisymmetric = any(kind.startswith("CAX") for kind in self.part.types)
         self.dim = 2 if any(kind[:3] in ("CAX", "CPE", "CPS") for kind in self.part.types) else 3
-        if any(kind.startswith("CPS") for kind in self.part.types):
-            self.missing.append("plane stress (CPS elements): the scene has plane strain")
+        self.plane_stress = any(kind.startswith("CPS") for kind in self.part.types)
+        if self.plane_stress and any(kind[:3] in ("CAX", "CPE") for kind in self.part.types):
+            raise MeshError("elements of plane stress (CPS) stand beside those of another geometry; allowed: one "
+                            "geometry")
         self.mesh = deck.mesh(self.dim)
+        self._used = numpy.zeros(len(self.mesh.nodes), bool)  # by the elements of bodies
+        for shape, cells in self.mesh.elements.items():
+            if SHAPES[shape].dim == self.dim:
+                self._used[cells] = True
         self.materials, self.sections = {}, []
         self.interactions, self.pairs, self.amplitudes = {}, [], {}
         self.actions, self._made = {}, {}
         self.nlgeom, self.first, self.period = False, None, 1.0
         self._read()
+        self._adjust()
         self.mesh.complete()
         self.mesh.merge_faces()
-        self._adjust()
         self.mesh.choose_bodies([body for body, _ in self.sections])
         self.mesh.check()
 
@@ -84,6 +94,8 @@ class DeckScene:
                 self._section(card)
             elif card.name == "SURFACE INTERACTION":
                 interaction = self.interactions.setdefault(card.parameters.get("NAME", "").upper(), {})
+            elif card.name == "CHANGE FRICTION":
+                interaction = self.interactions.setdefault(card.parameters.get("INTERACTION", "").upper(), {})
             elif card.name in ("SURFACE BEHAVIOR", "FRICTION"):
                 self._behaviour(interaction, card)
             elif card.name == "AMPLITUDE":
@@ -96,6 +108,8 @@ class DeckScene:
                 self._close_step()
             elif card.name in readers:
                 readers[card.name](card)
+            elif card.name in HEAT and not any(card.name == "TEMPERATURE" for card in self.deck.cards):
+                continue
             elif card.name not in TAKEN | SILENT:
                 self.missing.append(f"{card.where}: not available")
         for kind, count in self.deck.left_out.items():
@@ -129,7 +143,11 @@ class DeckScene:
     def _behaviour(self, interaction, card):
         if interaction is None:
             raise MeshError(f"{card.where} stands before any *SURFACE INTERACTION")
-        interaction[card.name] = (card, [float(text) for line in card.lines[:1] for text in line if text])
+        values = [float(text) for line in card.lines[:1] for text in line if text]
+        if card.name == "FRICTION" and self.step >= 0:
+            interaction.setdefault("CHANGES", []).append((self._span()[0], values[0]))
+        elif self.step < 0:  # *CHANGE SURFACE BEHAVIOR, which comes later, is named as missing
+            interaction[card.name] = (card, values)
 
     def _amplitude(self, card):
         values = [float(text) for line in card.lines for text in line if text]
@@ -146,18 +164,19 @@ class DeckScene:
             self.pairs.append((line[0], line[1], card))
 
     def _adjust(self):
-        """ADJUST=d of a contact pair moves slave nodes that are nearer than d onto the master, without strain."""
+        """ADJUST=d of a contact pair moves slave nodes that are nearer than d onto the master, ADJUST=SET those of a
+        set, without strain."""
         for slave, master, card in self.pairs:
             value = card.parameters.get("ADJUST", "")
             if not value:
                 continue
             try:
-                tolerance = float(value)
+                tolerance, chosen = float(value), None
             except ValueError:
-                self.missing.append(f"{card.where}: ADJUST with a set of nodes")
-                continue
-            moved, most = put_on_surface(self.mesh, self._surface(slave), self._surface(master), tolerance)
-            self.changed.append(f"{card.where}: ADJUST moved {moved} nodes by up to {number(most)}, in the mesh")
+                tolerance, chosen = numpy.inf, self._nodes(value, card.where)
+            moved, most = put_on_surface(self.mesh, self._surface(slave), self._surface(master), tolerance, chosen)
+            if moved:
+                self.changed.append(f"{card.where}: ADJUST moved {moved} nodes by up to {number(most)}, in the mesh")
 
     # Courses over t
 
@@ -192,7 +211,11 @@ class DeckScene:
 
     def _nodes(self, text, where):
         numbers = [int(text)] if text.isdigit() else resolve(self.part.nsets, text, where)
-        return [self.deck.row(node) for node in numbers if self.deck.has_row(node)]
+        rows = [self.deck.row(node) for node in numbers if self.deck.has_row(node)]
+        held = [row for row in rows if self._used[row]]
+        if len(held) < len(rows):
+            self.missing.append(f"{where}: '{text}' has {len(rows) - len(held)} nodes that belong to no element")
+        return held
 
     def _point_group(self, label, rows):
         """A group of points of these nodes; the same nodes have one group."""
@@ -245,7 +268,8 @@ class DeckScene:
         for action in list(self.actions.values()):
             if action.kind == kind and action.last() != 0:
                 self._prescribe(kind, action.group, action.axis, 0.0, card)
-                self.changed.append(f"{card.where}: OP=NEW takes values back to 0, and does not let nodes go")
+                if kind == "displacement":
+                    self.missing.append(f"{card.where}: OP=NEW takes values back to 0, and does not let nodes go")
 
     def _dload(self, card):
         for line in card.lines:
@@ -314,10 +338,14 @@ class DeckScene:
         if cards is None:
             raise MeshError(f"*SOLID SECTION: there is no material '{name}'")
         if "HYPERELASTIC" in cards:
+            if self.plane_stress:
+                self.missing.append("plane stress of rubber: the scene has plane strain")
             return self._rubber(*cards["HYPERELASTIC"])
         if "ELASTIC" not in cards:
             raise MeshError(f"material '{name}' has neither *ELASTIC nor *HYPERELASTIC")
         young, nu = cards["ELASTIC"][1][0][:2]
+        if self.plane_stress:
+            young, nu = self._as_plane_strain(young, nu, cards)
         if "PLASTIC" in cards:
             card, rows = cards["PLASTIC"]
             if card.parameters.get("HARDENING", "ISOTROPIC").upper() != "ISOTROPIC":
@@ -328,6 +356,15 @@ class DeckScene:
             pairs = ", ".join(f"[{number(a)}, {number(b)}]" for a, b in table)
             return f"{{law: von_mises, E: {number(young)}, nu: {number(nu)}, hardening: {{table: [{pairs}]}}}}"
         return f"{{law: {'svk' if self.nlgeom else 'linear'}, E: {number(young)}, nu: {number(nu)}}}"
+
+    def _as_plane_strain(self, young, nu, cards):
+        """Constants that give in plane strain the stresses that these give in plane stress."""
+        if "PLASTIC" in cards:
+            self.missing.append("plane stress of plastic bodies: the scene has plane strain")
+            return young, nu
+        self.changed.append("plane stress (CPS elements): plane strain with constants that give the same stresses in "
+                            "the plane; stress_zz and von Mises stress are not those of plane stress")
+        return young * (1 + 2 * nu) / (1 + nu)**2, nu / (1 + nu)
 
     def _rubber(self, card, values):
         """Constants of Abaqus: W of the isochoric strains plus (J - 1)^2 / D1."""
@@ -357,7 +394,8 @@ class DeckScene:
     def _pair(self, k, slave, master, card):
         interaction = self.interactions.get(card.parameters.get("INTERACTION", "").upper(), {})
         entries = [f"name: pair_{k + 1}", f"slave: {name_of(self._surface(slave))}",
-                   f"master: {name_of(self._surface(master))}", "initial_overlap: resolve"]
+                   f"master: {name_of(self._surface(master))}", "smoother: facet", *self._where_measured(card),
+                   "initial_overlap: resolve"]
         behaviour, values = interaction.get("SURFACE BEHAVIOR", (None, []))
         law = (behaviour.parameters.get("PRESSURE-OVERCLOSURE", "HARD") if behaviour else "HARD").upper()
         if law == "LINEAR" and values and values[0] <= STIFFEST * self._stiffest() / self._face_size(slave):
@@ -370,11 +408,29 @@ class DeckScene:
         elif law != "HARD":
             self.changed.append(f"{behaviour.where}: {law.lower()} pressure over the gap; here the penalty is chosen by "
                                 "the error that it leaves")
-        friction, values = interaction.get("FRICTION", (None, []))
-        if friction and values and values[0] > 0:
-            stick = f", stick: {{penalty: {number(values[1])}}}" if len(values) > 1 else ""
-            entries.append(f"friction: {{mu: {number(values[0])}{stick}}}")
-        return "  - {" + ", ".join(entries) + "}\n"
+        return "  - {" + ", ".join(entries + self._friction(interaction)) + "}\n"
+
+    def _friction(self, interaction):
+        """Friction of an interaction as an entry of a pair; none where it has none in any step."""
+        _, values = interaction.get("FRICTION", (None, []))
+        course = [(0.0, values[0] if values else 0.0)]
+        for start, mu in interaction.get("CHANGES", []):
+            course += [(start, course[-1][1]), (start + SWITCH / self.count, mu)] if start else [(0.0, mu)]
+        most = max(mu for _, mu in course)
+        if most <= 0:
+            return []
+        stick = f", stick: {{penalty: {number(values[1])}}}" if len(values) > 1 else ""
+        points = sorted(dict([*course, (1.0, course[-1][1])]).items())
+        history = "" if len(course) == 1 else \
+            f", history: [{', '.join(f'[{number(t)}, {number(mu / most)}]' for t, mu in points)}]"
+        return [f"friction: {{mu: {number(most)}{stick}{history}}}"]
+
+    @staticmethod
+    def _where_measured(card):
+        """The word for the card's TYPE; the scene chooses where the deck does not."""
+        words = {"NODE TO SURFACE": "node_to_surface", "SURFACE TO SURFACE": "surface_to_surface"}
+        kind = " ".join(card.parameters.get("TYPE", "").upper().split())
+        return [f"formulation: {words[kind]}"] if kind in words else []
 
     def _stiffest(self):
         """Largest Young's modulus of the deck's elastic materials."""
@@ -392,7 +448,11 @@ class DeckScene:
         for group in self.mesh.groups:
             if group.name.upper() == name.upper() and group.dim == self.dim - 1 and group.size:
                 return group.name
-        raise MeshError(f"*CONTACT PAIR: there is no surface '{name}' with faces")
+        kinds = {key.upper(): kind for key, (kind, _) in self.part.surfaces.items()}
+        if kinds.get(name.upper()) == "NODE":
+            raise MeshError(f"*CONTACT PAIR: the nodes of the surface '{name}' have no outer face of a body between them; "
+                            "allowed: surfaces with faces")
+        raise MeshError(f"*CONTACT PAIR: there is no surface '{name}' with faces of bodies")
 
     def _history(self, action):
         """The largest value and the course as factors on it; None for a course that is 0."""
@@ -426,6 +486,10 @@ class DeckScene:
                 loads.append(f"  - {{{where}: {name_of(action.group)}, {action.kind}: [{vector}]{tail}}}\n")
         return supports, loads
 
+    def _rubs(self, k):
+        interaction = self.interactions.get(self.pairs[k][2].parameters.get("INTERACTION", "").upper(), {})
+        return bool(self._friction(interaction))
+
     def _probes(self):
         lines = []
         for action in self.actions.values():
@@ -435,8 +499,9 @@ class DeckScene:
                 lines.append(f"  - {{name: reaction_{label}_{axis}, reaction: {name_of(action.group)}, "
                              f"component: {axis}}}\n")
         for k in range(len(self.pairs)):
-            lines += [f"  - {{name: contact_{k + 1}_{axis}, contact_force: pair_{k + 1}, component: {axis}}}\n"
-                      for axis in AXES[:self.dim]]
+            kinds = ("contact", "friction") if self._rubs(k) else ("contact", )
+            lines += [f"  - {{name: {kind}_{k + 1}_{axis}, {kind}_force: pair_{k + 1}, component: {axis}}}\n"
+                      for kind in kinds for axis in AXES[:self.dim]]
         return lines
 
     def text(self, mesh_file):

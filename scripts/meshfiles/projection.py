@@ -8,6 +8,7 @@ PARTS = {
     "tri3": ((0, 1, 2),),
     "tri6": ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
     "quad4": ((0, 1, 2), (0, 2, 3)),
+    "quad8": ((0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6), (4, 6, 7)),
     "quad9": ((0, 4, 8), (4, 1, 8), (1, 5, 8), (5, 2, 8), (2, 6, 8), (6, 3, 8), (3, 7, 8), (7, 0, 8)),
 }
 
@@ -38,9 +39,9 @@ def _nearest_on_triangles(x, a, b, c):
     return best
 
 
-def put_on_surface(mesh, slave, master, tolerance):
-    """Moves the nodes of `slave` that are nearer than `tolerance` to `master` onto it. Returns their number and the
-    longest way."""
+def put_on_surface(mesh, slave, master, tolerance, chosen=None):
+    """Moves the nodes of `slave` that are nearer than `tolerance` to `master` onto it, of `chosen` ones if these are
+    given. Returns their number and the longest way."""
     parts = []
     for shape, indices in _surface(mesh, master).members.items():
         faces = mesh.elements[shape][indices]
@@ -48,6 +49,8 @@ def put_on_surface(mesh, slave, master, tolerance):
     corners = numpy.vstack(parts)
     rows = numpy.unique(numpy.concatenate([mesh.elements[shape][indices].ravel()
                                            for shape, indices in _surface(mesh, slave).members.items()]))
+    if chosen is not None:
+        rows = numpy.intersect1d(rows, chosen)
     moved, most = 0, 0.0
     for row in rows:
         x = mesh.nodes[row]

@@ -1,9 +1,11 @@
-"""burnish -import turns a deck into a scene: two blocks that a pressure, forces and a weight press on each other over two
-steps, against the closed form of bars in series; cards that are not available are named; no file is overwritten."""
+"""burnish -import turns a deck into a scene: two blocks that a pressure, forces and a weight press on each other over
+two steps, against the closed form of bars in series; a plate in plane stress against its closed form; friction that
+changes from step to step; nodes that are moved onto the other surface; cards that are not available are named; no file is overwritten."""
 import pathlib
 import shutil
 import subprocess
 
+import numpy
 from harness import SCENES, Check, arguments, run
 
 args = arguments()
@@ -58,6 +60,57 @@ for what, changes, said in (
     refused = imported(variant("wrong.inp", *changes), "wrong.yaml")
     check.holds(f"{what}: exit 1 and a message", refused.returncode == 1 and said in refused.stdout and
                 not (place / "wrong.yaml").exists(), refused.stdout.strip()[-300:])
+
+
+def scene_of(name, *changes):
+    """Lines that the import prints, and the scene, of a deck with some texts changed."""
+    return imported(variant(f"{name}.inp", *changes)).stdout, (place / f"{name}.yaml").read_text()
+
+
+said, text = scene_of("rubbing", ("=LINEAR\n1000.\n", "=LINEAR\n1000.\n*FRICTION\n0.1, 500.\n"),
+                      ("*TEMPERATURE\nall, 20.", "*CHANGE FRICTION, INTERACTION=touch\n*FRICTION\n0.4, 500."))
+check.holds("friction that changes with the second step", "friction: {mu: 0.4, stick: {penalty: 500}, history: "
+            "[[0, 0.25], [0.5, 0.25], [0.5005, 1], [1, 1]]}" in text and "missing:" not in said, text)
+check.holds("contact as the deck has it", "smoother: facet, formulation: surface_to_surface" in text)
+said, text = scene_of("apart", ("11, 0., 0., 1.\n12, 1., 0., 1.", "11, 0., 0., 1.3\n12, 1., 0., 1.2"),
+                      ("*CONTACT PAIR, INTERACTION=touch, TYPE=SURFACE TO SURFACE",
+                       "*NSET, NSET=near\n11\n*CONTACT PAIR, INTERACTION=touch, ADJUST=near, TYPE=NODE TO SURFACE"))
+check.holds("ADJUST with a set moves its nodes alone", "ADJUST moved 1 nodes by up to 0.3" in said, said)
+check.holds("nodes against faces", "formulation: node_to_surface" in text)
+said, _ = scene_of("lonely", ("18, 0., 1., 2.\n", "18, 0., 1., 2.\n99, 5., 5., 5.\n"),
+                   ("lid, 3, -0.5", "lid, 3, -0.5\n99, 3, 1."))
+check.holds("nodes without elements are named", "'99' has 1 nodes that belong to no element" in said, said)
+(place / "plane.inp").write_text("""*NODE
+1, 0., 0.
+2, 2., 0.
+3, 2., 1.
+4, 0., 1.
+*ELEMENT, TYPE=CPS4, ELSET=plate
+1, 1, 2, 3, 4
+*MATERIAL, NAME=steel
+*ELASTIC
+1000., 0.3
+*EXPANSION
+1e-5
+*SOLID SECTION, ELSET=plate, MATERIAL=steel
+1.
+*BOUNDARY
+1, 1, 2
+4, 1, 1
+*STEP
+*STATIC
+*CLOAD
+2, 1, 5.
+3, 1, 5.
+*END STEP
+""")
+said = imported(place / "plane.inp").stdout
+check.holds("plane stress by other constants, which is said", "changed: plane stress" in said and "missing" not in said,
+            said)
+fields = run(args, place / "plane.yaml", out="plane", ranks=1).fields()
+check.near("a plate that is pulled grows as in plane stress", fields["displacement"][fields["nodes"][:, 0] > 1, 0],
+           2 * 10 / 1000, 1e-9)
+check.near("and thins as in plane stress", numpy.ptp(fields["displacement"][:, 1]), 0.3 * 10 / 1000, 1e-9)
 rubber = (("*ELASTIC\n1000., 0.", "*HYPERELASTIC, NEO HOOKE\n0.5, 0.02"), ("*STEP\n", "*STEP, NLGEOM\n"))
 imported(variant("rubber.inp", *rubber))
 text = (place / "rubber.yaml").read_text()
