@@ -3,6 +3,7 @@ _burnish() {
   local word=${COMP_WORDS[COMP_CWORD]} last=${COMP_WORDS[COMP_CWORD - 1]}
   case $last in
   -import) COMPREPLY=($(compgen -f -X '!*.inp' -- "$word") $(compgen -d -S / -- "$word")) ;;
+  -explain) COMPREPLY=($(compgen -W "all $("${COMP_WORDS[0]}" -explain all 2>/dev/null | sed -n 's/^\(B[0-9]*\)  .*/\1/p')" -- "$word")) ;;
   -o | -restart) COMPREPLY=($(compgen -d -- "$word")) ;;
   -set)
     compopt -o nospace 2>/dev/null

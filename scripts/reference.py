@@ -1,4 +1,5 @@
-"""Writes the tables of doc/pages/scene.md from the program's own table of keys (`burnish -help`).
+"""Writes the tables of doc/pages/scene.md from the program's own table of keys (`burnish -help`), and that of
+doc/pages/troubleshooting.md from its table of messages (`burnish -explain all`).
 
     build/venv/bin/python scripts/reference.py            # writes them anew
     build/venv/bin/python scripts/reference.py --check    # exit status 1 where they differ from what the program says
@@ -9,7 +10,7 @@ import re
 import subprocess
 import sys
 
-FILE = pathlib.Path(__file__).resolve().parent.parent / "doc/pages/scene.md"
+PAGES = pathlib.Path(__file__).resolve().parent.parent / "doc/pages"
 BEGIN, END = "<!-- begin: scripts/reference.py -->\n", "<!-- end: scripts/reference.py -->\n"
 LINE = re.compile(r"^  (?P<path>[A-Za-z_][\w.|]*): (?P<rest>.*)$")
 
@@ -53,18 +54,30 @@ def sections(burnish):
     return text
 
 
+def messages(burnish):
+    """One row for each code of a message."""
+    text = subprocess.run([burnish, "-explain", "all"], stdout=subprocess.PIPE, text=True, check=True).stdout
+    table = "| code | message | cause | what to change |\n| --- | --- | --- | --- |\n"
+    for entry in text.strip().split("\n\n"):
+        lines = entry.splitlines()
+        code, message = lines[0].split("  ", 1)
+        table += f"| {code} | {cell(message)} | {cell(lines[1].removeprefix('cause   '))} | " \
+                 f"{cell(lines[2].removeprefix('change  '))} |\n"
+    return table
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--burnish", default="build/burnish")
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
-    there = FILE.read_text()
-    before, after = there[: there.index(BEGIN) + len(BEGIN)], there[there.index(END) :]
-    wanted = before + sections(options.burnish) + after
-    if options.check and wanted != there:
-        sys.exit("doc/pages/scene.md differs from the program: build/venv/bin/python scripts/reference.py writes it")
-    if not options.check:
-        FILE.write_text(wanted)
+    for name, text in (("scene.md", sections(options.burnish)), ("troubleshooting.md", messages(options.burnish))):
+        there = (PAGES / name).read_text()
+        wanted = there[: there.index(BEGIN) + len(BEGIN)] + text + there[there.index(END) :]
+        if options.check and wanted != there:
+            sys.exit(f"doc/pages/{name} differs from the program: build/venv/bin/python scripts/reference.py writes it")
+        if not options.check:
+            (PAGES / name).write_text(wanted)
 
 
 main()

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <unistd.h>
 #include "burnish.h"
+#include "base/explanation.h"
 #include "base/interruption.h"
 #include "base/scripts.h"
 #include "scene/commandline.h"
@@ -63,6 +64,19 @@ static PetscErrorCode RunCommand(const CommandLine *command, BurnishStatus *stat
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Prints what is known of the code of a message. */
+static PetscErrorCode Explain(const char *code, PetscMPIInt rank, BurnishStatus *status)
+{
+  static const char message[] = "-explain: there is no such code; allowed: the code at the end of a message, or all [B120]";
+
+  PetscFunctionBeginUser;
+  if (!ExplanationPrint(code, rank ? NULL : stdout)) {
+    *status = BURNISH_WRONG_INPUT;
+    PetscCall(PrintMistake(message));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Does what the command line asks for. */
 static PetscErrorCode Obey(const CommandLine *command, BurnishStatus *status)
 {
@@ -75,6 +89,8 @@ static PetscErrorCode Obey(const CommandLine *command, BurnishStatus *status)
     PetscCall(PrintMistake(command->complaint));
   } else if (command->mode == COMMAND_HELP) {
     if (!rank) CommandLineHelp(stdout);
+  } else if (command->mode == COMMAND_EXPLAIN) {
+    PetscCall(Explain(command->code, rank, status));
   } else if (command->mode == COMMAND_VERSION) {
     if (!rank) CommandLineVersion(stdout);
   } else {

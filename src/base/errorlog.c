@@ -18,7 +18,7 @@ static void ErrorLogTell(const char *message)
 {
   ErrorLog.told = PETSC_TRUE;
   ErrorLog.log  = fopen(ErrorLog.file, "w");
-  fprintf(stderr, "burnish: internal error or machine failure: %s; the trace is in %s\n",
+  fprintf(stderr, "burnish: internal error or machine failure: %s; the trace is in %s [B400]\n",
           message ? message : "no message", ErrorLog.log ? ErrorLog.file : "what follows");
   if (!ErrorLog.log) return;
   ErrorLog.terminal = PETSC_STDERR;

@@ -19,7 +19,7 @@ static void Warn(Scene scene, const SceneBody *body, double end[MATERIAL_TESTS][
               tension ? "tension" : "compression", end[test][tension]);
     }
   }
-  if (n) fprintf(stderr, "; beyond, stresses can fall as strains grow, and a run can fail\n");
+  if (n) fprintf(stderr, "; beyond, stresses can fall as strains grow, and a run can fail [B501]\n");
 }
 
 static void ReportBody(Scene scene, const SceneBody *body, FILE *file)

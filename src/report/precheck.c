@@ -84,7 +84,7 @@ static void WarnOfLengths(Model model)
       if (!load->has[d] || length <= PRECHECK_FAR * model->mesh->size) continue;
       fprintf(stderr,
               "burnish: warning: %s: a displacement of %g is %.3g times the diagonal of the model, which is %.4g; are "
-              "mesh and scene in the same unit of length?\n",
+              "mesh and scene in the same unit of length? [B502]\n",
               SceneWhere(scene, load->path, names[d]), length, length / (double)model->mesh->size,
               (double)model->mesh->size);
     }

@@ -181,12 +181,12 @@ static void WarnLocking(Terminal terminal)
       fprintf(
         stderr,
         "burnish: warning: %s: plastic flow keeps volumes, and elements of first order with full integration lock "
-        "(too stiff); mesh.order: 2 and formulation: fbar do not\n",
+        "(too stiff); mesh.order: 2 and formulation: fbar do not [B503]\n",
         SceneWhere(terminal->scene, body->path, "material.law"));
     else
       fprintf(
         stderr,
-        "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); %s\n",
+        "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); %s [B503]\n",
         SceneWhere(terminal->scene, body->path, "material.nu"), body->material.nu,
         body->chosen ? "mesh.order: 2 does not" : "mesh.order: 2 or formulation: mixed does not");
   }
@@ -208,7 +208,7 @@ static PetscErrorCode WarnJoined(Terminal terminal)
     if (terminal->rank || !nodes) continue;
     fprintf(stderr,
             "burnish: warning: contact '%s': '%s' and '%s' have %" PetscInt_FMT
-            " node%s in common, as node %" PetscInt_FMT " (%.6g, %.6g, %.6g): there they are one body and never part\n",
+            " node%s in common, as node %" PetscInt_FMT " (%.6g, %.6g, %.6g): there they are one body and never part [B504]\n",
             contact->name, contact->slave, contact->master, nodes, nodes > 1 ? "s" : "", place.tag, (double)place.X[0],
             (double)place.X[1], (double)place.X[2]);
   }
@@ -253,7 +253,7 @@ PetscErrorCode TerminalBegin(Terminal terminal, PetscInt restarts, PetscInt last
 void TerminalWarnLost(Terminal terminal, const char *name, PetscInt last_step)
 {
   if (terminal->rank == 0)
-    fprintf(stderr, "burnish: warning: %s/%s is not what the checkpoint left: it begins anew after step %lld\n",
+    fprintf(stderr, "burnish: warning: %s/%s is not what the checkpoint left: it begins anew after step %lld [B508]\n",
             terminal->directory, name, (long long)last_step);
 }
 
@@ -397,7 +397,7 @@ static PetscErrorCode WarnUnused(void)
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n; i++)
-    fprintf(stderr, "burnish: warning: nothing used the PETSc option -%s; is it misspelt?\n", names[i]);
+    fprintf(stderr, "burnish: warning: nothing used the PETSc option -%s; is it misspelt? [B505]\n", names[i]);
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -417,7 +417,7 @@ static void PrintUnmet(Terminal terminal, const PetscReal *apart)
     if (apart[p] < 0) continue;
     fprintf(stderr,
             "burnish: warning: contact '%s': no node of '%s' met '%s' in this run, nearest distance %.3g; if it should "
-            "have: do the normals of the two point to each other?\n",
+            "have: do the normals of the two point to each other? [B506]\n",
             contact->name, contact->slave, contact->master ? contact->master : "its analytic master", (double)apart[p]);
   }
 }
@@ -428,12 +428,12 @@ static void WarnDeep(PetscReal deepest, PetscReal standing)
   if (deepest > 1)
     fprintf(stderr,
             "burnish: warning: a slave node was up to %.3g face sizes behind its master: the penalty is too soft for "
-            "what presses\n",
+            "what presses [B507]\n",
             (double)deepest);
   if (standing > PetscMax(1, deepest))
     fprintf(stderr,
             "burnish: warning: a master node stood up to %.3g face sizes deep in its slave: contact is enforced at the "
-            "slave's points alone, which are too far apart there\n",
+            "slave's points alone, which are too far apart there [B507]\n",
             (double)standing);
 }
 

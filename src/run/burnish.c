@@ -2,6 +2,7 @@
 #include "burnish.h"
 #include <math.h>
 #include "base/errorlog.h"
+#include "base/explanation.h"
 #include "base/refusal.h"
 #include "run.h"
 
@@ -227,6 +228,22 @@ static PetscErrorCode KeepRun(Burnish burnish, const Run *run)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Keeps the message of the refusal, with its code. */
+static PetscErrorCode TakeRefusal(Burnish burnish)
+{
+  char  *message;
+  size_t length;
+
+  PetscFunctionBeginUser;
+  PetscCall(RefusalTake(&message));
+  PetscCall(PetscStrlen(message, &length));
+  PetscCall(PetscMalloc1(length + EXPLANATION_ROOM, &burnish->message));
+  PetscCall(PetscStrncpy(burnish->message, message, length + EXPLANATION_ROOM));
+  ExplanationAppend(burnish->message, length + EXPLANATION_ROOM, EXPLANATION_INPUT);
+  PetscCall(PetscFree(message));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Runs what the user asks for and turns a refusal into its status. After another error nothing that is collective may
    be called, because the other ranks may be elsewhere: the run's objects stay. */
 static PetscErrorCode Execute(Burnish burnish, RunTask task, BurnishStatus *status)
@@ -247,7 +264,7 @@ static PetscErrorCode Execute(Burnish burnish, RunTask task, BurnishStatus *stat
   if (!code) code = KeepRun(burnish, &run);
   if (code == REFUSED && RefusalIsPending()) {
     *status = BURNISH_WRONG_INPUT;
-    code    = RefusalTake(&burnish->message);
+    code    = TakeRefusal(burnish);
   }
   if (!code) code = RunDestroy(&run);
   if (code) {

@@ -3,6 +3,7 @@
 #include <petsctime.h>
 #include <string.h>
 #include "base/errorlog.h"
+#include "base/explanation.h"
 #include "base/interruption.h"
 #include "base/refusal.h"
 #include "report/precheck.h"
@@ -177,6 +178,8 @@ static PetscErrorCode RunSolve(Run *run, const RunInput *input, BurnishStatus *s
   if (*status == BURNISH_DONE) run->message[0] = '\0';
   if (*status == BURNISH_NOT_CONVERGED || report.leaks)
     PetscCall(PetscStrncpy(run->message, report.message, sizeof(run->message)));
+  ExplanationAppend(run->message, sizeof(run->message),
+                    *status == BURNISH_STOPPED ? EXPLANATION_STOPPED : EXPLANATION_UNSOLVED);
   PetscCall(PetscTime(&now));
   record = (RunRecord){.status  = names[*status],
                        .message = run->message[0] ? run->message : NULL,

@@ -10,12 +10,13 @@ static const char Usage[] =
   "options]\n"
   "       burnish -restart DIR [-set KEY=VALUE]... [-quiet] [-trust] [PETSc options]\n"
   "       burnish -import DECK.inp [SCENE.yaml]\n"
+  "       burnish -explain CODE\n"
   "       burnish -help | -version";
 
 /* Keeps a complaint with the usage, unless an earlier argument has caused one already. */
 static void CommandLineComplain(CommandLine *line, const char *what, const char *about)
 {
-  if (!line->complaint[0]) snprintf(line->complaint, sizeof line->complaint, "%.300s: %s\n%s", about, what, Usage);
+  if (!line->complaint[0]) snprintf(line->complaint, sizeof line->complaint, "%.300s: %s [B120]\n%s", about, what, Usage);
 }
 
 static int IsOption(const char *word)
@@ -80,7 +81,8 @@ static void CommandLineCheck(CommandLine *line)
     CommandLineComplain(line, "goes without -check and -mesh", "-restart");
   if (line->mode == COMMAND_IMPORT && (line->restart || line->directory || line->n_set))
     CommandLineComplain(line, "goes with a deck and the name of a scene only", "-import");
-  if (!line->restart && !line->scene && line->mode != COMMAND_IMPORT)
+  if (line->mode == COMMAND_EXPLAIN && line->scene) CommandLineComplain(line, "goes without a scene", "-explain");
+  if (!line->restart && !line->scene && line->mode != COMMAND_IMPORT && line->mode != COMMAND_EXPLAIN)
     CommandLineComplain(line, "no scene file", "command line");
 }
 
@@ -112,6 +114,9 @@ static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
   } else if (!strcmp(word, "-import")) {
     line->mode = COMMAND_IMPORT;
     line->deck = CommandLineValue(line, argc, argv, i, "needs a deck of Abaqus or CalculiX (.inp)");
+  } else if (!strcmp(word, "-explain")) {
+    line->mode = COMMAND_EXPLAIN;
+    line->code = CommandLineValue(line, argc, argv, i, "needs the code at the end of a message, such as B202, or all");
   } else if (!strcmp(word, "-time_limit")) {
     CommandLineSetLimit(line, CommandLineValue(line, argc, argv, i, "needs seconds"));
   } else
@@ -221,6 +226,7 @@ void CommandLineHelp(FILE *file)
         "  burnish -check SCENE.yaml          reads, meshes, validates and reports; solves nothing\n"
         "  burnish -mesh SCENE.yaml           only makes the mesh file\n"
         "  burnish -import DECK.inp           makes a scene and a mesh of a deck of Abaqus or CalculiX\n"
+        "  burnish -explain CODE              says what a message that ends with this code means\n"
         "  burnish -help | -version\n\n"
         "  -o DIR           where results go (default out/NAME)\n"
         "  -set KEY=VALUE   overrides or adds one value of the scene by its path, such as contact.0.smoother=facet or\n"

@@ -9,12 +9,13 @@
 
 #define BURNISH_VERSION "0.1.0"
 
-typedef enum { COMMAND_RUN, COMMAND_CHECK, COMMAND_MESH, COMMAND_IMPORT, COMMAND_HELP, COMMAND_VERSION } CommandMode;
+typedef enum { COMMAND_RUN, COMMAND_CHECK, COMMAND_MESH, COMMAND_IMPORT, COMMAND_EXPLAIN, COMMAND_HELP, COMMAND_VERSION } CommandMode;
 
 typedef struct {
   CommandMode mode;
   char       *scene;      /* path of the scene file, or NULL */
   char       *deck;       /* value of -import, or NULL */
+  char       *code;       /* value of -explain, or NULL */
   char       *directory;  /* value of -o, or NULL */
   char       *restart;    /* value of -restart, or NULL */
   double      time_limit; /* value of -time_limit in seconds, or 0 for no limit */
@@ -25,7 +26,7 @@ typedef struct {
   int    argc;
   char **argv;
   /* Why the command line is refused, for RefuseInput() once MPI runs. It is empty if the command line is correct. */
-  char complaint[768];
+  char complaint[1024];
 } CommandLine;
 
 void CommandLineParse(int argc, char **argv, CommandLine *);

@@ -500,7 +500,7 @@ static void CommandLinePrefersAFreeStandingScene(void **state)
   assert_int_equal(line.argc, 3);
   CommandLineDestroy(&line);
   CommandLineParse(1, argv, &line);
-  assert_non_null(strstr(line.complaint, "no scene file\nusage: burnish"));
+  assert_non_null(strstr(line.complaint, "no scene file [B120]\nusage: burnish"));
   CommandLineDestroy(&line);
 }
 
