@@ -226,12 +226,26 @@ def print_table(rows):
         if row["status"] == "done" and "missing:" not in row["remarks"]:
             print(f"| `{deck}` | {row['elements']} | " + " | ".join(figures(rows, deck, c) for c in COMPARISONS) +
                   f" | {row['steps']}, {row['iterations']} |")
-    print("\n| deck | not taken, or in another way |\n| --- | --- |")
+    said = {}  # decks by what is said of them
     for deck, row in first.items():
         if row["remarks"] or row["status"] != "done" or row["comparison"] != "same mesh":
-            said = "; ".join(filter(None, (row["comparison"] if row["comparison"].startswith("none") else "",
-                                           "" if row["status"] == "done" else row["status"], row["remarks"])))
-            print(f"| `{deck}` | {said} |")
+            said.setdefault(summary_of(row), []).append(f"`{deck}`")
+    print("\n| deck | not taken, or in another way |\n| --- | --- |")
+    for text, decks in said.items():
+        print(f"| {', '.join(decks)} | {text} |")
+
+
+def summary_of(row):
+    """The remarks on a deck, without the lines of the file, and with the cards that are not available in one list."""
+    cards = re.findall(r"missing: \S+: (\*[A-Z -]+): not available", row["remarks"])
+    others = [re.sub(r"\S+\.inp:\d+: ", "", text).replace("changed: ", "").replace("missing: ", "not taken: ")
+              for text in row["remarks"].split("; ") if text and not text.endswith(": not available")]
+    if row["status"] == "refused":
+        others = ["refused: " + row["remarks"]]
+    parts = [row["comparison"]] if row["comparison"] != "same mesh" else []
+    parts += ["not available: " + ", ".join(f"`{card}`" for card in dict.fromkeys(cards))] if cards else []
+    parts += [f"ends with {row['status'].replace('exit', 'exit status')}"] if row["status"].startswith("exit") else []
+    return "; ".join(parts + list(dict.fromkeys(others)))
 
 
 def main():

@@ -67,7 +67,8 @@ static PetscErrorCode RunCommand(const CommandLine *command, BurnishStatus *stat
 /* Prints what is known of the code of a message. */
 static PetscErrorCode Explain(const char *code, PetscMPIInt rank, BurnishStatus *status)
 {
-  static const char message[] = "-explain: there is no such code; allowed: the code at the end of a message, or all [B120]";
+  static const char message[] =
+    "-explain: there is no such code; allowed: the code at the end of a message, or all [B120]";
 
   PetscFunctionBeginUser;
   if (!ExplanationPrint(code, rank ? NULL : stdout)) {

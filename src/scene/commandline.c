@@ -16,7 +16,8 @@ static const char Usage[] =
 /* Keeps a complaint with the usage, unless an earlier argument has caused one already. */
 static void CommandLineComplain(CommandLine *line, const char *what, const char *about)
 {
-  if (!line->complaint[0]) snprintf(line->complaint, sizeof line->complaint, "%.300s: %s [B120]\n%s", about, what, Usage);
+  if (line->complaint[0]) return;
+  snprintf(line->complaint, sizeof line->complaint, "%.300s: %s [B120]\n%s", about, what, Usage);
 }
 
 static int IsOption(const char *word)

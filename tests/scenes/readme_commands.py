@@ -116,6 +116,7 @@ FULL = {
     f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix.csv",
     f"{PYTHON} scripts/compare_calculix.py --record runs/records/calculix_friction.csv \"mu \"":
     f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix_friction.csv",
+    f"{PYTHON} scripts/deck_table.py --record runs/records/decks.csv --decks FOLDER": printed("deck_table", "decks"),
     f"{PYTHON} scripts/all_table.py --record runs/records/all.csv": printed("all_table", "all"),
     f"{PYTHON} tests/hard/run.py --group guards":
     f"{PYTHON} tests/hard/run.py {BURNISH} --out $WORK/out/hard --case 'corner of two walls' --ranks 1",
