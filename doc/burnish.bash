@@ -4,7 +4,7 @@ _burnish() {
   case $last in
   -import) COMPREPLY=($(compgen -f -X '!*.inp' -- "$word") $(compgen -d -S / -- "$word")) ;;
   -explain) COMPREPLY=($(compgen -W "all $("${COMP_WORDS[0]}" -explain all 2>/dev/null | sed -n 's/^\(B[0-9]*\)  .*/\1/p')" -- "$word")) ;;
-  -o | -restart) COMPREPLY=($(compgen -d -- "$word")) ;;
+  -o | -restart | -evaluate) COMPREPLY=($(compgen -d -- "$word")) ;;
   -set)
     compopt -o nospace 2>/dev/null
     COMPREPLY=($(compgen -S = -W "$("${COMP_WORDS[0]}" -help 2>/dev/null | sed -n 's/^  \([A-Za-z_][A-Za-z0-9_.|]*\): .*/\1/p')" -- "$word"))

@@ -102,17 +102,18 @@ static PetscErrorCode Obey(const CommandLine *command, BurnishStatus *status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Becomes the script that makes a scene of a deck. It returns only if that fails. */
-static BurnishStatus ImportDeck(const CommandLine *command)
+/* Becomes a script with two arguments, the second of which may be NULL. It returns only if that fails. */
+static BurnishStatus BecomeScript(const char *name, const char *first, const char *second)
 {
   char script[SCRIPTS_PATH], python[SCRIPTS_PATH];
 
-  if (ScriptsFind("import_deck.py", script, python)) {
-    execlp(python, python, "-B", script, command->deck, command->scene, (char *)NULL);
-    fprintf(stderr, "burnish: there is no Python here (%s); `make deps` installs one\n", python);
+  if (ScriptsFind(name, script, python)) {
+    execlp(python, python, "-B", script, first, second, (char *)NULL);
+    fprintf(stderr, "burnish: there is no Python here (%s); `make deps` installs one [B400]\n", python);
   } else
-    fprintf(stderr, "burnish: scripts/import_deck.py is not found; set " SCRIPTS_VARIABLE
-                    " to the folder in which scripts/import_deck.py is\n");
+    fprintf(stderr,
+            "burnish: scripts/%s is not found; set " SCRIPTS_VARIABLE " to the folder in which scripts/%s is [B400]\n",
+            name, name);
   return BURNISH_FAILED;
 }
 
@@ -124,7 +125,10 @@ int main(int argc, char **argv)
   BurnishStatus status = BURNISH_DONE;
 
   CommandLineParse(argc, argv, &command);
-  if (command.mode == COMMAND_IMPORT && !command.complaint[0]) return ImportDeck(&command);
+  if (command.mode == COMMAND_IMPORT && !command.complaint[0])
+    return BecomeScript("import_deck.py", command.deck, command.scene);
+  if (command.mode == COMMAND_EVALUATE && !command.complaint[0])
+    return BecomeScript("evaluate.py", command.results, command.scene);
   if (command.mode == COMMAND_RUN) InterruptionInstall(command.time_limit);
   if (PetscInitialize(&command.argc, &command.argv, NULL, NULL)) return BURNISH_FAILED;
   signal(SIGPIPE, SIG_IGN); /* a reader of the terminal's text may leave before its end */

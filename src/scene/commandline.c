@@ -10,6 +10,7 @@ static const char Usage[] =
   "options]\n"
   "       burnish -restart DIR [-set KEY=VALUE]... [-quiet] [-trust] [PETSc options]\n"
   "       burnish -import DECK.inp [SCENE.yaml]\n"
+  "       burnish -evaluate DIR PROBES.yaml\n"
   "       burnish -explain CODE\n"
   "       burnish -help | -version";
 
@@ -82,6 +83,8 @@ static void CommandLineCheck(CommandLine *line)
     CommandLineComplain(line, "goes without -check and -mesh", "-restart");
   if (line->mode == COMMAND_IMPORT && (line->restart || line->directory || line->n_set))
     CommandLineComplain(line, "goes with a deck and the name of a scene only", "-import");
+  if (line->mode == COMMAND_EVALUATE && (line->restart || line->directory || line->n_set))
+    CommandLineComplain(line, "goes with the directory of a run and a file of probes only", "-evaluate");
   if (line->mode == COMMAND_EXPLAIN && line->scene) CommandLineComplain(line, "goes without a scene", "-explain");
   if (!line->restart && !line->scene && line->mode != COMMAND_IMPORT && line->mode != COMMAND_EXPLAIN)
     CommandLineComplain(line, "no scene file", "command line");
@@ -115,6 +118,9 @@ static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
   } else if (!strcmp(word, "-import")) {
     line->mode = COMMAND_IMPORT;
     line->deck = CommandLineValue(line, argc, argv, i, "needs a deck of Abaqus or CalculiX (.inp)");
+  } else if (!strcmp(word, "-evaluate")) {
+    line->mode    = COMMAND_EVALUATE;
+    line->results = CommandLineValue(line, argc, argv, i, "needs the directory of a run");
   } else if (!strcmp(word, "-explain")) {
     line->mode = COMMAND_EXPLAIN;
     line->code = CommandLineValue(line, argc, argv, i, "needs the code at the end of a message, such as B202, or all");
@@ -227,6 +233,7 @@ void CommandLineHelp(FILE *file)
         "  burnish -check SCENE.yaml          reads, meshes, validates and reports; solves nothing\n"
         "  burnish -mesh SCENE.yaml           only makes the mesh file\n"
         "  burnish -import DECK.inp           makes a scene and a mesh of a deck of Abaqus or CalculiX\n"
+        "  burnish -evaluate DIR PROBES.yaml  finds more probes of a finished run in its results\n"
         "  burnish -explain CODE              says what a message that ends with this code means\n"
         "  burnish -help | -version\n\n"
         "  -o DIR           where results go (default out/NAME)\n"

@@ -9,12 +9,13 @@
 
 #define BURNISH_VERSION "0.1.0"
 
-typedef enum { COMMAND_RUN, COMMAND_CHECK, COMMAND_MESH, COMMAND_IMPORT, COMMAND_EXPLAIN, COMMAND_HELP, COMMAND_VERSION } CommandMode;
+typedef enum { COMMAND_RUN, COMMAND_CHECK, COMMAND_MESH, COMMAND_IMPORT, COMMAND_EVALUATE, COMMAND_EXPLAIN, COMMAND_HELP, COMMAND_VERSION } CommandMode;
 
 typedef struct {
   CommandMode mode;
   char       *scene;      /* path of the scene file, or NULL */
   char       *deck;       /* value of -import, or NULL */
+  char       *results;    /* value of -evaluate, or NULL */
   char       *code;       /* value of -explain, or NULL */
   char       *directory;  /* value of -o, or NULL */
   char       *restart;    /* value of -restart, or NULL */
