@@ -1,8 +1,9 @@
 """Curves of a run from its steps.csv, without a display: what the probes say, iterations, penetration and penalty, the
 load step.
 
-    build/venv/bin/python scripts/plot.py out/pipe_pinch              # steps.png in that folder build/venv/bin/python
-    scripts/plot.py out/pipe_pinch out/other    # several runs in one picture, steps.png in the first folder
+    build/venv/bin/python scripts/plot.py out/pipe_pinch              # steps.png in that folder
+    build/venv/bin/python scripts/plot.py out/pipe_pinch out/other    # several runs in one picture, in the first folder
+    build/venv/bin/python scripts/plot.py out/pipe_pinch --x crown_uy  # over a probe, such as a displacement
 """
 import argparse
 import pathlib
@@ -13,6 +14,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy
+from matplotlib.ticker import LogFormatterSciNotation
 
 from launch import read_steps, read_summary
 
@@ -20,15 +22,15 @@ MARKERS = "os^Dv<>*"
 
 
 def curve(axes, run, column, label=None, place=0, **style):
-    """A column over the load parameter, where it has values."""
+    """A column over the load parameter or the probe of --x, where it has values."""
     steps = run["steps"]
     values = steps.get(column, numpy.full(len(steps["t"]), numpy.nan))
     if numpy.isfinite(values).any():
-        axes.plot(steps["t"], values, marker=MARKERS[place % len(MARKERS)], markersize=3.5, linewidth=1.2, label=label
+        axes.plot(steps[run["x"]], values, marker=MARKERS[place % len(MARKERS)], markersize=3.5, linewidth=1.2, label=label
                   or column.replace("_", " "), **style)
 
 
-def finish(axes, title, log=False):
+def finish(axes, title, log=False, x="t"):
     """An empty panel says so instead of showing axes without meaning."""
     if not axes.lines:
         axes.text(0.5, 0.5, "no values", ha="center", va="center", transform=axes.transAxes, color="0.5")
@@ -36,8 +38,10 @@ def finish(axes, title, log=False):
         axes.legend(fontsize=7)
     if log and any(numpy.nanmax(line.get_ydata()) > 0 for line in axes.lines):
         axes.set_yscale("log", nonpositive="mask")
+        for each in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):  # narrow ranges need digits
+            each(LogFormatterSciNotation(minor_thresholds=(1, 0.5), labelOnlyBase=False))
     axes.set_title(title, fontsize=10)
-    axes.set_xlabel("load parameter t", fontsize=8)
+    axes.set_xlabel("load parameter t" if x == "t" else x, fontsize=8)
     axes.tick_params(labelsize=8)
     axes.grid(alpha=0.3)
 
@@ -70,10 +74,15 @@ def read(directory):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directories", nargs="+", help="results of runs")
+    parser.add_argument("--x", default="t", metavar="COLUMN", help="of steps.csv, such as a probe; default: t")
     parser.add_argument("-o", dest="file", type=pathlib.Path,
                         help="file to write; default: steps.png in the first folder")
     options = parser.parse_args()
     runs = [read(directory) for directory in options.directories]
+    for run in runs:
+        run["x"] = options.x
+        if options.x not in run["steps"]:
+            sys.exit(f"plot.py: {run['name']} has no column '{options.x}'; allowed: {', '.join(run['steps'])}")
     probes = list(dict.fromkeys(probe for run in runs for probe in run["probes"]))
     columns = 3
     rows = -(-(6 + len(probes)) // columns)
@@ -92,7 +101,7 @@ def main():
                ("contact force", False)]
     titles += [("penetration", True), ("penalty", True)]
     for axes, (title, log) in zip(panels, titles):
-        finish(axes, title, log)
+        finish(axes, title, log, options.x)
     for axes in panels[len(titles) :]:
         axes.remove()
     figure.suptitle(", ".join(dict.fromkeys(run["title"] for run in runs)))

@@ -68,6 +68,8 @@ FULL = {
     "build/burnish -check runs/pipe_pinch.yaml": None,
     "build/burnish -mesh runs/pipe_pinch.yaml": None,
     f"{PYTHON} scripts/plot.py out/pipe_pinch": None,
+    f"{PYTHON} scripts/plot.py out/pipe_pinch --x crown_gap": None,
+    f"{PYTHON} scripts/report.py out/pipe_pinch --mirror xy": None,
     f"{PYTHON} scripts/plot.py out/stiff out/adjusted out/augmented": None,
     f"{PYTHON} scripts/render.py out/pipe_pinch --mirror xy": None,
     f"{PYTHON} scripts/render.py out/pipe_pinch --field uy --step 10 --view=60,15": None,
