@@ -218,34 +218,9 @@ static void StressIsThatOfTheLane(void **unused)
   }
 }
 
-/* Enhanced elements that a step bends and shears by far more than they yield at find their modes, as trial steps of
-   Newton's method ask for. */
-static void ModesAreFoundInLargeSteps(void **unused)
-{
-  static const KernelCase cases[] = {{.type = ELEMENT_QUAD4, .geometry = GEOMETRY_PLANE_STRAIN},
-                                     {.type = ELEMENT_QUAD4, .geometry = GEOMETRY_AXISYMMETRIC},
-                                     {.type = ELEMENT_HEX8, .geometry = GEOMETRY_SOLID}};
-  static const Hardening  flat    = {.yield = 0.3, .linear = 1};
-
-  (void)unused;
-  for (size_t c = 0; c < 20 * sizeof cases / sizeof *cases; c++) {
-    KernelCase kernel = cases[c % (sizeof cases / sizeof *cases)];
-    Batch      b;
-
-    kernel.kinematics  = KINEMATICS_FINITE;
-    kernel.law         = MATERIAL_VON_MISES;
-    kernel.formulation = FORMULATION_ENHANCED;
-    BatchCreate(&b, kernel, &flat);
-    for (int k = 0; k < b.dofs * KERNEL_LANES; k++) b.u[k] = 0.25 * Random();
-    Evaluate(&b, b.W, b.f, NULL);
-    for (int lane = 0; lane < KERNEL_LANES; lane++) assert_true(b.J[lane] > 0);
-  }
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(ModesAreFoundInLargeSteps),
     cmocka_unit_test(ForceAndTangentAreDerivatives),
     cmocka_unit_test(AcceptedStateStays),
     cmocka_unit_test(StressIsThatOfTheLane),
