@@ -121,10 +121,11 @@ void ContactNoteTunnelled(ContactPair *pair, PetscReal t)
 
   Note:
   Another part of the master, in front of the node, has become the nearest one, and the node is still behind the
-  first.
+  first. An analytic surface has no other part: a tool of that shape that leaves is not among what moved.
 @*/
 void ContactNoteJumps(ContactPair *pair, PetscReal motion)
 {
+  if (!pair->master) return;
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
     const PetscReal   jump = pair->now.gap[c] - pair->accepted.gap[c];
     const ContactLost lost = {-pair->accepted.gap[c], pair->now.gap[c], pair->size[c], pair->node[c]};

@@ -11,7 +11,9 @@
    120, 2019. Axisymmetric elements have one more mode for the hoop strain, w = xi eta (Simo and Rifai 1990).
 
    Every call solves for the b_I by Newton's method in the element, from b = 0, and condenses them. Energy, force and
-   tangent are thus functions of u alone. A state that is returned to after a cutback gives the same numbers. */
+   tangent are thus functions of u alone. A state that is returned to after a cutback gives the same numbers. The b_I
+   are at a minimum of the element's energy. A step of Newton's method lowers it even where the tangent of the modes is
+   not positive definite, and is shortened where it goes beyond a minimum: plastic flow makes both happen. */
 #include "elementbatch.h"
 #include <math.h>
 #include <stddef.h>
@@ -34,6 +36,14 @@ static const double strain_round_off = 1e-14, energy_round_off = 1e-13;
 /* Square of a strain that is negligible, for elements that have no energy. It is far above the round-off of
    displacements and far below any strain of interest. */
 static const double converged_strain2 = 1e-20;
+
+/* Least amount of a pivot, as a part of the entry on the diagonal that it came from. */
+static const double least_pivot = 1e-6;
+
+/* A step along which more than this part of the derivative of the energy is left is shortened. */
+static const double slope_left = 0.5;
+/* Least part of an interval that the next step keeps from both its ends. */
+static const double least_part = 0.1;
 
 /* Mode k is component J of vector I. The hoop mode is the only one in the third direction. A mode acts on the space
    components from FIRST to END. */
@@ -174,6 +184,32 @@ LANES_INLINE void Factor(const int modes, Lanes K[MAX_MODES][MAX_MODES])
   }
 }
 
+/* Factors as Factor() does, but takes the amounts of the pivots. A step along -K^-1 f then lowers the energy with the
+   gradient f, even where K is not positive definite. */
+LANES_INLINE void FactorPositive(const int modes, Lanes K[MAX_MODES][MAX_MODES])
+{
+  Lanes least[MAX_MODES];
+
+  for (int k = 0; k < modes; k++) {
+    for (int lane = 0; lane < LANES; lane++) least[k][lane] = least_pivot * fabs(K[k][k][lane]);
+  }
+#pragma GCC unroll 9
+  for (int k = 0; k < modes; k++) {
+    Lanes pivot;
+
+    for (int lane = 0; lane < LANES; lane++) pivot[lane] = fmax(fabs(K[k][k][lane]), least[k][lane]);
+    K[k][k] = 1 / pivot;
+#pragma GCC unroll 9
+    for (int i = k + 1; i < modes; i++) {
+      const Lanes u = K[k][i] * K[k][k];
+
+#pragma GCC unroll 9
+      for (int j = i; j < modes; j++) K[i][j] -= u * K[k][j];
+    }
+    for (int i = k + 1; i < modes; i++) K[k][i] *= K[k][k];
+  }
+}
+
 /* y = U^-T y */
 LANES_INLINE void SolveLower(const int modes, Lanes K[MAX_MODES][MAX_MODES], Lanes y[MAX_MODES])
 {
@@ -218,46 +254,79 @@ LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int 
     for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x->c.A[q][k] *= x->volume[q];
     AddModeTangent(dim, hoop, x, q, T, K);
   }
-  if (renew) Factor(modes, K);
+  if (renew) FactorPositive(modes, K);
 }
 
-/* State of Newton's method for the modes of each lane */
+/* State of Newton's method for the modes of each lane. A step goes from the last accepted modes along STEP; b is at the
+   part AT of it. */
 typedef struct {
-  Lanes W;               /* energy at the last point that was better than the one before */
-  Lanes gone[MAX_MODES]; /* step from that point to b */
-  Lanes active;          /* 1 while the lane has not converged, else 0 */
-  Lanes scale;           /* energy of a negligible strain */
+  Lanes W, slope; /* energy and its derivative along the step where the step starts */
+  Lanes step[MAX_MODES];
+  Lanes at;
+  Lanes low, high; /* parts of the step with a minimum between them; high: 0 if none is known */
+  Lanes low_slope, high_slope;
+  Lanes active; /* 1 while the lane has not converged, else 0 */
+  Lanes scale;  /* energy of a negligible strain */
 } ModesState;
 
-/* A lane whose energy fell takes the correction d, which was computed from the force f. A lane whose energy rose goes
-   back by half of its last step. A lane that has converged does not change. Returns how many have not converged. */
-LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const Lanes *d, ModesState *modes_state,
-                         Enhanced *x)
+/* The next part of the step of a lane, by the derivatives at both ends of what it is known to lie in. */
+static inline double NextPart(const ModesState *m, int lane)
+{
+  const double fall = m->low_slope[lane], rise = m->high_slope[lane];
+  double       part = rise > 0 ? fall / (fall - rise) : 0.5;
+
+  part = fmin(fmax(part, least_part), 1 - least_part);
+  return m->low[lane] + part * (m->high[lane] - m->low[lane]);
+}
+
+/* Whether the modes of a lane are good enough to start the next step from them. Where energies are equal but for
+   round-off they are. Else the energy must have fallen, and little of its derivative along the step may be left, unless
+   the whole step was too short. Steps in which plastic flow sets in or ends go too far. W and slope are of
+   the modes that are there. */
+static inline int StepIsGood(const ModesState *m, int lane, double W, double slope, double round_off)
+{
+  if (fabs(W - m->W[lane]) <= round_off) return 1;
+  if (!(W <= m->W[lane])) return 0;
+  return slope <= -slope_left * m->slope[lane] && (m->high[lane] == 0 || slope >= slope_left * m->slope[lane]);
+}
+
+/* A lane whose step was good takes the correction d, which was computed from the force f, as its next step. Others go
+   back on their last step. A lane that has converged does not change. Returns how many have not converged. */
+LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const Lanes *d, ModesState *m, Enhanced *x)
 {
   int left = 0;
 
   for (int lane = 0; lane < LANES; lane++) {
-    const double before = modes_state->W[lane], scale = modes_state->scale[lane];
+    const double before = m->W[lane], now = (*W)[lane], scale = m->scale[lane], at = m->at[lane];
     const double round_off = energy_round_off * before + strain_round_off * sqrt(scale / converged_strain2 * before);
-    double       work      = 0; /* twice the energy that the correction releases */
+    double       slope = 0, work = 0; /* work: twice the energy that the correction releases */
 
-    if (modes_state->active[lane] == 0) continue;
-    if ((*W)[lane] > before + round_off + scale) {
-      for (int k = 0; k < modes; k++) {
-        modes_state->gone[k][lane] /= 2;
-        x->b[k][lane] -= modes_state->gone[k][lane];
+    if (m->active[lane] == 0) continue;
+    for (int k = 0; k < modes; k++) slope += f[k][lane] * m->step[k][lane];
+    if (at > 0 && !StepIsGood(m, lane, now, slope, round_off + scale)) {
+      if (now <= before && slope < 0) {
+        m->low[lane]       = at;
+        m->low_slope[lane] = slope;
+      } else {
+        m->high[lane]       = at;
+        m->high_slope[lane] = slope;
       }
+      m->at[lane] = NextPart(m, lane);
+      for (int k = 0; k < modes; k++) x->b[k][lane] += (m->at[lane] - at) * m->step[k][lane];
       left++;
       continue;
     }
-    modes_state->W[lane] = (*W)[lane];
+    m->W[lane]   = now;
+    m->at[lane]  = 1;
+    m->low[lane] = m->high[lane] = 0;
     for (int k = 0; k < modes; k++) {
-      modes_state->gone[k][lane] = -d[k][lane];
+      m->step[k][lane] = -d[k][lane];
       x->b[k][lane] -= d[k][lane];
-      work += fabs(f[k][lane] * d[k][lane]);
+      work += f[k][lane] * d[k][lane];
     }
-    modes_state->active[lane] = !(work <= converged_energy * (*W)[lane] + scale);
-    left += modes_state->active[lane] != 0;
+    m->slope[lane] = m->low_slope[lane] = -work;
+    m->active[lane]                     = !(work <= converged_energy * now + scale);
+    left += m->active[lane] != 0;
   }
   return left;
 }
@@ -268,7 +337,7 @@ LANES_INLINE void SolveModes(const BatchCall *call, const int points, const int 
 {
   const int  modes       = dim * dim + hoop;
   const int  iterates    = call->finite || call->state;
-  ModesState modes_state = {.W = (Lanes){0} + __DBL_MAX__, .active = (Lanes){0} + 1};
+  ModesState modes_state = {.active = (Lanes){0} + 1};
   int        left        = LANES;
   Lanes      K[MAX_MODES][MAX_MODES], mu;
 

@@ -240,6 +240,7 @@ static PetscErrorCode ModelTakePart(Model model)
 static PetscErrorCode ModelStart(Model model, SolveReport *report)
 {
   PetscFunctionBeginUser;
+  model->work->unsettled = PETSC_FALSE;
   if (model->work->looked_ahead)
     PetscCall(ModelTakePart(model));
   else
@@ -291,9 +292,9 @@ static PetscErrorCode ModelLag(Model model, PetscInt times, PetscReal *lag)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves with frozen contact lists until the lists hold at the solution. Where offsets lag, lists mostly change after the
-   first solution. Solutions are then found loosely, until lists hold at one of them; from there the solve goes on to
-   the tolerance. Not so with friction, as what sticks and what slips is not known before. */
+/* Solves with frozen contact lists until the lists hold at the solution. Where offsets lag, lists mostly change after
+   the first solution. Solutions are then found loosely, until lists hold at one of them; from there the solve goes on
+   to the tolerance. Not so with friction, as what sticks and what slips is not known before. */
 static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
   ModelWork *work = model->work;
@@ -303,7 +304,8 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 
   PetscFunctionBeginUser;
   work->renewed = 0;
-  work->loosely = (PetscBool)(model->contact && ContactOffsetsLag(model->contact) && !ContactHasFriction(model->contact));
+  work->loosely =
+    (PetscBool)(model->contact && ContactOffsetsLag(model->contact) && !ContactHasFriction(model->contact));
   while (!hold && report->result == SOLVE_CONVERGED) {
     work->left = PETSC_FALSE;
     before     = report->newton;

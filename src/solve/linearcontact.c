@@ -62,10 +62,10 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
   PetscCall(LocalChange(model, y, -1, carried, s->du));
   PetscCall(ContactStepCreate(model->contact, u, s->du, t, model->t, &s->contact));
   PetscCall(ContactStepGetTerms(s->contact, &s->n, &terms));
-  s->all  = s->n * ContactStepParts(s->contact);
+  s->all = s->n * ContactStepParts(s->contact);
   PetscCall(VecGetSize(model->x, &size));
-  s->most = PetscMax(LINEAR_CONTACT_TERMS * ContactStepParts(s->contact),
-                     (PetscInt)(LINEAR_CONTACT_CHEAP / PetscMax(1, size)));
+  s->most =
+    PetscMax(LINEAR_CONTACT_TERMS * ContactStepParts(s->contact), (PetscInt)(LINEAR_CONTACT_CHEAP / PetscMax(1, size)));
   PetscCall(PetscMalloc1(s->all, &s->travel));
   PetscCall(ContactStepChange(s->contact, s->du, t, model->t, s->travel));
   if (!s->rank) PetscCall(ActiveSetCreate(s->n, ContactStepParts(s->contact), s->most, terms, s->travel, &s->active));
@@ -249,6 +249,7 @@ PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const Pe
   LinearContact s;
 
   PetscFunctionBeginUser;
+  model->work->unsettled = PETSC_FALSE;
   if (!model->contact || LinearCheckLost(model->linear)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LinearSolverDirect(model->work->solver, &able));
   if (!able) PetscFunctionReturn(PETSC_SUCCESS);
@@ -260,6 +261,7 @@ PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const Pe
     if (m) PetscCall(LinearContactAdd(model, &s, m, which, &able));
   }
   if (converged) PetscCall(LinearContactTake(model, carried, t, &s, y, &converged));
+  model->work->unsettled = (PetscBool)!converged;
   PetscCall(PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s\n", s.n, s.m,
                       converged ? "settled" : "left to the next iteration"));
   PetscCall(PetscFree(which));

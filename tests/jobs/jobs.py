@@ -220,6 +220,9 @@ JOBS = [
     Job("bead_pressed", "bead pressed into a strip over a groove", [
         Answer("draw", -5.444, 0.05, "limit"),
     ], steps=25, pairs=2, picture=["--mirror", "x"], stiff=["mesh.order=1", "stepping.dt_max=0.02"]),
+    Job("plate_bent", "plate with a hole bent over rolls and released", [
+        Answer("end_z", 1.066, 0.2, "limit"),
+    ], steps=12, pairs=2, stiff=["stepping.plastic_strain=0.03"]),
     Job("pipe_flared", "pipe end flared on a cone", [
         Answer("rim", 3.940, 0.07, "limit"),
     ], steps=35, picture=["--mirror", "x"], stiff=["stepping.dt_max=0.02"]),

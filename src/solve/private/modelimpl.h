@@ -70,8 +70,8 @@ typedef struct _n_ModelWork {
 
   PenaltyError *penalty_error; /* of each pair, once the load is at its end */
   /* Of each pair for penetration, then of each for elastic slip: */
-  PetscReal    *stiffened_at;  /* its worst estimate when this solve stiffened it for it last; 0: it has not */
-  PetscReal    *stiffened_by;  /* the factor by which it did; negative: that brought too little, and it stays */
+  PetscReal *stiffened_at; /* its worst estimate when this solve stiffened it for it last; 0: it has not */
+  PetscReal *stiffened_by; /* the factor by which it did; negative: that brought too little, and it stays */
 
   /* A look-ahead from the accepted state */
   Vec       look_ahead; /* free displacements at look_ahead_t by ModelLookAhead() */
@@ -82,6 +82,7 @@ typedef struct _n_ModelWork {
   /* The load step at hand */
   PetscBool adrift;       /* a body that only contact could hold meets none on the way of its load */
   PetscBool extrapolated; /* the prediction started from the extrapolated state */
+  PetscBool unsettled;    /* the contact at the end of the last linear step was not found */
   PetscReal start;        /* residual norm where Newton's method started; 0: it has not started */
   PetscReal energy;       /* the last energy that the line search evaluated; 0: none */
   PetscInt  renewed;      /* times that a slave point slid out of its lists and new lists were made */
