@@ -8,8 +8,9 @@
 /* Cosine of the angle, 10 degrees, by which the slip of a node may turn within a step: the step is straight, and its
    end gives the direction of all of it. */
 #define FRICTION_TURN 0.984807753012208
-/* A term that was accepted in contact and is open now, by more than its depth over this, has only touched with a depth of
-   round-off. New lists open terms with little pressure too, by up to some times their depth: these were in contact. */
+/* A term that was accepted in contact and is open now, by more than its depth over this, has only touched with a depth
+   of round-off. New lists open terms with little pressure too, by up to some times their depth: these were in contact.
+ */
 #define FRICTION_TOUCH 1e-6
 /* A penalty of what sticks below this part of the automatic one comes from pressures that are round-off, as of bodies
    that touch without a load. */
@@ -164,8 +165,8 @@ static PetscReal DiagonalOfFacet(const ContactPair *pair, PetscInt q, int number
 }
 
 /* Says whether facet i, with a foot at a distance, serves slave point q better than the facet that serves it now at
-   another distance. Both are as far outside. On a common edge the one with the lower tag serves, on any number of ranks:
-   the point of a plane of symmetry has a face on either side. */
+   another distance. Both are as far outside. On a common edge the one with the lower tag serves, on any number of
+   ranks: the point of a plane of symmetry has a face on either side. */
 static PetscBool ServesBetter(const ContactPair *pair, PetscInt q, int i, PetscReal distance, PetscReal other)
 {
   const NeighbourLists lists = pair->lists;
@@ -194,7 +195,8 @@ static PetscBool FindFoot(const ContactPair *pair, PetscInt q, const PetscReal n
 
     if (!FootOnFacet(pair, q, i, normal, &foot)) continue;
     outside = PetscMax(foot.outside, FRICTION_ON_FACE);
-    if (outside > least || (outside == least && !ServesBetter(pair, q, i, foot.distance, f->foot[q].distance))) continue;
+    if (outside > least) continue;
+    if (outside == least && !ServesBetter(pair, q, i, foot.distance, f->foot[q].distance)) continue;
     least       = outside;
     f->facet[q] = i;
     f->foot[q]  = foot;
@@ -487,9 +489,9 @@ static void KeepTraction(ContactPair *pair, PetscInt c, PetscReal t, FrictionInp
   }
 }
 
-/* How far a term is open where its step begins, 0 where it is in contact. A term that only touches, after a body has been
-   moved into contact for instance, is open if it is so now: whether rounding lets it touch depends on the number of
-   ranks. */
+/* How far a term is open where its step begins, 0 where it is in contact. A term that only touches, after a body has
+   been moved into contact for instance, is open if it is so now: whether rounding lets it touch depends on the number
+   of ranks. */
 static PetscReal TermOpening(const ContactPair *pair, PetscInt c, const LawState *state)
 {
   const ContactState *accepted = &pair->accepted;
