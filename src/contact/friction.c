@@ -2,11 +2,16 @@
 #include "contactimpl.h"
 #include "mesh/mesh.h"
 
-/* A foot that is outside of its reference face by less than this is on it: rounding. */
+/* A foot that is outside of its reference face by less than this is on it: rounding. Feet on two faces whose distances
+   differ by less than this part of a face are one place on their common edge. */
 #define FRICTION_ON_FACE 1e-9
 /* Cosine of the angle, 10 degrees, by which the slip of a node may turn within a step: the step is straight, and its
    end gives the direction of all of it. */
 #define FRICTION_TURN 0.984807753012208
+/* A term that was accepted in contact and is open now, by more than its depth over this, has only touched with a depth
+   of round-off. New lists open terms with little pressure too, by up to some times their depth: these were in contact.
+ */
+#define FRICTION_TOUCH 1e-6
 /* A penalty of what sticks below this part of the automatic one comes from pressures that are round-off, as of bodies
    that touch without a load. */
 #define FRICTION_SLIGHT 1e-6
@@ -138,13 +143,47 @@ static PetscBool FootOnFacet(const ContactPair *pair, PetscInt q, int number, co
   return FrictionFootFind(dim, facet->type, x, normal, foot) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Length of the diagonal of a facet of the list of slave point q, in its reference shape. */
+static PetscReal DiagonalOfFacet(const ContactPair *pair, PetscInt q, int number)
+{
+  const NeighbourLists lists  = pair->lists;
+  const Facet         *facet  = &lists->facet[lists->facet_ptr[q] + number];
+  PetscReal            square = 0;
+
+  for (int d = 0; d < lists->dim; d++) {
+    PetscReal low = PETSC_MAX_REAL, high = PETSC_MIN_REAL;
+
+    for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
+      const PetscReal X = lists->point_X[lists->list_point[lists->list_ptr[q] + facet->nodes[a]] * lists->dim + d];
+
+      low  = PetscMin(low, X);
+      high = PetscMax(high, X);
+    }
+    square += PetscSqr(high - low);
+  }
+  return PetscSqrtReal(square);
+}
+
+/* Says whether facet i, with a foot at a distance, serves slave point q better than the facet that serves it now at
+   another distance. Both are as far outside. On a common edge the one with the lower tag serves, on any number of
+   ranks: the point of a plane of symmetry has a face on either side. */
+static PetscBool ServesBetter(const ContactPair *pair, PetscInt q, int i, PetscReal distance, PetscReal other)
+{
+  const NeighbourLists lists = pair->lists;
+  const Facet         *facet = &lists->facet[lists->facet_ptr[q]];
+  const PetscReal      tie   = FRICTION_ON_FACE * DiagonalOfFacet(pair, q, i);
+
+  if (PetscAbsReal(distance - other) <= tie) return (PetscBool)(facet[i].tag < facet[pair->friction->facet[q]].tag);
+  return (PetscBool)(PetscAbsReal(distance) < PetscAbsReal(other));
+}
+
 /* Finds the foot of slave point q over the facets of its list: the one that the line hits, or else comes nearest to. */
 static PetscBool FindFoot(const ContactPair *pair, PetscInt q, const PetscReal normal[3])
 {
   const NeighbourLists lists = pair->lists;
   Friction             f     = pair->friction;
   const int            n     = (int)(lists->facet_ptr[q + 1] - lists->facet_ptr[q]);
-  PetscReal            least = PETSC_MAX_REAL, away = PETSC_MAX_REAL;
+  PetscReal            least = PETSC_MAX_REAL;
 
   if (f->facet[q] >= 0 && FootOnFacet(pair, q, f->facet[q], normal, &f->foot[q]) &&
       f->foot[q].outside <= FRICTION_ON_FACE)
@@ -152,14 +191,13 @@ static PetscBool FindFoot(const ContactPair *pair, PetscInt q, const PetscReal n
   f->facet[q] = -1;
   for (int i = 0; i < n; i++) {
     FrictionFoot foot;
-    PetscReal    outside, distance;
+    PetscReal    outside;
 
     if (!FootOnFacet(pair, q, i, normal, &foot)) continue;
-    outside  = PetscMax(foot.outside, FRICTION_ON_FACE);
-    distance = PetscAbsReal(foot.distance);
-    if (outside > least || (outside == least && distance >= away)) continue;
+    outside = PetscMax(foot.outside, FRICTION_ON_FACE);
+    if (outside > least) continue;
+    if (outside == least && !ServesBetter(pair, q, i, foot.distance, f->foot[q].distance)) continue;
     least       = outside;
-    away        = distance;
     f->facet[q] = i;
     f->foot[q]  = foot;
   }
@@ -314,6 +352,8 @@ static PetscErrorCode AnchorPoint(ContactPair *pair, PetscInt q, PetscReal t)
     f->face[q] = 0;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  f->facet[q] = -1; /* the anchor does not depend on where the foot has been before */
+  f->known[q] = PETSC_FALSE;
   PetscCall(FrictionPointFoot(pair, q, &foot, &found));
   if (!found) PetscFunctionReturn(PETSC_SUCCESS);
   f->face[q] = pair->lists->facet[pair->lists->facet_ptr[q] + f->facet[q]].tag;
@@ -449,13 +489,25 @@ static void KeepTraction(ContactPair *pair, PetscInt c, PetscReal t, FrictionInp
   }
 }
 
+/* How far a term is open where its step begins, 0 where it is in contact. A term that only touches, after a body has
+   been moved into contact for instance, is open if it is so now: whether rounding lets it touch depends on the number
+   of ranks. */
+static PetscReal TermOpening(const ContactPair *pair, PetscInt c, const LawState *state)
+{
+  const ContactState *accepted = &pair->accepted;
+  const PetscReal     opening  = ContactTermGap(pair, pair->factor, pair->point_gap, c, NULL) - LawOnsetGap(state);
+  const PetscReal     depth    = LawOnsetGap(state) - accepted->gap[c];
+  const PetscBool     closed   = (PetscBool)(accepted->status[c] != CONTACT_OPEN && depth >= FRICTION_TOUCH * opening);
+
+  return opening > 0 && !closed ? opening : 0;
+}
+
 /* Begins the step of a term. */
 static PetscErrorCode BeginTerm(ContactPair *pair, PetscInt c, PetscReal t)
 {
   Friction       f     = pair->friction;
   const LawState state = ContactTermState(pair, c, t, pair->most);
   FrictionInput  in    = {.stiffness = 0};
-  PetscReal      opening;
 
   PetscFunctionBeginUser;
   f->began[c] = 0;
@@ -463,8 +515,7 @@ static PetscErrorCode BeginTerm(ContactPair *pair, PetscInt c, PetscReal t)
   f->guide[c] = FrictionTermGuide(pair, c);
   PetscCall(TermSlip(pair, c, t, &in, &f->anchored[c]));
   if (!f->anchored[c]) PetscFunctionReturn(PETSC_SUCCESS);
-  opening     = ContactTermGap(pair, pair->factor, pair->point_gap, c, NULL) - LawOnsetGap(&state);
-  f->began[c] = pair->accepted.status[c] == CONTACT_OPEN && opening > 0 ? opening : 0;
+  f->began[c] = TermOpening(pair, c, &state);
   KeepTraction(pair, c, t, &in);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -24,8 +24,10 @@ CASES = {
     "belt": (SCENES / "belt.yaml", ["mesh.parameters.n=24"], BOTH),
     "mindlin_line": (RUNS / "mindlin_line.yaml", ["mesh.parameters.n=4", "stepping.initial=0.1"], ALL),
     "mindlin_sphere": (RUNS / "mindlin_sphere.yaml", ["mesh.parameters.n=2"], BOTH),
-    "plate_greco": (RUNS / "plate_greco.yaml", ["mesh.parameters={n: 12, m: 12}"], BOTH),
-    "punch_rounded": (RUNS / "punch_rounded.yaml", ["mesh.parameters.h=4"], ALL),
+    "plate_greco": (RUNS / "plate_greco.yaml", [
+        "mesh.parameters={n: 12, m: 12}", "probes=[{name: u_0, displacement: [0, 0], component: x}]"
+    ], BOTH),
+    "punch_rounded": (RUNS / "punch_rounded.yaml", ["mesh.parameters.h=4", "solver.tolerance=1e-11"], ALL),
     "die": (SCENES / "die.yaml", ["stepping.initial=0.125"], ALL),
 }
 TOLERANCE = 1e-8
