@@ -287,7 +287,7 @@ static PetscBool VolumeIsStiff(Scene scene, PetscInt body)
   return (PetscBool)(moduli.kappa < moduli.projected);
 }
 
-/* Counts the multipliers, and makes room for those of the present, the accepted and a kept state. A mixed group has some
+/* Counts the multipliers, and makes room for those of the present, the accepted and the kept states. A mixed group has some
    if the volume of one of its cells is too stiff. */
 static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
 {
@@ -313,8 +313,12 @@ static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
     if (some) n += g->n_batches * ElementPressures(&g->kernel) * KERNEL_LANES;
   }
   PetscCall(PetscFree(stiff));
-  e->state.n = e->accepted.n = e->kept.n = n;
-  PetscCall(PetscCalloc3(n, &e->state.multiplier, n, &e->accepted.multiplier, n, &e->kept.multiplier));
+  e->state.n = e->accepted.n = n;
+  PetscCall(PetscCalloc2(n, &e->state.multiplier, n, &e->accepted.multiplier));
+  for (int k = 0; k < VOLUMES_KEPT; k++) {
+    e->kept[k].n = n;
+    PetscCall(PetscCalloc1(n, &e->kept[k].multiplier));
+  }
   PetscCall(PetscMalloc1(n_yielding, &e->yielding));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -405,7 +409,8 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   PetscCall(PetscFree(e->column));
   PetscCall(PetscFree(e->value));
   PetscCall(PetscFree(e->buffer));
-  PetscCall(PetscFree3(e->state.multiplier, e->accepted.multiplier, e->kept.multiplier));
+  PetscCall(PetscFree2(e->state.multiplier, e->accepted.multiplier));
+  for (int k = 0; k < VOLUMES_KEPT; k++) PetscCall(PetscFree(e->kept[k].multiplier));
   PetscCall(PetscFree(e->yielding));
   PetscCall(PetscFree(e->enclosed.body));
   PetscCall(NodeMatrixDestroy(&e->matrix));

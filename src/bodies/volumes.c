@@ -265,13 +265,14 @@ PetscErrorCode ElasticityRestore(Elasticity e)
 
   Not collective
 
-  Input Parameter:
-. e - the elasticity
+  Input Parameters:
++ e     - the elasticity
+- state - which of the states on the way this is
 @*/
-PetscErrorCode ElasticityKeep(Elasticity e)
+PetscErrorCode ElasticityKeep(Elasticity e, VolumesKept state)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(e->kept.multiplier, e->state.multiplier, e->state.n));
+  PetscCall(PetscArraycpy(e->kept[state].multiplier, e->state.multiplier, e->state.n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -280,13 +281,14 @@ PetscErrorCode ElasticityKeep(Elasticity e)
 
   Not collective
 
-  Input Parameter:
-. e - the elasticity
+  Input Parameters:
++ e     - the elasticity
+- state - which of the states on the way
 @*/
-PetscErrorCode ElasticityReturn(Elasticity e)
+PetscErrorCode ElasticityReturn(Elasticity e, VolumesKept state)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(e->state.multiplier, e->kept.multiplier, e->state.n));
+  PetscCall(PetscArraycpy(e->state.multiplier, e->kept[state].multiplier, e->state.n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

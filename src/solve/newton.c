@@ -193,15 +193,14 @@ static PetscErrorCode ModelReference(Model model, StressReference *reference)
 }
 
 /* Lets the multipliers of incompressible bodies take part in Newton's iteration: their pressures become those of the
-   linear step that led to the iterate, and the residual of SNES is that of these pressures. Without an energy the line
-   search compares residuals, and SNES knows the norm of the one before. The multipliers then change after solves only.
-   They did so just now where the iterate is a solution. */
+   linear step that led to the iterate, and the residual of SNES is that of these pressures. They have changed already
+   where the iterate is a solution. */
 static PetscErrorCode ModelFollow(Model model, Vec x, StressReference *reference)
 {
   Vec F;
 
   PetscFunctionBeginUser;
-  if (!ElasticityAugments(model->problem->elasticity) || !LoadsConservative(model->problem->loads))
+  if (!ElasticityAugments(model->problem->elasticity))
     PetscFunctionReturn(PETSC_SUCCESS);
   if (!model->work->augmented) {
     PetscCall(ElasticityFollow(model->problem->elasticity, model->problem->trial, reference));

@@ -268,6 +268,7 @@ static PetscErrorCode Keep(const Search *s, PetscReal rise, PetscReal slope, Pet
   }
   PetscCall(VecCopy(s->x, step->x));
   PetscCall(VecCopy(s->y, step->y));
+  PetscCall(ElasticityKeep(s->model->problem->elasticity, VOLUMES_OF_SEARCH));
   step->waits = PETSC_TRUE;
   step->times = 0;
   step->rise  = rise;
@@ -321,7 +322,8 @@ static PetscErrorCode YieldVolumes(const Search *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Returns to the start of the step that waits, and shortens it. */
+/* Returns to the start of the step that waits, and shortens it. Pressures of exact volumes have followed the steps since,
+   and are again those with which it was found. */
 static PetscErrorCode Return(const Search *s)
 {
   ModelWork   *work = s->model->work;
@@ -333,6 +335,7 @@ static PetscErrorCode Return(const Search *s)
   PetscCall(VecCopy(step->x, s->x));
   PetscCall(VecCopy(step->y, s->y));
   PetscCall(VecCopy(step->y, work->step));
+  PetscCall(ElasticityReturn(s->model->problem->elasticity, VOLUMES_OF_SEARCH));
   PetscCall(SNESComputeFunction(s->snes, s->x, s->F));
   work->objective = OBJECTIVE_ENERGY;
   PetscCall(YieldVolumes(s));

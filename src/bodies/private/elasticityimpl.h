@@ -68,7 +68,7 @@ struct _n_Elasticity {
   PetscReal   accepted_t; /* time of the accepted plastic state */
   PetscReal   flow_dt;    /* length of the step that led there; 0: the growth in it says nothing of the next one */
   PetscBool   augments;   /* a body has multipliers, perhaps on other ranks only */
-  VolumeState state, accepted, kept;
+  VolumeState state, accepted, kept[VOLUMES_KEPT];
   PetscReal  *yielding; /* multipliers of mixed elements while energies are compared, see ElasticityYield() */
   PetscBool   yields;   /* they are */
   Enclosed    enclosed;
