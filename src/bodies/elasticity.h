@@ -58,7 +58,7 @@ PetscErrorCode ElasticityNodalPlasticStrain(Elasticity, PetscReal *strain, Petsc
 PetscInt64     ElasticityPlasticPoints(Elasticity, PetscInt64 *bytes);
 PetscErrorCode ElasticityPlasticWork(Elasticity, PetscReal *work, PetscReal *strain);
 PetscErrorCode ElasticityAugment(Elasticity, const PetscReal *u, PetscBool *holds);
-PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const StressReference *);
+PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const StressReference *, PetscReal part);
 PetscErrorCode ElasticityYield(Elasticity, const PetscReal *u, const PetscReal *next);
 PetscBool      ElasticityYields(Elasticity);
 void           ElasticityYieldSet(Elasticity, PetscBool yields);

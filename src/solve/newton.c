@@ -175,8 +175,8 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, const StressReferen
 /* The state from which the tangent at the present iterate extrapolates stresses. It is the iterate before, since
    pressure changes along a full step as the step's linear problem says. Before the first iterate that is where the
    prediction started. A shortened step has left the volumes somewhere; its pressures are those of the last equilibrium.
- */
-static PetscErrorCode ModelReference(Model model, StressReference *reference)
+   *part: of the step, that was taken. */
+static PetscErrorCode ModelReference(Model model, StressReference *reference, PetscReal *part)
 {
   ModelWork     *work = model->work;
   SNESLineSearch search;
@@ -189,13 +189,14 @@ static PetscErrorCode ModelReference(Model model, StressReference *reference)
   PetscCall(SNESLineSearchGetLambda(search, &lambda));
   if (iteration > 0) work->shortened = (PetscBool)(lambda < 1 && !work->relaxed.linear);
   *reference = work->shortened ? (StressReference){work->solved, 0, 0} : (StressReference){work->from, 1, 0};
+  *part      = iteration > 0 && !work->shortened ? lambda : 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Lets the multipliers of incompressible bodies take part in Newton's iteration: their pressures become those of the
    linear step that led to the iterate, and the residual of SNES is that of these pressures. They have changed already
    where the iterate is a solution. */
-static PetscErrorCode ModelFollow(Model model, Vec x, StressReference *reference)
+static PetscErrorCode ModelFollow(Model model, Vec x, StressReference *reference, PetscReal part)
 {
   Vec F;
 
@@ -203,7 +204,7 @@ static PetscErrorCode ModelFollow(Model model, Vec x, StressReference *reference
   if (!ElasticityAugments(model->problem->elasticity))
     PetscFunctionReturn(PETSC_SUCCESS);
   if (!model->work->augmented) {
-    PetscCall(ElasticityFollow(model->problem->elasticity, model->problem->trial, reference));
+    PetscCall(ElasticityFollow(model->problem->elasticity, model->problem->trial, reference, part));
     PetscCall(SNESGetFunction(model->snes, &F, NULL, NULL));
     PetscCall(ModelFunction(model->snes, x, F, model));
   }
@@ -217,6 +218,7 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
 {
   Model           model = context;
   StressReference reference;
+  PetscReal       part = 1;
   PetscBool       extrapolates;
 
   PetscFunctionBeginUser;
@@ -226,8 +228,8 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
   extrapolates = (PetscBool)(model->work->from && !model->work->uphill);
   if (extrapolates) {
-    PetscCall(ModelReference(model, &reference));
-    PetscCall(ModelFollow(model, x, &reference));
+    PetscCall(ModelReference(model, &reference, &part));
+    PetscCall(ModelFollow(model, x, &reference, part));
   }
   PetscCall(ModelTangent(model, model->problem->trial, extrapolates ? &reference : NULL, model->t));
   PetscCall(ModelStepFrom(model, model->problem->trial));
