@@ -320,6 +320,8 @@ static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
     PetscCall(PetscCalloc1(n, &e->kept[k].multiplier));
   }
   PetscCall(PetscMalloc1(n_yielding, &e->yielding));
+  e->may_yield = (PetscBool)(n_yielding > 0);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &e->may_yield, 1, MPIU_BOOL, MPI_LOR, e->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -576,7 +578,7 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
   for (int k = 0; k < e->n_groups; k++) {
     CellGroup      *g      = &e->groups[k];
     const size_t    dofs   = (size_t)g->nodes * e->dim;
-    const PetscBool yields = (PetscBool)(e->yields && !forces && g->yielding >= 0);
+    const PetscBool yields = (PetscBool)(e->yields && (!forces || e->forces) && g->yielding >= 0);
     KernelCase      kernel = g->kernel;
 
     kernel.yields = yields;

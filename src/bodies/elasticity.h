@@ -62,6 +62,7 @@ PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const StressRefe
 PetscErrorCode ElasticityYield(Elasticity, const PetscReal *u, const PetscReal *next);
 PetscBool      ElasticityYields(Elasticity);
 void           ElasticityYieldSet(Elasticity, PetscBool yields);
+void           ElasticityYieldForces(Elasticity, PetscBool yield);
 PetscErrorCode ElasticityAccept(Elasticity);
 PetscErrorCode ElasticityRestore(Elasticity);
 PetscErrorCode ElasticityKeep(Elasticity, VolumesKept);

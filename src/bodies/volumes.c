@@ -206,7 +206,7 @@ PetscErrorCode ElasticityYield(Elasticity e, const PetscReal *u, const PetscReal
                    ElasticityYieldingOf(e, g, batch));
     }
   }
-  e->yields = PETSC_TRUE;
+  e->yields = e->may_yield;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -235,6 +235,23 @@ PetscBool ElasticityYields(Elasticity e)
 void ElasticityYieldSet(Elasticity e, PetscBool yields)
 {
   e->yields = yields;
+}
+
+/*@
+  ElasticityYieldForces - says whether forces are to be those of the energies that ElasticityYield() made, too.
+
+  Not collective
+
+  Input Parameters:
++ e     - the elasticity
+- yield - they are, as long as ElasticityYields()
+
+  Note:
+  For the work that is done where loads have no energy.
+@*/
+void ElasticityYieldForces(Elasticity e, PetscBool yield)
+{
+  e->forces = yield;
 }
 
 /*@

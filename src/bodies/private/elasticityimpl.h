@@ -70,7 +70,8 @@ struct _n_Elasticity {
   PetscBool   augments;   /* a body has multipliers, perhaps on other ranks only */
   VolumeState state, accepted, kept[VOLUMES_KEPT];
   PetscReal  *yielding; /* multipliers of mixed elements while energies are compared, see ElasticityYield() */
-  PetscBool   yields;   /* they are */
+  PetscBool   may_yield; /* there are such elements, perhaps on other ranks only */
+  PetscBool   yields, forces; /* they are; forces too */
   Enclosed    enclosed;
 };
 
