@@ -127,11 +127,11 @@ static void GetNodes(Elasticity e, const CellGroup *g, PetscInt c, PetscInt node
 /* Fills a slot of a group with a cell. The last cell also fills the rest of its batch. */
 static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, PetscInt c)
 {
-  const Mesh      mesh     = e->mesh;
-  const Material  material = BodyMaterial(scene, mesh->cell_body[c]);
-  const PetscInt  end      = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
-  PetscInt        nodes[ELEMENT_MAX_NODES];
-  PetscReal       X[MAX_DOFS];
+  const Mesh     mesh     = e->mesh;
+  const Material material = BodyMaterial(scene, mesh->cell_body[c]);
+  const PetscInt end      = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+  PetscInt       nodes[ELEMENT_MAX_NODES];
+  PetscReal      X[MAX_DOFS];
 
   GetNodes(e, g, c, nodes);
   for (int a = 0; a < g->nodes && g->length; a++)
@@ -207,10 +207,10 @@ static PetscErrorCode NodeNeighbours(Elasticity e, PetscInt node, const PetscInt
 static void SetBlocks(Elasticity e, PetscInt node, const PetscInt *ptr, const PetscInt *cells, const PetscInt *place)
 {
   for (PetscInt k = ptr[node]; k < ptr[node + 1]; k++) {
-    const PetscInt  c     = cells[k];
-    CellGroup      *g     = &e->groups[e->cell_group[c]];
-    const PetscInt  slot = e->cell_slot[c], end = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
-    PetscInt        nodes[ELEMENT_MAX_NODES];
+    const PetscInt c    = cells[k];
+    CellGroup     *g    = &e->groups[e->cell_group[c]];
+    const PetscInt slot = e->cell_slot[c], end = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+    PetscInt       nodes[ELEMENT_MAX_NODES];
 
     GetNodes(e, g, c, nodes);
     for (int a = 0; a < g->nodes; a++) {
@@ -287,8 +287,8 @@ static PetscBool VolumeIsStiff(Scene scene, PetscInt body)
   return (PetscBool)(moduli.kappa < moduli.projected);
 }
 
-/* Counts the multipliers, and makes room for those of the present, the accepted and the kept states. A mixed group has some
-   if the volume of one of its cells is too stiff. */
+/* Counts the multipliers, and makes room for those of the present, the accepted and the kept states. A mixed group has
+   some if the volume of one of its cells is too stiff. */
 static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
 {
   PetscInt   n = 0, n_yielding = 0;

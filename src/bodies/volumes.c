@@ -173,7 +173,8 @@ PetscErrorCode ElasticityFollow(Elasticity e, const PetscReal *u, const StressRe
 }
 
 /*@
-  ElasticityYield - makes the energy one whose minimum can be searched along a step, until ElasticityYieldSet() ends that.
+  ElasticityYield - makes the energy one whose minimum can be searched along a step, until ElasticityYieldSet() ends
+that.
 
   Not collective
 

@@ -201,8 +201,7 @@ static PetscErrorCode ModelFollow(Model model, Vec x, StressReference *reference
   Vec F;
 
   PetscFunctionBeginUser;
-  if (!ElasticityAugments(model->problem->elasticity))
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ElasticityAugments(model->problem->elasticity)) PetscFunctionReturn(PETSC_SUCCESS);
   if (!model->work->augmented) {
     PetscCall(ElasticityFollow(model->problem->elasticity, model->problem->trial, reference, part));
     PetscCall(SNESGetFunction(model->snes, &F, NULL, NULL));
@@ -289,8 +288,8 @@ static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConverge
 }
 
 /* Ends a solve that crawls. A step along a soft motion that is taken as far as cells may turn is no sign of that. Where
-   bodies yield, steps are short while the yielding zone finds its place, and grow again: a strip bent into a die takes 12
-   load steps, and 20 with four failed ones if such solves end. */
+   bodies yield, steps are short while the yielding zone finds its place, and grow again: a strip bent into a die takes
+   12 load steps, and 20 with four failed ones if such solves end. */
 static PetscErrorCode ModelStopCrawl(Model model, SNESConvergedReason *reason)
 {
   ModelWork     *work = model->work;
@@ -470,7 +469,8 @@ static PetscErrorCode ModelIterate(Model model)
 
   PetscFunctionBeginUser;
   PetscCall(SNESGetTolerances(model->snes, &absolute, &relative, &step, &most, &functions));
-  PetscCall(SNESSetTolerances(model->snes, absolute, relative, step, PetscMax(0, most - model->work->begun), functions));
+  PetscCall(
+    SNESSetTolerances(model->snes, absolute, relative, step, PetscMax(0, most - model->work->begun), functions));
   PetscCall(SNESSolve(model->snes, NULL, model->x));
   PetscCall(SNESSetTolerances(model->snes, absolute, relative, step, most, functions));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -130,8 +130,8 @@ static PetscErrorCode Turn(const Search *s, PetscReal *turn)
 }
 
 /* The work that is done against the residual on the straight way from x to x - lambda y, by Simpson's rule, which is
-   exact for energies of fourth degree. PETSC_MAX_REAL where an element is inverted. yields: the work against the residual
-   of volumes that yield. */
+   exact for energies of fourth degree. PETSC_MAX_REAL where an element is inverted. yields: the work against the
+   residual of volumes that yield. */
 static PetscErrorCode OneWork(const Search *s, Vec x, Vec y, PetscReal lambda, PetscBool yields, PetscReal *rise)
 {
   const Elasticity elasticity = s->model->problem->elasticity;
@@ -339,8 +339,7 @@ static PetscErrorCode YieldVolumes(const Search *s)
   PetscReal     *u;
 
   PetscFunctionBeginUser;
-  if (!ProblemHasFormulation(problem, FORMULATION_MIXED))
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ProblemHasFormulation(problem, FORMULATION_MIXED)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(n, &u));
   PetscCall(ProblemDisplacements(problem, s->x, s->model->t, u));
   PetscCall(VecWAXPY(s->w, -1, s->y, s->x));
@@ -350,8 +349,8 @@ static PetscErrorCode YieldVolumes(const Search *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Returns to the start of the step that waits, and shortens it. Pressures of exact volumes have followed the steps since,
-   and are again those with which it was found. */
+/* Returns to the start of the step that waits, and shortens it. Pressures of exact volumes have followed the steps
+   since, and are again those with which it was found. */
 static PetscErrorCode Return(const Search *s)
 {
   ModelWork   *work = s->model->work;
@@ -371,8 +370,8 @@ static PetscErrorCode Return(const Search *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rise of the energy from the start of the step that waits to the end of the step at hand. Multipliers have changed on
-   the way, and energy and work with them. */
+/* The rise of the energy from the start of the step that waits to the end of the step at hand. Multipliers have changed
+   on the way, and energy and work with them. */
 static PetscErrorCode RiseSince(const Search *s, PetscReal *rise)
 {
   Vec end, way;
