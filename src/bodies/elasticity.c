@@ -127,11 +127,11 @@ static void GetNodes(Elasticity e, const CellGroup *g, PetscInt c, PetscInt node
 /* Fills a slot of a group with a cell. The last cell also fills the rest of its batch. */
 static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, PetscInt c)
 {
-  const Mesh      mesh     = e->mesh;
-  const Material  material = BodyMaterial(scene, mesh->cell_body[c]);
-  const PetscInt  end      = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
-  PetscInt        nodes[ELEMENT_MAX_NODES];
-  PetscReal       X[MAX_DOFS];
+  const Mesh     mesh     = e->mesh;
+  const Material material = BodyMaterial(scene, mesh->cell_body[c]);
+  const PetscInt end      = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+  PetscInt       nodes[ELEMENT_MAX_NODES];
+  PetscReal      X[MAX_DOFS];
 
   GetNodes(e, g, c, nodes);
   for (int a = 0; a < g->nodes && g->length; a++)
@@ -207,10 +207,10 @@ static PetscErrorCode NodeNeighbours(Elasticity e, PetscInt node, const PetscInt
 static void SetBlocks(Elasticity e, PetscInt node, const PetscInt *ptr, const PetscInt *cells, const PetscInt *place)
 {
   for (PetscInt k = ptr[node]; k < ptr[node + 1]; k++) {
-    const PetscInt  c     = cells[k];
-    CellGroup      *g     = &e->groups[e->cell_group[c]];
-    const PetscInt  slot = e->cell_slot[c], end = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
-    PetscInt        nodes[ELEMENT_MAX_NODES];
+    const PetscInt c    = cells[k];
+    CellGroup     *g    = &e->groups[e->cell_group[c]];
+    const PetscInt slot = e->cell_slot[c], end = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+    PetscInt       nodes[ELEMENT_MAX_NODES];
 
     GetNodes(e, g, c, nodes);
     for (int a = 0; a < g->nodes; a++) {
@@ -287,8 +287,8 @@ static PetscBool VolumeIsStiff(Scene scene, PetscInt body)
   return (PetscBool)(moduli.kappa < moduli.projected);
 }
 
-/* Counts the multipliers, and makes room for those of the present, the accepted and a kept state. A mixed group has some
-   if the volume of one of its cells is too stiff. */
+/* Counts the multipliers, and makes room for those of the present, the accepted and the kept states. A mixed group has
+   some if the volume of one of its cells is too stiff. */
 static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
 {
   PetscInt   n = 0, n_yielding = 0;
@@ -313,9 +313,15 @@ static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
     if (some) n += g->n_batches * ElementPressures(&g->kernel) * KERNEL_LANES;
   }
   PetscCall(PetscFree(stiff));
-  e->state.n = e->accepted.n = e->kept.n = n;
-  PetscCall(PetscCalloc3(n, &e->state.multiplier, n, &e->accepted.multiplier, n, &e->kept.multiplier));
+  e->state.n = e->accepted.n = n;
+  PetscCall(PetscCalloc2(n, &e->state.multiplier, n, &e->accepted.multiplier));
+  for (int k = 0; k < VOLUMES_KEPT; k++) {
+    e->kept[k].n = n;
+    PetscCall(PetscCalloc1(n, &e->kept[k].multiplier));
+  }
   PetscCall(PetscMalloc1(n_yielding, &e->yielding));
+  e->may_yield = (PetscBool)(n_yielding > 0);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &e->may_yield, 1, MPIU_BOOL, MPI_LOR, e->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -405,7 +411,8 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   PetscCall(PetscFree(e->column));
   PetscCall(PetscFree(e->value));
   PetscCall(PetscFree(e->buffer));
-  PetscCall(PetscFree3(e->state.multiplier, e->accepted.multiplier, e->kept.multiplier));
+  PetscCall(PetscFree2(e->state.multiplier, e->accepted.multiplier));
+  for (int k = 0; k < VOLUMES_KEPT; k++) PetscCall(PetscFree(e->kept[k].multiplier));
   PetscCall(PetscFree(e->yielding));
   PetscCall(PetscFree(e->enclosed.body));
   PetscCall(NodeMatrixDestroy(&e->matrix));
@@ -571,7 +578,7 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
   for (int k = 0; k < e->n_groups; k++) {
     CellGroup      *g      = &e->groups[k];
     const size_t    dofs   = (size_t)g->nodes * e->dim;
-    const PetscBool yields = (PetscBool)(e->yields && !forces && g->yielding >= 0);
+    const PetscBool yields = (PetscBool)(e->yields && (!forces || e->forces) && g->yielding >= 0);
     KernelCase      kernel = g->kernel;
 
     kernel.yields = yields;

@@ -9,7 +9,7 @@
    Mixed elements whose volume is kept exactly, or nearly so, have multipliers (volumes.c). ElasticityFollow() changes
    them in an iteration of Newton's method, ElasticityAugment() after a solve until the volume is right.
    ElasticityAccept() keeps them with the accepted state, ElasticityRestore() returns to those. ElasticityKeep() and
-   ElasticityReturn() do so for a state on the way.
+   ElasticityReturn() do so for states on the way.
    ElasticityFindEnclosed() comes before all these: it finds the bodies whose level of pressure is free.
 
    Plastic bodies have an accepted state at each quadrature point. All evaluations start from it;
@@ -45,6 +45,10 @@ typedef struct {
   PetscReal begun;  /* the same of points that begin to flow, times the growth of strain over the elastic one */
 } PlasticPath;
 
+/* States on the way whose multipliers are kept: the one to which a damped solve returns, and the start of a step whose
+   line search is not over */
+typedef enum { VOLUMES_OF_ANCHOR, VOLUMES_OF_SEARCH, VOLUMES_KEPT } VolumesKept;
+
 void           ElasticitySetTime(Elasticity, PetscReal t);
 PetscErrorCode ElasticityAcceptPlastic(Elasticity, const PetscReal *u, PetscReal t, PlasticPath *);
 void           ElasticityForgetFlow(Elasticity);
@@ -54,14 +58,15 @@ PetscErrorCode ElasticityNodalPlasticStrain(Elasticity, PetscReal *strain, Petsc
 PetscInt64     ElasticityPlasticPoints(Elasticity, PetscInt64 *bytes);
 PetscErrorCode ElasticityPlasticWork(Elasticity, PetscReal *work, PetscReal *strain);
 PetscErrorCode ElasticityAugment(Elasticity, const PetscReal *u, PetscBool *holds);
-PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const StressReference *);
+PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const StressReference *, PetscReal part);
 PetscErrorCode ElasticityYield(Elasticity, const PetscReal *u, const PetscReal *next);
 PetscBool      ElasticityYields(Elasticity);
 void           ElasticityYieldSet(Elasticity, PetscBool yields);
+void           ElasticityYieldForces(Elasticity, PetscBool yield);
 PetscErrorCode ElasticityAccept(Elasticity);
 PetscErrorCode ElasticityRestore(Elasticity);
-PetscErrorCode ElasticityKeep(Elasticity);
-PetscErrorCode ElasticityReturn(Elasticity);
+PetscErrorCode ElasticityKeep(Elasticity, VolumesKept);
+PetscErrorCode ElasticityReturn(Elasticity, VolumesKept);
 PetscErrorCode ElasticityArchive(Elasticity, Archive);
 PetscBool      ElasticityAugments(Elasticity);
 PetscErrorCode ElasticityFindEnclosed(Elasticity, Scene, const PetscBool *prescribed);

@@ -130,22 +130,25 @@ PetscErrorCode ElasticityAugment(Elasticity e, const PetscReal *u, PetscBool *ho
 }
 
 /*@
-  ElasticityFollow - sets the multipliers so that the pressures are those that extrapolate from an earlier state.
+  ElasticityFollow - sets the multipliers so that the pressures are those of the linear step that led to an iterate.
 
   Not collective
 
   Input Parameters:
 + e         - the elasticity
 . u         - local displacements (length) [n_nodes*dim] of an iterate of Newton's method
-- reference - the iterate before, u as above, from which a linear step with the present multipliers led to u
+. reference - the iterate before, u as above, from which a linear step with the present multipliers led to u
+- part      - the part of that step that was taken, up to u
 
   Note:
-  Residual and energy at u are others afterwards. The tangent takes a reference with held = 1 then.
+  Residual and energy at u are others afterwards. The tangent takes a reference with held = 1 then. Pressures are
+  unknowns of the linear step: of their change over all of it they get the part that displacements got. Over a tiny part
+  they stay, however wrong the volumes are where the step begins.
 @*/
-PetscErrorCode ElasticityFollow(Elasticity e, const PetscReal *u, const StressReference *reference)
+PetscErrorCode ElasticityFollow(Elasticity e, const PetscReal *u, const StressReference *reference, PetscReal part)
 {
-  const StressReference gathered = {e->u_0, reference->rate, 0};
-  PetscReal             next[MIXED_PRESSURES * KERNEL_LANES];
+  const StressReference gathered = {e->u_0, reference->rate, 0}, start = {e->u_0, 0, 0};
+  PetscReal             next[MIXED_PRESSURES * KERNEL_LANES], there[MIXED_PRESSURES * KERNEL_LANES];
 
   PetscFunctionBeginUser;
   for (int k = 0; k < e->n_groups; k++) {
@@ -159,14 +162,19 @@ PetscErrorCode ElasticityFollow(Elasticity e, const PetscReal *u, const StressRe
       ElasticityGather(e, g, batch, reference->u, e->u_0);
       ElementFollow(&g->kernel, &g->X[first * (size_t)(g->nodes * e->dim)], e->u, &gathered,
                     &g->constants[first * g->kernel.n_constants], m, next);
-      PetscCall(PetscArraycpy(m, next, ElementPressures(&g->kernel) * KERNEL_LANES));
+      if (part < 1)
+        ElementFollow(&g->kernel, &g->X[first * (size_t)(g->nodes * e->dim)], e->u, &start,
+                      &g->constants[first * g->kernel.n_constants], m, there);
+      for (int k = 0; k < ElementPressures(&g->kernel) * KERNEL_LANES; k++)
+        m[k] = part < 1 ? next[k] - (1 - part) * (there[k] - m[k]) : next[k];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ElasticityYield - makes the energy one whose minimum can be searched along a step, until ElasticityYieldSet() ends that.
+  ElasticityYield - makes the energy one whose minimum can be searched along a step, until ElasticityYieldSet() ends
+that.
 
   Not collective
 
@@ -199,7 +207,7 @@ PetscErrorCode ElasticityYield(Elasticity e, const PetscReal *u, const PetscReal
                    ElasticityYieldingOf(e, g, batch));
     }
   }
-  e->yields = PETSC_TRUE;
+  e->yields = e->may_yield;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -228,6 +236,23 @@ PetscBool ElasticityYields(Elasticity e)
 void ElasticityYieldSet(Elasticity e, PetscBool yields)
 {
   e->yields = yields;
+}
+
+/*@
+  ElasticityYieldForces - says whether forces are to be those of the energies that ElasticityYield() made, too.
+
+  Not collective
+
+  Input Parameters:
++ e     - the elasticity
+- yield - they are, as long as ElasticityYields()
+
+  Note:
+  For the work that is done where loads have no energy.
+@*/
+void ElasticityYieldForces(Elasticity e, PetscBool yield)
+{
+  e->forces = yield;
 }
 
 /*@
@@ -265,13 +290,14 @@ PetscErrorCode ElasticityRestore(Elasticity e)
 
   Not collective
 
-  Input Parameter:
-. e - the elasticity
+  Input Parameters:
++ e     - the elasticity
+- state - which of the states on the way this is
 @*/
-PetscErrorCode ElasticityKeep(Elasticity e)
+PetscErrorCode ElasticityKeep(Elasticity e, VolumesKept state)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(e->kept.multiplier, e->state.multiplier, e->state.n));
+  PetscCall(PetscArraycpy(e->kept[state].multiplier, e->state.multiplier, e->state.n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -280,13 +306,14 @@ PetscErrorCode ElasticityKeep(Elasticity e)
 
   Not collective
 
-  Input Parameter:
-. e - the elasticity
+  Input Parameters:
++ e     - the elasticity
+- state - which of the states on the way
 @*/
-PetscErrorCode ElasticityReturn(Elasticity e)
+PetscErrorCode ElasticityReturn(Elasticity e, VolumesKept state)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(e->state.multiplier, e->kept.multiplier, e->state.n));
+  PetscCall(PetscArraycpy(e->state.multiplier, e->kept[state].multiplier, e->state.n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

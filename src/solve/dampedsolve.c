@@ -49,7 +49,7 @@ PetscErrorCode ModelAnchor(Model model)
 {
   PetscFunctionBeginUser;
   PetscCall(DofSpringsAnchor(model->problem->damping, model->x));
-  PetscCall(ElasticityKeep(model->problem->elasticity));
+  PetscCall(ElasticityKeep(model->problem->elasticity, VOLUMES_OF_ANCHOR));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,7 +57,7 @@ PetscErrorCode ModelAnchor(Model model)
 static PetscErrorCode GoBack(Model model, SolveReport *report)
 {
   PetscFunctionBeginUser;
-  PetscCall(ElasticityReturn(model->problem->elasticity));
+  PetscCall(ElasticityReturn(model->problem->elasticity, VOLUMES_OF_ANCHOR));
   if (model->contact) ContactForgetLost(model->contact);
   model->work->cycling     = PETSC_FALSE;
   model->work->cycles      = 0;

@@ -175,8 +175,8 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, const StressReferen
 /* The state from which the tangent at the present iterate extrapolates stresses. It is the iterate before, since
    pressure changes along a full step as the step's linear problem says. Before the first iterate that is where the
    prediction started. A shortened step has left the volumes somewhere; its pressures are those of the last equilibrium.
- */
-static PetscErrorCode ModelReference(Model model, StressReference *reference)
+   *part: of the step, that was taken. */
+static PetscErrorCode ModelReference(Model model, StressReference *reference, PetscReal *part)
 {
   ModelWork     *work = model->work;
   SNESLineSearch search;
@@ -189,22 +189,21 @@ static PetscErrorCode ModelReference(Model model, StressReference *reference)
   PetscCall(SNESLineSearchGetLambda(search, &lambda));
   if (iteration > 0) work->shortened = (PetscBool)(lambda < 1 && !work->relaxed.linear);
   *reference = work->shortened ? (StressReference){work->solved, 0, 0} : (StressReference){work->from, 1, 0};
+  *part      = iteration > 0 && !work->shortened ? lambda : 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Lets the multipliers of incompressible bodies take part in Newton's iteration: their pressures become those of the
-   linear step that led to the iterate, and the residual of SNES is that of these pressures. Without an energy the line
-   search compares residuals, and SNES knows the norm of the one before. The multipliers then change after solves only.
-   They did so just now where the iterate is a solution. */
-static PetscErrorCode ModelFollow(Model model, Vec x, StressReference *reference)
+   linear step that led to the iterate, and the residual of SNES is that of these pressures. They have changed already
+   where the iterate is a solution. */
+static PetscErrorCode ModelFollow(Model model, Vec x, StressReference *reference, PetscReal part)
 {
   Vec F;
 
   PetscFunctionBeginUser;
-  if (!ElasticityAugments(model->problem->elasticity) || !LoadsConservative(model->problem->loads))
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ElasticityAugments(model->problem->elasticity)) PetscFunctionReturn(PETSC_SUCCESS);
   if (!model->work->augmented) {
-    PetscCall(ElasticityFollow(model->problem->elasticity, model->problem->trial, reference));
+    PetscCall(ElasticityFollow(model->problem->elasticity, model->problem->trial, reference, part));
     PetscCall(SNESGetFunction(model->snes, &F, NULL, NULL));
     PetscCall(ModelFunction(model->snes, x, F, model));
   }
@@ -218,6 +217,7 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
 {
   Model           model = context;
   StressReference reference;
+  PetscReal       part = 1;
   PetscBool       extrapolates;
 
   PetscFunctionBeginUser;
@@ -227,8 +227,8 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
   extrapolates = (PetscBool)(model->work->from && !model->work->uphill);
   if (extrapolates) {
-    PetscCall(ModelReference(model, &reference));
-    PetscCall(ModelFollow(model, x, &reference));
+    PetscCall(ModelReference(model, &reference, &part));
+    PetscCall(ModelFollow(model, x, &reference, part));
   }
   PetscCall(ModelTangent(model, model->problem->trial, extrapolates ? &reference : NULL, model->t));
   PetscCall(ModelStepFrom(model, model->problem->trial));
@@ -288,8 +288,8 @@ static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConverge
 }
 
 /* Ends a solve that crawls. A step along a soft motion that is taken as far as cells may turn is no sign of that. Where
-   bodies yield, steps are short while the yielding zone finds its place, and grow again: a strip bent into a die takes 12
-   load steps, and 20 with four failed ones if such solves end. */
+   bodies yield, steps are short while the yielding zone finds its place, and grow again: a strip bent into a die takes
+   12 load steps, and 20 with four failed ones if such solves end. */
 static PetscErrorCode ModelStopCrawl(Model model, SNESConvergedReason *reason)
 {
   ModelWork     *work = model->work;
@@ -469,7 +469,8 @@ static PetscErrorCode ModelIterate(Model model)
 
   PetscFunctionBeginUser;
   PetscCall(SNESGetTolerances(model->snes, &absolute, &relative, &step, &most, &functions));
-  PetscCall(SNESSetTolerances(model->snes, absolute, relative, step, PetscMax(0, most - model->work->begun), functions));
+  PetscCall(
+    SNESSetTolerances(model->snes, absolute, relative, step, PetscMax(0, most - model->work->begun), functions));
   PetscCall(SNESSolve(model->snes, NULL, model->x));
   PetscCall(SNESSetTolerances(model->snes, absolute, relative, step, most, functions));
   PetscFunctionReturn(PETSC_SUCCESS);

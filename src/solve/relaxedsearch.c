@@ -129,32 +129,60 @@ static PetscErrorCode Turn(const Search *s, PetscReal *turn)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The work that is done against the residual on the straight way from x to x - lambda y, by Simpson's rule, which is
+   exact for energies of fourth degree. PETSC_MAX_REAL where an element is inverted. yields: the work against the
+   residual of volumes that yield. */
+static PetscErrorCode OneWork(const Search *s, Vec x, Vec y, PetscReal lambda, PetscBool yields, PetscReal *rise)
+{
+  const Elasticity elasticity = s->model->problem->elasticity;
+  PetscReal        work, slope = 0, sum = 0;
+  PetscBool        inverted = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  ElasticityYieldForces(elasticity, yields);
+  for (int i = 0; i <= 2 && !inverted; i++) {
+    const PetscBool known = (PetscBool)(i == 0 && x == s->x && !yields);
+
+    if (!known) {
+      PetscCall(VecWAXPY(s->w, -lambda * i / 2, y, x));
+      PetscCall(SNESComputeFunction(s->snes, s->w, s->G));
+      PetscCall(SNESGetFunctionDomainError(s->snes, &inverted));
+    }
+    PetscCall(VecDotRealPart(known ? s->F : s->G, y, &work));
+    if (i == 0) slope = work;
+    sum += (i == 1 ? 4 : 1) * work;
+  }
+  ElasticityYieldForces(elasticity, PETSC_FALSE);
+  inverted = (PetscBool)(inverted || PetscIsInfOrNanReal(sum) ||
+                         (slope > 0 && sum > 6 * SEARCH_PROMISE * PetscMax(1, lambda) * slope));
+  *rise    = inverted ? PETSC_MAX_REAL : -lambda / 6 * sum;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The lesser work against two residuals, as EnergyRise() says of energies. */
+static PetscErrorCode WorkRise(const Search *s, Vec x, Vec y, PetscReal lambda, PetscReal *rise)
+{
+  const PetscBool yields = ElasticityYields(s->model->problem->elasticity);
+  PetscReal       real;
+
+  PetscFunctionBeginUser;
+  PetscCall(OneWork(s, x, y, lambda, yields, rise));
+  if (!yields) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OneWork(s, x, y, lambda, PETSC_FALSE, &real));
+  *rise = PetscMin(*rise, real);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The rise of the energy from x to x - lambda y, PETSC_MAX_REAL where an element is inverted. Loads that follow the
-   surface have no energy. There it is the work that is done against the residual on the way, by Simpson's rule, which
-   is exact for energies of fourth degree. */
+   surface have no energy, and work takes its place. */
 static PetscErrorCode Rise(const Search *s, PetscReal lambda, PetscReal *rise)
 {
-  PetscReal work, slope, sum;
-  PetscBool inverted = PETSC_FALSE;
-
   PetscFunctionBeginUser;
   if (ProblemConservative(s->model->problem)) {
     PetscCall(VecWAXPY(s->w, -lambda, s->y, s->x));
     PetscCall(EnergyRise(s, s->x, s->w, rise));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(VecDotRealPart(s->F, s->y, &slope));
-  sum = slope;
-  for (int i = 1; i <= 2 && !inverted; i++) {
-    PetscCall(VecWAXPY(s->w, -lambda * i / 2, s->y, s->x));
-    PetscCall(SNESComputeFunction(s->snes, s->w, s->G));
-    PetscCall(SNESGetFunctionDomainError(s->snes, &inverted));
-    PetscCall(VecDotRealPart(s->G, s->y, &work));
-    sum += (i == 1 ? 4 : 1) * work;
-  }
-  inverted = (PetscBool)(inverted || PetscIsInfOrNanReal(sum) ||
-                         (slope > 0 && sum > 6 * SEARCH_PROMISE * PetscMax(1, lambda) * slope));
-  *rise    = inverted ? PETSC_MAX_REAL : -lambda / 6 * sum;
+  } else
+    PetscCall(WorkRise(s, s->x, s->y, lambda, rise));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -268,6 +296,7 @@ static PetscErrorCode Keep(const Search *s, PetscReal rise, PetscReal slope, Pet
   }
   PetscCall(VecCopy(s->x, step->x));
   PetscCall(VecCopy(s->y, step->y));
+  PetscCall(ElasticityKeep(s->model->problem->elasticity, VOLUMES_OF_SEARCH));
   step->waits = PETSC_TRUE;
   step->times = 0;
   step->rise  = rise;
@@ -310,8 +339,7 @@ static PetscErrorCode YieldVolumes(const Search *s)
   PetscReal     *u;
 
   PetscFunctionBeginUser;
-  if (!ProblemConservative(problem) || !ProblemHasFormulation(problem, FORMULATION_MIXED))
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ProblemHasFormulation(problem, FORMULATION_MIXED)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(n, &u));
   PetscCall(ProblemDisplacements(problem, s->x, s->model->t, u));
   PetscCall(VecWAXPY(s->w, -1, s->y, s->x));
@@ -321,7 +349,8 @@ static PetscErrorCode YieldVolumes(const Search *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Returns to the start of the step that waits, and shortens it. */
+/* Returns to the start of the step that waits, and shortens it. Pressures of exact volumes have followed the steps
+   since, and are again those with which it was found. */
 static PetscErrorCode Return(const Search *s)
 {
   ModelWork   *work = s->model->work;
@@ -333,10 +362,32 @@ static PetscErrorCode Return(const Search *s)
   PetscCall(VecCopy(step->x, s->x));
   PetscCall(VecCopy(step->y, s->y));
   PetscCall(VecCopy(step->y, work->step));
+  PetscCall(ElasticityReturn(s->model->problem->elasticity, VOLUMES_OF_SEARCH));
   PetscCall(SNESComputeFunction(s->snes, s->x, s->F));
   work->objective = OBJECTIVE_ENERGY;
   PetscCall(YieldVolumes(s));
   PetscCall(Shorten(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rise of the energy from the start of the step that waits to the end of the step at hand. Multipliers have changed
+   on the way, and energy and work with them. */
+static PetscErrorCode RiseSince(const Search *s, PetscReal *rise)
+{
+  Vec end, way;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(s->x, &end));
+  PetscCall(VecWAXPY(end, -1, s->y, s->x));
+  if (ProblemConservative(s->model->problem))
+    PetscCall(EnergyRise(s, s->model->work->relaxed.x, end, rise));
+  else {
+    PetscCall(VecDuplicate(s->x, &way));
+    PetscCall(VecWAXPY(way, -1, end, s->model->work->relaxed.x));
+    PetscCall(WorkRise(s, s->model->work->relaxed.x, way, 1, rise));
+    PetscCall(VecDestroy(&way));
+  }
+  PetscCall(VecDestroy(&end));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -348,10 +399,7 @@ static PetscErrorCode Judge(const Search *s, PetscReal rise)
   PetscBool    paid, reached = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  if (ProblemConservative(s->model->problem) && rise < PETSC_MAX_REAL) {
-    PetscCall(VecWAXPY(s->w, -1, s->y, s->x)); /* multipliers have changed since, and the energy with them */
-    PetscCall(EnergyRise(s, step->x, s->w, &since));
-  }
+  if (rise < PETSC_MAX_REAL) PetscCall(RiseSince(s, &since));
   paid = (PetscBool)(rise < PETSC_MAX_REAL && since <= -SEARCH_FALL * step->slope);
   if (!paid && rise < PETSC_MAX_REAL && ++step->times < SEARCH_PATIENCE) PetscCall(Try(s, 1, &reached));
   if (!paid && !reached) {

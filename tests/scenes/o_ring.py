@@ -67,9 +67,11 @@ if args.cases == "all":
     # Squeezed deeper, then 10 MPa. These guard that offsets which a rolling ring turns to and fro are damped, that the first
     # step of the fluid is a short one, and that a prediction which leads nowhere is left: without them quad4 takes 10
     # steps with one failed, at nu 0.4999 18 with 23 failed, and ends at 9.7 MPa.
+    # quad9 at nu 0.5 takes 25 steps with ten failed where pressures change after solves only and work is that of stiff
+    # volumes.
     deeper = "bodies.2.rigid.motion=[{uy: -1.059, history: [[0, 0], [0.5, 1], [1, 1]]}]"
-    for element, n, nu in (("quad4", 24, 0.499), ("quad4", 24, 0.4999), ("quad9", 12, 0.499), ("tri3 mixed", 24, 0.499),
-                           ("tri6 mixed", 12, 0.499)):
+    for element, n, nu in (("quad4", 24, 0.499), ("quad4", 24, 0.4999), ("quad9", 12, 0.499), ("quad9", 12, 0.5),
+                           ("tri3 mixed", 24, 0.499), ("tri6 mixed", 12, 0.499)):
         name = f"{element} squeezed and pressed, nu {nu}"
         order = [value for value in ELEMENTS[element] if value.startswith("mesh")]
         summary = run(args, RUNS / "o_ring_pressure.yaml", out=f"pressed_{element}_{nu}", overrides=(

@@ -68,9 +68,10 @@ struct _n_Elasticity {
   PetscReal   accepted_t; /* time of the accepted plastic state */
   PetscReal   flow_dt;    /* length of the step that led there; 0: the growth in it says nothing of the next one */
   PetscBool   augments;   /* a body has multipliers, perhaps on other ranks only */
-  VolumeState state, accepted, kept;
-  PetscReal  *yielding; /* multipliers of mixed elements while energies are compared, see ElasticityYield() */
-  PetscBool   yields;   /* they are */
+  VolumeState state, accepted, kept[VOLUMES_KEPT];
+  PetscReal  *yielding;       /* multipliers of mixed elements while energies are compared, see ElasticityYield() */
+  PetscBool   may_yield;      /* there are such elements, perhaps on other ranks only */
+  PetscBool   yields, forces; /* they are; forces too */
   Enclosed    enclosed;
 };
 
