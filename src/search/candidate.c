@@ -56,8 +56,8 @@ void CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *c)
 }
 
 /*@
-  CandidateBoxDistance - returns the distance (length) of a place to the bounding box of a candidate, which the candidate
-itself does not come nearer.
+  CandidateBoxDistance - returns the distance (length) of a place to the bounding box of a candidate. The candidate is
+not nearer than that.
 
   Not collective
 
