@@ -215,6 +215,27 @@ static void KeepNearest(const Piece *piece, int state, const double foot[3], int
   *nearest = (Nearest){piece, 1, interior, distance, {foot[0], foot[1], foot[2]}, {normal[0], normal[1], normal[2]}};
 }
 
+/* Cosine between a point's direction from its closest point and the sum of the normals there, from which the point is
+   behind the surface and not beside its end. A point behind it lies between the normals of the pieces that share the
+   closest point, so that it is no farther off their sum than one of these. */
+static double BehindFrom(const Look *look, const Point *point, int state, const Nearest *nearest)
+{
+  const double length = sqrt(Dot(nearest->sum, nearest->sum));
+  double       least  = 1;
+
+  if (nearest->interior) return STAND_CORNER;
+  for (int i = 0; i < look->n_found && nearest->shared > 1 && length > 0; i++) {
+    const Piece *piece = &look->list->pieces[look->found[i]];
+    double       foot[3];
+
+    if (HasTag(piece, look->dim, point->tag)) continue;
+    PieceClosest(look->dim, (const Place *)piece->x[state], point->x[state], foot);
+    if (Distance(foot, nearest->foot) > STAND_TIE * piece->size) continue;
+    least = fmin(least, Dot(piece->normal[state], nearest->sum) / length);
+  }
+  return fmax(STAND_CORNER, STAND_END * least);
+}
+
 /*@
   PointStand - finds where a point stands at one of the states.
 
@@ -249,7 +270,7 @@ Stand PointStand(const Look *look, const Point *point, int state)
   cosine       = length > 0 ? Dot(r, nearest.sum) / length : 1;
   stand.piece  = nearest.piece;
   stand.depth  = nearest.distance;
-  stand.front  = cosine > -(nearest.shared > 1 || nearest.interior ? STAND_CORNER : STAND_END);
+  stand.front  = cosine > -STAND_CORNER || (cosine > -STAND_END && cosine > -BehindFrom(look, point, state, &nearest));
   stand.inside = !stand.front && Dot(nearest.sum, point->normal[state]) < 0;
   return stand;
 }

@@ -56,6 +56,25 @@ void CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *c)
 }
 
 /*@
+  CandidateBoxDistance - returns the distance (length) of a place to the bounding box of a candidate. The candidate is
+not nearer than that.
+
+  Not collective
+
+  Input Parameters:
++ dim - dimension
+. c   - the candidate, after CandidatePlace()
+- x   - the place (length)
+@*/
+PetscReal CandidateBoxDistance(int dim, const Candidate *c, const PetscReal *x)
+{
+  PetscReal square = 0;
+
+  for (int d = 0; d < dim; d++) square += PetscSqr(PetscMax(0, PetscMax(c->lower[d] - x[d], x[d] - c->upper[d])));
+  return PetscSqrtReal(square);
+}
+
+/*@
   CandidatesTree - builds the tree over the boxes of candidates.
 
   Not collective

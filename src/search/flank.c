@@ -353,15 +353,20 @@ static PetscReal MasterGoesOn(const Nearest *look, const Candidate *c, const Fla
                               int facing, const int *found)
 {
   const PetscReal step = FLANK_SEAM * look->size;
-  PetscReal       place[3], least = step;
+  const int       dim  = look->lists->dim;
+  PetscReal       place[3], at[3], least = step;
   Foot            foot;
 
   FootToEdge(look, edge, place);
-  for (int d = 0; d < look->lists->dim; d++) place[d] += step * out[d];
+  for (int d = 0; d < dim; d++) {
+    place[d] += step * out[d];
+    at[d] = look->x[d] + place[d];
+  }
   for (int i = 0; i < facing; i++) {
     const Candidate *other = &look->candidates[found[i]];
 
-    if (other != c) least = PetscMin(least, PlaceFoot(look, other, place, &foot));
+    if (other != c && CandidateBoxDistance(dim, other, at) <= step + look->tie)
+      least = PetscMin(least, PlaceFoot(look, other, place, &foot));
   }
   return 1 - SmoothStep(2 * least / step);
 }

@@ -8,7 +8,8 @@
    is not farther away than this. */
 #define SEARCH_REACH 2.0
 /* A list holds every facet whose distance exceeds that of the nearest one by at most this many face sizes (plus the
-   motion), so that the point may slide there within a solve. */
+   motion), so that the point may slide there within a solve. The size is that of the point's own face or of the nearest
+   one, whichever is larger: large faces elsewhere do not lengthen lists between fine faces. */
 #define SEARCH_MARGIN 1.5
 
 /*@
@@ -246,7 +247,9 @@ static void NearestVisit(void *context, int index, double *bound)
   PetscReal        x[FACE_MAX_NODES * 3], distance;
   Foot             foot;
 
-  if ((!faces && (look->averse || look->best >= 0 || look->one_body)) || FlankIsOwn(look, c)) return;
+  if (!faces && (look->averse || look->best >= 0 || look->one_body)) return;
+  if (!faces && CandidateBoxDistance(dim, c, look->x) > look->size) return; /* too far to be averse */
+  if (FlankIsOwn(look, c)) return;
   CandidatePositions(look->lists, c, x);
   own.free_edges = 0;
   for (int a = 0; a < ElementGet(own.type)->nodes; a++) {
@@ -321,11 +324,10 @@ static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *
    surface there. look gives the slave point, the size of its face and the distance within which it is searched. found
    and ends have room for all candidates. */
 static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, BoxTree tree, FitSupport *fit,
-                                PetscReal margin, PetscReal motion, Nearest *look, int *found, int *ends,
-                                ListBuffer *buffer)
+                                PetscReal motion, Nearest *look, int *found, int *ends, ListBuffer *buffer)
 {
   const PetscInt q = look->q, first = buffer->n_points;
-  double         bound = look->least + look->tie;
+  double         bound = look->least + look->tie, margin;
   int            count, facing;
 
   PetscFunctionBeginUser;
@@ -339,6 +341,7 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   if (look->best >= 0 && FaceMarksTreated(look->marks, field->records[look->candidates[look->best].record].marks))
     look->best = -1;
   if (look->best < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  margin = SEARCH_MARGIN * PetscMax(look->size, field->records[look->candidates[look->best].record].size);
   count  = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
   facing = FlankSort(look, &count, found);
   FlankLeaveCorner(look, facing, found);
@@ -382,7 +385,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                     .tie        = FACET_TIE * (s->reach + motion)};
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
-    PetscCall(FillSlave(lists, field, tree, fit, s->margin, motion, &look, found, ends, &buffer));
+    PetscCall(FillSlave(lists, field, tree, fit, motion, &look, found, ends, &buffer));
   }
   lists->list_ptr[lists->n_slaves]  = buffer.n_points;
   lists->facet_ptr[lists->n_slaves] = buffer.n;

@@ -213,6 +213,9 @@ static void HonestStatesHold(void **context)
   assert_int_equal(JudgePoint(&plate, &point, 0).kind, FINDING_NONE);
   SolidWall(&plate, 0.2, still, still);
   assert_int_equal(MovePoint(&plate, AT(0.3, 0.1, 1), AT(0.3, 0.2, -0.05)).kind, FINDING_NONE);
+  SolidWall(&plate, 0, still, still); /* beside the end of an open surface, at vertices of several pieces */
+  assert_int_equal(MovePoint(&plate, AT(1.7, 0.5, 0.1), AT(1.6, 0.5, -0.15)).kind, FINDING_NONE);
+  assert_int_equal(MovePoint(&plate, AT(1.7, 1.7, 0.1), AT(1.55, 1.55, -0.15)).kind, FINDING_NONE);
   PlaneWall(&plate, 1, still, still); /* the wall's own top is no partner of a point of its bottom */
   point      = MakePoint(AT(0.25, -1, 0), AT(0.25, -1, 0), AT(0, -1, 0));
   point.body = 1;

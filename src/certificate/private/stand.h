@@ -13,7 +13,8 @@
 /* Cosine between a point's direction from its closest point and the normals there, from which the point is over a
    corner and not beside it: behind a concave corner of three square faces it is 0.577. */
 #define STAND_CORNER 0.5
-/* The same where a single piece ends: the point is beside the surface otherwise. */
+/* The same where the surface ends, times the least cosine between the normals there and their sum: the point is beside
+   the surface otherwise. */
 #define STAND_END 0.999
 /* A body's own wall that is nearer than this part of its reference distance has been entered (ownbody.h). */
 #define STAND_OWN_WALL 0.25

@@ -108,6 +108,7 @@ typedef struct {
 
 /* candidate.c */
 void           CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *);
+PetscReal      CandidateBoxDistance(int dim, const Candidate *, const PetscReal *x);
 PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, BoxTree *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
 /* faceexchange.c */
