@@ -1,5 +1,7 @@
 /* The line search of Newton's method: what it compares, and how Newton's step is corrected for contact before it. */
 #include "bodies/tools.h"
+#include "mesh/meshdofs.h"
+#include "mesh/pressurenodes.h"
 #include "modelimpl.h"
 
 /* A solve with friction has stalled if its residual is still above this part of that LINE_MEMORY iterations before. */
@@ -94,13 +96,52 @@ void ModelChooseObjective(Model model, PetscReal residual, PetscReal slope)
   model->work->objective = small || flat ? OBJECTIVE_RESIDUAL : OBJECTIVE_ENERGY;
 }
 
+/* Computes the part z of Newton's step that mends the residuals F of pressures at nodes alone, and the slope of the
+   energy along the rest of the step y. Collective. */
+static PetscErrorCode ModelSplitStep(Model model, SNES snes, Vec F, Vec y, Vec z, PetscReal *slope)
+{
+  const Mesh     mesh = model->mesh;
+  const PetscInt n    = mesh->n_nodes * mesh->dim;
+  PetscReal     *f, all, mended;
+  KSP            ksp;
+  Vec            rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &f));
+  PetscCall(VecDuplicate(F, &rows));
+  PetscCall(MeshGlobalToLocal(mesh, F, f));
+  for (PetscInt i = 0; i < n; i++)
+    if (!IsPressureNode(mesh, i / mesh->dim)) f[i] = 0;
+  PetscCall(MeshCollectFree(mesh, f, rows));
+  PetscCall(SNESGetKSP(snes, &ksp));
+  PetscCall(KSPSolve(ksp, rows, z));
+  PetscCall(VecAYPX(rows, -1, F)); /* the residuals of displacements */
+  PetscCall(VecDotRealPart(rows, y, &all));
+  PetscCall(VecDotRealPart(rows, z, &mended));
+  *slope = all - mended;
+  PetscCall(VecDestroy(&rows));
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Turns a step round that leads uphill. Where the tangent is indefinite, Newton's step may lead to a saddle of the
    energy, and the opposite step leads downhill. With loads that follow the surface the work of the residual stands for
-   the energy. */
-static PetscErrorCode ModelTurnStep(Model model, Vec y, PetscReal slope)
+   the energy. Where nodes have pressures, the part of the step that makes up for changes of the volume stays as it is:
+   turned round it would double them. Along the rest the linear problem keeps the volume, and its slope is that of the
+   energy of displacements. */
+static PetscErrorCode ModelTurnStep(Model model, SNES snes, Vec F, Vec y, PetscReal slope)
 {
+  Vec z;
+
   PetscFunctionBeginUser;
   if (slope >= 0 || PetscIsInfOrNanReal(slope)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (model->mesh->has_pressures) {
+    PetscCall(VecDuplicate(y, &z));
+    PetscCall(ModelSplitStep(model, snes, F, y, z, &slope));
+    if (slope < 0) PetscCall(VecAXPY(y, -2, z));
+    PetscCall(VecDestroy(&z));
+    if (slope >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(VecScale(y, -1));
   model->work->turned++;
   model->work->uphill = PETSC_TRUE;
@@ -149,7 +190,7 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
   if (model->contact && conservative) ModelChooseObjective(model, NAN, slope);
-  if (model->work->objective == OBJECTIVE_ENERGY) PetscCall(ModelTurnStep(model, y, slope));
+  if (model->work->objective == OBJECTIVE_ENERGY) PetscCall(ModelTurnStep(model, snes, F, y, slope));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
