@@ -6,6 +6,27 @@
 #define POINT_STEP 1e-5
 
 /*@
+  ElasticityEnhanced - says whether any cell is an enhanced element, whose gradients are not those of displacements.
+
+  Collective
+
+  Input Parameter:
+. e - the elasticity
+
+  Output Parameter:
+. any - the same on all ranks
+@*/
+PetscErrorCode ElasticityEnhanced(Elasticity e, PetscBool *any)
+{
+  PetscFunctionBeginUser;
+  *any = PETSC_FALSE;
+  for (int g = 0; g < e->n_groups; g++)
+    *any = (PetscBool)(*any || e->groups[g].kernel.formulation == FORMULATION_ENHANCED);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, any, 1, MPIU_BOOL, MPI_LOR, e->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ElasticityPlacePoints - gives the quadrature points of a cell.
 
   Not collective
@@ -110,7 +131,8 @@ PetscErrorCode ElasticityPointRates(Elasticity e, PetscInt cell, const PetscReal
   ElasticityGatherCell(e, g, e->cell_slot[cell], u, X, cell_u, constants, m);
   PetscCall(PetscArrayzero(H, points * 9));
   PetscCall(PetscArrayzero(pressure, points));
-  most = PetscMax(LargestDifference(nodes, e->dim, cell_v), LargestDifference(g->nodes - nodes, e->dim, &cell_v[nodes * e->dim]));
+  most = PetscMax(LargestDifference(nodes, e->dim, cell_v),
+                  LargestDifference(g->nodes - nodes, e->dim, &cell_v[nodes * e->dim]));
   if (g->kernel.geometry == GEOMETRY_AXISYMMETRIC)
     for (int a = 0; a < nodes; a++) most = PetscMax(most, PetscAbsReal(cell_v[a * e->dim]));
   if (!(most > 0)) PetscFunctionReturn(PETSC_SUCCESS);

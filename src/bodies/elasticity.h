@@ -68,6 +68,7 @@ PetscErrorCode ElasticityArchive(Elasticity, Archive);
 PetscBool      ElasticityAugments(Elasticity);
 PetscErrorCode ElasticityFindEnclosed(Elasticity, Scene, const PetscBool *prescribed);
 PetscBool      ElasticityEnclosedChange(Elasticity);
+PetscErrorCode ElasticityEnhanced(Elasticity, PetscBool *any);
 PetscErrorCode ElasticityPlacePoints(Elasticity, PetscInt cell, PetscReal *x, PetscReal *volume);
 PetscErrorCode ElasticityPointStates(Elasticity, PetscInt cell, const PetscReal *u, PetscReal *H, PetscReal *P,
                                      PetscReal *pressure, PetscReal *compliance);

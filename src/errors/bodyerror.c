@@ -112,7 +112,7 @@ static PetscErrorCode CellRate(BodyError b, const PetscReal *y, PetscInt cell, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The indicator of a cell. */
+/* The part of a cell. */
 static PetscReal CellError(BodyError b, PetscInt cell, const PetscReal *rates, const PetscReal *rate_patches)
 {
   const PetscReal *volume, compliance = b->compliance[cell];
@@ -143,11 +143,10 @@ static PetscReal CellError(BodyError b, PetscInt cell, const PetscReal *rates, c
 + b - the recovered fields
 - y - adjoint solution of the quantity, y[n_nodes*dim], ghosts included
 
-  Output Parameters:
-+ cells - indicators of this rank's cells [n_cells]
-- error - their sum over all ranks: true less computed value
+  Output Parameter:
+. error - true less computed value, the same on all ranks
 @*/
-PetscErrorCode BodyErrorEvaluate(BodyError b, const PetscReal *y, PetscReal *cells, PetscReal *error)
+PetscErrorCode BodyErrorEvaluate(BodyError b, const PetscReal *y, PetscReal *error)
 {
   PetscReal *rates, *patches;
 
@@ -157,10 +156,7 @@ PetscErrorCode BodyErrorEvaluate(BodyError b, const PetscReal *y, PetscReal *cel
     PetscCall(CellRate(b, y, c, &rates[RecoveryPoints(b->recovery, c, NULL) * RATE_WIDTH]));
   PetscCall(RecoveryFit(b->recovery, RATE_WIDTH, rates, &patches));
   *error = 0;
-  for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
-    cells[c] = CellError(b, c, rates, patches);
-    *error += cells[c];
-  }
+  for (PetscInt c = 0; c < b->mesh->n_cells; c++) *error += CellError(b, c, rates, patches);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, error, 1, MPIU_REAL, MPIU_SUM, b->mesh->comm));
   PetscCall(PetscFree(patches));
   PetscCall(PetscFree(rates));

@@ -10,7 +10,7 @@
 
      J(u) - J(u_h) ~ -sum over points of volume (P* - P) : (G* - G).
 
-   Each cell's part of the sum is its indicator. Where the elements are mixed, the pressure p has its own equation, that
+   Where the elements are mixed, the pressure p has its own equation, that
    the volume be right: with q the pressure of y and theta = ln det F (with small strains tr grad u) the form is that of
    the saddle point, and
 
@@ -30,4 +30,4 @@ typedef struct _n_BodyError *BodyError;
 
 PetscErrorCode BodyErrorCreate(Mesh, Elasticity, Kinematics, const PetscReal *u, BodyError *);
 PetscErrorCode BodyErrorDestroy(BodyError *);
-PetscErrorCode BodyErrorEvaluate(BodyError, const PetscReal *y, PetscReal *cells, PetscReal *error);
+PetscErrorCode BodyErrorEvaluate(BodyError, const PetscReal *y, PetscReal *error);

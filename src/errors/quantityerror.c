@@ -4,6 +4,7 @@
 #include <math.h>
 
 const char *const ErrorCauses[] = {[ERROR_BODIES]      = "bodies",
+                                   [ERROR_GEOMETRY]    = "contact surfaces",
                                    [ERROR_PENETRATION] = "penetration",
                                    [ERROR_SLIP]        = "elastic slip",
                                    [ERROR_STEPS]       = "load steps",
@@ -22,9 +23,9 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
   error->known = adjoint->known;
   error->sum = error->magnitude = 0;
   for (int c = 0; c < ERROR_CAUSES; c++) error->part[c] = NAN;
-  PetscCall(PetscArrayzero(error->cells, model->mesh->n_cells));
   if (!error->known) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyErrorEvaluate(bodies, adjoint->y, error->cells, &error->part[ERROR_BODIES]));
+  PetscCall(BodyErrorEvaluate(bodies, adjoint->y, &error->part[ERROR_BODIES]));
+  error->part[ERROR_GEOMETRY]    = model->contact ? NAN : 0;
   error->part[ERROR_PENETRATION] = adjoint->penetration;
   error->part[ERROR_SLIP]        = adjoint->slip;
   error->part[ERROR_STEPS]       = DependsOnPath(model) ? NAN : 0;
@@ -47,8 +48,8 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
 . n          - number of quantities
 - functional - their first variations
 
-  Input/Output Parameter:
-. error - with room for `cells` of each
+  Output Parameter:
+. error - of each
 
   Note:
   The state stays as it is. One tangent is factored for all quantities, and solved with once for each.

@@ -37,10 +37,7 @@ PetscErrorCode ProbeErrorsCreate(Model model, Probes probes, Scene scene, ProbeE
   errors->scene  = scene;
   PetscCall(PetscCalloc3(scene->n_probes, &errors->value, scene->n_probes, &errors->why, scene->n_probes,
                          &errors->error));
-  for (int i = 0; i < scene->n_probes; i++) {
-    errors->why[i] = "the run ended before the end of its load";
-    PetscCall(PetscCalloc1(model->mesh->n_cells, &errors->error[i].cells));
-  }
+  for (int i = 0; i < scene->n_probes; i++) errors->why[i] = "the run ended before the end of its load";
   *result = errors;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -57,7 +54,6 @@ PetscErrorCode ProbeErrorsDestroy(ProbeErrors *errors)
 {
   PetscFunctionBeginUser;
   if (!*errors) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int i = 0; i < (*errors)->scene->n_probes; i++) PetscCall(PetscFree((*errors)->error[i].cells));
   PetscCall(PetscFree3((*errors)->value, (*errors)->why, (*errors)->error));
   PetscCall(PetscFree(*errors));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -69,13 +65,15 @@ static PetscErrorCode Estimate(ProbeErrors errors, Functional *functional)
   const int      all = errors->scene->n_probes;
   int            n   = 0, *probe;
   QuantityError *error;
+  PetscBool      enhanced;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(all, &probe, all, &error));
+  PetscCall(ElasticityEnhanced(errors->model->problem->elasticity, &enhanced));
   for (int i = 0; i < all; i++) {
     PetscCall(ProbeVary(errors->probes, i, &functional[n], &errors->why[i]));
+    if (enhanced) errors->why[i] = "a body has enhanced elements (bodies.*.formulation)";
     if (errors->why[i]) PetscCall(ProbeVariationFree(&functional[n]));
-    error[n] = errors->error[i];
     probe[n] = i;
     n += !errors->why[i];
   }
@@ -107,7 +105,7 @@ PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
   PetscBool   ok;
 
   PetscFunctionBeginUser;
-  if (!errors) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!errors || !errors->scene->n_probes) PetscFunctionReturn(PETSC_SUCCESS);
   model = errors->model;
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));

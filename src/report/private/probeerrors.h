@@ -1,5 +1,4 @@
-/* The estimated errors of a run's probes: made once at its end, then printed, and written to summary.json and to
-   results.h5.
+/* The estimated errors of a run's probes: made once at its end, then printed, and written to summary.json.
 
    ProbeErrorsCreate() makes the object where the scene asks for it, else NULL, which all functions take.
    ProbeErrorsEstimate() is called at the solution of the last step, before it is accepted. */
