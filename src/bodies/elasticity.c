@@ -765,6 +765,37 @@ PetscErrorCode ElasticityMultiplyLocal(Elasticity e, const PetscReal *x, PetscRe
 }
 
 /*@
+  ElasticityMultiplyTransposed - multiplies by the transposed local block CSR, supported and imposed dofs included:
+  y += K^T x.
+
+  Not collective
+
+  Input Parameters:
++ e - the elasticity
+- x - local vector [n_nodes*dim], ghosts included
+
+  Output Parameter:
+. y - local vector [n_nodes*dim], added to; not summed over ranks
+@*/
+PetscErrorCode ElasticityMultiplyTransposed(Elasticity e, const PetscReal *x, PetscReal *y)
+{
+  const int dim = e->dim;
+
+  PetscFunctionBeginUser;
+  for (PetscInt n = 0; n < e->mesh->n_nodes; n++) {
+    for (PetscInt k = e->row[n]; k < e->row[n + 1]; k++) {
+      const PetscReal *value = &e->value[(size_t)k * dim * dim];
+      PetscReal       *yk    = &y[e->column[k] * dim];
+
+      for (int i = 0; i < dim; i++) {
+        for (int j = 0; j < dim; j++) yk[j] += value[i * dim + j] * x[n * dim + i];
+      }
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ElasticitySetSymmetric - sets whether the tangent is symmetric, with the blocks that others add.
 
   Logically collective
@@ -908,11 +939,26 @@ PetscReal ElasticitySlotVolume(Elasticity e, const CellGroup *g, PetscInt slot)
   return CellVolume(g->kernel.type, e->dim, g->kernel.geometry, X);
 }
 
-/* Coordinates and displacements of the nodes of one cell, the constants of its law, and its multipliers; its plastic
-   state is selected */
-static void GatherCell(Elasticity e, CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal X[MAX_DOFS],
-                       PetscReal cell_u[MAX_DOFS], PetscReal constants[MATERIAL_MAX_CONSTANTS],
-                       PetscReal m[MIXED_PRESSURES])
+/*@
+  ElasticityGatherCell - takes one cell out of its batch and selects its plastic state.
+
+  Not collective
+
+  Input Parameters:
++ e    - the elasticity
+. g    - the group of the cell
+. slot - its number there
+- u    - local displacements (length) [n_nodes*dim]
+
+  Output Parameters:
++ X         - reference coordinates of its nodes (length) [nodes][dim]
+. cell_u    - their displacements (length) [nodes][dim]
+. constants - of its law
+- m         - its multipliers
+@*/
+void ElasticityGatherCell(Elasticity e, CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal X[MAX_DOFS],
+                          PetscReal cell_u[MAX_DOFS], PetscReal constants[MATERIAL_MAX_CONSTANTS],
+                          PetscReal m[MIXED_PRESSURES])
 {
   const size_t     batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
   const PetscReal *multipliers = ElasticityMultipliers(e, g, (PetscInt)batch);
@@ -956,7 +1002,7 @@ PetscErrorCode ElasticityVolumeEnergy(Elasticity e, const PetscReal *u, PetscRea
     for (PetscInt slot = 0; slot < g->n_cells; slot++) {
       PetscReal X[MAX_DOFS], cell_u[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES];
 
-      GatherCell(e, g, slot, u, X, cell_u, constants, m);
+      ElasticityGatherCell(e, g, slot, u, X, cell_u, constants, m);
       *energy += ElementVolumeEnergy(&g->kernel, X, cell_u, constants, m);
     }
   }
@@ -972,7 +1018,7 @@ static void AddCellStress(Elasticity e, CellGroup *g, PetscInt slot, const Petsc
   PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS],
     constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES], volume = 0;
 
-  GatherCell(e, g, slot, u, X, cell_u, constants, m);
+  ElasticityGatherCell(e, g, slot, u, X, cell_u, constants, m);
   ElementPointStress(&g->kernel, X, cell_u, constants, m, point_stress, point_volume);
   for (int p = 0; p < element->points; p++) volume += point_volume[p];
   for (int a = 0; a < element->nodes; a++) {

@@ -4,7 +4,8 @@
    block CSR over local nodes, with ghost rows and every dof, supported ones too. It may extrapolate stresses from an
    earlier state (stressreference.h). ElasticityMatrix() passes it on to a
    parallel AIJ matrix over the free dofs, ElasticityMultiplyLocal() multiplies it by local vectors for the prescribed
-   dofs. ElasticityNodalStress() gives stresses for output.
+   dofs. ElasticityNodalStress() gives stresses for output. ElasticityPlacePoints(), ElasticityPointStates() and
+   ElasticityPointRates() show the quadrature points of one cell.
 
    Mixed elements whose volume is kept exactly, or nearly so, have multipliers (volumes.c). ElasticityFollow() changes
    them in an iteration of Newton's method, ElasticityAugment() after a solve until the volume is right.
@@ -30,6 +31,7 @@ PetscErrorCode ElasticityTangent(Elasticity, const PetscReal *u, const StressRef
 PetscErrorCode ElasticityExtrapolates(Elasticity, PetscBool *any);
 PetscErrorCode ElasticityAddBlock(Elasticity, PetscInt n, const PetscInt nodes[], const PetscReal k[]);
 PetscErrorCode ElasticityMultiplyLocal(Elasticity, const PetscReal *x, PetscReal *y);
+PetscErrorCode ElasticityMultiplyTransposed(Elasticity, const PetscReal *x, PetscReal *y);
 PetscErrorCode ElasticitySetSymmetric(Elasticity, PetscBool);
 PetscErrorCode ElasticityMatrix(Elasticity, Mat C, Vec diagonal, Mat *);
 PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat C);
@@ -71,5 +73,11 @@ PetscErrorCode ElasticityArchive(Elasticity, Archive);
 PetscBool      ElasticityAugments(Elasticity);
 PetscErrorCode ElasticityFindEnclosed(Elasticity, Scene, const PetscBool *prescribed);
 PetscBool      ElasticityEnclosedChange(Elasticity);
+PetscErrorCode ElasticityEnhanced(Elasticity, PetscBool *any);
+PetscErrorCode ElasticityPlacePoints(Elasticity, PetscInt cell, PetscReal *x, PetscReal *volume);
+PetscErrorCode ElasticityPointStates(Elasticity, PetscInt cell, const PetscReal *u, PetscReal *H, PetscReal *P,
+                                     PetscReal *pressure, PetscReal *compliance);
+PetscErrorCode ElasticityPointRates(Elasticity, PetscInt cell, const PetscReal *u, const PetscReal *v, PetscReal *H,
+                                    PetscReal *pressure);
 PetscReal      ElasticityCellModulus(Elasticity, PetscInt cell);
 PetscInt       ElasticityInvertedCell(Elasticity, int *fault);

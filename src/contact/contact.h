@@ -166,6 +166,7 @@ PetscErrorCode ContactChangeVectors(Contact, PetscInt rows, PetscInt terms, Pets
 PetscErrorCode ContactGetBorder(Contact, Border *);
 PetscBool      ContactHasFits(Contact);
 PetscErrorCode ContactMultiplyBegin(Contact, const PetscReal *x, PetscReal t, PetscReal t_next);
+PetscErrorCode ContactMultiplyTransposed(Contact, int pair, const PetscReal *x);
 PetscErrorCode ContactMultiplyEnd(Contact, PetscReal *y);
 /* Linear steps and predictions */
 PetscErrorCode ContactHoldActiveSet(Contact, PetscBool holding, PetscBool touching);
@@ -183,6 +184,7 @@ PetscReal      ContactPairStick(Contact, int pair);
 PetscErrorCode ContactPairFriction(Contact, int pair, ContactFriction *);
 PetscErrorCode ContactPairLoad(Contact, int pair, const PetscReal *u, ContactLoad *);
 PetscErrorCode ContactStifferForces(Contact, PenaltySource, PetscReal *f);
+PetscErrorCode ContactPairStifferForces(Contact, int pair, PenaltySource, PetscReal *f);
 PetscErrorCode ContactLoadChanges(Contact, PenaltySource, const PetscReal *u, const PetscReal *v, ContactLoad change[]);
 PetscErrorCode ContactAdjustPenalty(Contact, ContactWindowState *);
 PetscErrorCode ContactAdjustNextPenalty(Contact);

@@ -119,6 +119,40 @@ static PetscErrorCode PairChangeDestroy(PairChange *change)
 }
 
 /*@
+  ContactPairStifferForces - computes the forces that stiffer penalties add in one pair where nothing moves.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact, in the state of its last ContactResidual() with forces
+. p       - number of the pair
+- source  - which penalties become stiffer
+
+  Input/Output Parameter:
+. f - forces for each unit of the logarithm of the factor on the penalties are subtracted as external ones are,
+      f[n_nodes*dim], complete at owned nodes
+@*/
+PetscErrorCode ContactPairStifferForces(Contact contact, int p, PenaltySource source, PetscReal *f)
+{
+  ContactPair *pair = &contact->pairs[p];
+  PetscReal   *values;
+  PairChange   change;
+
+  PetscFunctionBeginUser;
+  PetscCall(PairChangeCreate(pair, &change));
+  PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
+  PetscCall(PointChanges(pair, source, NULL, &change));
+  PetscCall(ContactPointForces(pair, change.on_point, values));
+  for (PetscInt q = 0; pair->friction && q < pair->lists->n_slaves; q++)
+    PetscCall(FrictionPointForces(pair, q, &change.friction[3 * q], values));
+  if (pair->tool) PetscCall(ContactToolForces(pair, values));
+  PetscCall(NeighbourListsReduce(pair->lists, values, f));
+  PetscCall(PetscFree(values));
+  PetscCall(PairChangeDestroy(&change));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactStifferForces - computes the forces that stiffer penalties add where nothing moves.
 
   Collective
@@ -128,28 +162,12 @@ static PetscErrorCode PairChangeDestroy(PairChange *change)
 - source  - which penalties become stiffer
 
   Input/Output Parameter:
-. f - forces for each unit of the logarithm of the factor on the penalties are subtracted as external ones are,
-      f[n_nodes*dim], complete at owned nodes
+. f - as of ContactPairStifferForces(), of all pairs
 @*/
 PetscErrorCode ContactStifferForces(Contact contact, PenaltySource source, PetscReal *f)
 {
   PetscFunctionBeginUser;
-  for (int p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-    PetscReal   *values;
-    PairChange   change;
-
-    PetscCall(PairChangeCreate(pair, &change));
-    PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
-    PetscCall(PointChanges(pair, source, NULL, &change));
-    PetscCall(ContactPointForces(pair, change.on_point, values));
-    for (PetscInt q = 0; pair->friction && q < pair->lists->n_slaves; q++)
-      PetscCall(FrictionPointForces(pair, q, &change.friction[3 * q], values));
-    if (pair->tool) PetscCall(ContactToolForces(pair, values));
-    PetscCall(NeighbourListsReduce(pair->lists, values, f));
-    PetscCall(PetscFree(values));
-    PetscCall(PairChangeDestroy(&change));
-  }
+  for (int p = 0; p < contact->n_pairs; p++) PetscCall(ContactPairStifferForces(contact, p, source, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

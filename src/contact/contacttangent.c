@@ -289,7 +289,7 @@ PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, 
   for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairStiffness(contact, &contact->pairs[p], u, t));
   PetscCall(PlaceBlocks(contact, changed));
   for (int p = 0; p < contact->n_pairs; p++) {
-    if (contact->product) BlockMatrixMultiply(contact->blocks, contact->product[p].x, contact->product[p].y);
+    if (contact->product) BlockMatrixMultiply(contact->blocks, contact->transposed, contact->product[p].x, contact->product[p].y);
     PetscCall(PairBlocks(contact, &contact->pairs[p], p, t, &block));
   }
   PetscCall(BlockMatrixEnd(contact->blocks, C));
@@ -311,6 +311,7 @@ PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, 
 PetscErrorCode ContactMultiplyBegin(Contact contact, const PetscReal *x, PetscReal t, PetscReal t_next)
 {
   PetscFunctionBeginUser;
+  contact->transposed = PETSC_FALSE;
   PetscCall(PetscMalloc1(contact->n_pairs, &contact->product));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair    *pair    = &contact->pairs[p];
@@ -320,6 +321,32 @@ PetscErrorCode ContactMultiplyBegin(Contact contact, const PetscReal *x, PetscRe
     PetscCall(PetscCalloc2(n, &product->x, n, &product->y));
     PetscCall(ContactPairMove(contact, pair, x, t, t_next, product->x));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactMultiplyTransposed - makes the product that was begun one with the transposed tangent, and adds to what one
+  pair's part of it is multiplied with.
+
+  Collective
+
+  Input Parameters:
++ contact - after ContactMultiplyBegin()
+. p       - number of the pair; -1: nothing is added
+- x       - local vector x[n_nodes*dim], ghosts included
+@*/
+PetscErrorCode ContactMultiplyTransposed(Contact contact, int p, const PetscReal *x)
+{
+  ContactPair *pair = p < 0 ? NULL : &contact->pairs[p];
+  PetscReal   *values;
+
+  PetscFunctionBeginUser;
+  contact->transposed = PETSC_TRUE;
+  if (!pair) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
+  PetscCall(ContactPairMove(contact, pair, x, pair->t, pair->t, values));
+  for (PetscInt i = 0; i < pair->lists->n_nodes * contact->mesh->dim; i++) contact->product[p].x[i] += values[i];
+  PetscCall(PetscFree(values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -120,6 +120,61 @@ void ElementPointStress(const KernelCase *kernel, const double *X, const double 
   }
 }
 
+/* Adds the stress pressure F^-T of a mixed element, with small strains pressure 1, to P. */
+static void AddPressureStress(const double H[9], double pressure, int finite, double P[9])
+{
+  double F[9], determinant = 0;
+
+  for (int r = 0; r < 9; r++) F[r] = (finite ? H[r] : 0) + (r % 4 == 0);
+  for (int J = 0; J < 3; J++) determinant += F[J] * (F[3 + (J + 1) % 3] * F[6 + (J + 2) % 3] -
+                                                     F[3 + (J + 2) % 3] * F[6 + (J + 1) % 3]);
+  for (int i = 0; i < 3; i++) {
+    for (int J = 0; J < 3; J++) {
+      const int i1 = 3 * ((i + 1) % 3), i2 = 3 * ((i + 2) % 3), J1 = (J + 1) % 3, J2 = (J + 2) % 3;
+
+      P[3 * i + J] += pressure * (F[i1 + J1] * F[i2 + J2] - F[i1 + J2] * F[i2 + J1]) / determinant;
+    }
+  }
+}
+
+/*@
+  ElementPointNominal - computes displacement gradients and first Piola-Kirchhoff stresses at the quadrature points of
+  one element.
+
+  Not collective
+
+  Input Parameters:
++ kernel    - element type, geometry, kinematics and law
+. X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u         - displacements (length) [nodes][dim]
+. constants  - of the law [n_constants]
+- multiplier - of a mixed element (stress times root of volume) [pressures]; NULL: they are 0
+
+  Output Parameters:
++ H        - as of ElementPointState() [points][9]
+. pressure - likewise [points]
+- P        - at 3 i + I, with the pressure of a mixed element; with small strains the stress [points][9]; or NULL
+@*/
+void ElementPointNominal(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+                         const double *multiplier, double *H, double *pressure, double *P)
+{
+  const Element *e      = ElementGet(kernel->type);
+  const int      finite = kernel->kinematics == KINEMATICS_FINITE;
+  const int      n      = kernel->n_constants ? kernel->n_constants : MaterialGetLaw(kernel->law)->constants;
+  double         used[MATERIAL_MAX_CONSTANTS];
+
+  for (int k = 0; k < n; k++) used[k] = constants[k];
+  if (kernel->formulation == FORMULATION_MIXED) used[0] = 0; /* the pressure takes the place of this part */
+  ElementPointState(kernel, X, u, constants, multiplier, H, pressure);
+  for (int p = 0; p < e->points && P; p++) {
+    if (kernel->plastic)
+      PlasticStress(kernel, X, u, used, p, &H[9 * p], &P[9 * p]);
+    else
+      MaterialEvaluate(kernel->law, n, used, &H[9 * p], NULL, &P[9 * p], NULL);
+    if (kernel->formulation == FORMULATION_MIXED) AddPressureStress(&H[9 * p], pressure[p], finite, &P[9 * p]);
+  }
+}
+
 /*@
   ElementStress - computes the Cauchy stress of one element, averaged over its volume.
 

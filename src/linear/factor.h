@@ -4,7 +4,8 @@
    and no right-hand sides with few entries. A MUMPS without METIS cuts graphs so unevenly that a second rank gains
    little.
 
-   Create a Factor, make it with FactorMake() for each new matrix, and solve with FactorSolve() or FactorSolveColumns().
+   Create a Factor, make it with FactorMake() for each new matrix, and solve with FactorSolve(), FactorSolveTransposed() or
+   FactorSolveColumns().
    FactorAnalyse() alone finds what a factor would cost. FactorPrepareBorder() and FactorSetBorder() add a sum of few
    v v^T to the matrix without a change of its ordering (borderedfactor.h). */
 #pragma once
@@ -32,5 +33,6 @@ PetscBool      FactorHasBorder(Factor);
 PetscErrorCode FactorAnalyse(Factor, Mat A, PCFailedReason *);
 PetscErrorCode FactorMake(Factor, Mat A, PCFailedReason *);
 PetscErrorCode FactorSolve(Factor, Vec b, Vec x);
+PetscErrorCode FactorSolveTransposed(Factor, Vec b, Vec x);
 PetscErrorCode FactorSolveColumns(Factor, Mat B, Mat X);
 void           FactorGetCost(Factor, FactorCost *);

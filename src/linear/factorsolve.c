@@ -5,6 +5,8 @@
 
 /* ICNTL(20): how MUMPS is given right-hand sides. */
 enum { RIGHT_SPARSE = 1, RIGHT_DISTRIBUTED = 10 };
+/* ICNTL(9): any number but 1 */
+enum { SOLVE_TRANSPOSED = 2 };
 /* ICNTL(21): solutions stay on the ranks that have eliminated their unknowns. */
 enum { SOLUTION_DISTRIBUTED = 1 };
 /* Columns that are solved for at a time. They are enough for products of matrices, and few enough for the memory of the
@@ -159,6 +161,29 @@ PetscErrorCode FactorSolve(Factor f, Vec b, Vec x)
   mumps->rhs_loc = NULL;
   PetscCall(VecRestoreArrayWrite(x, &to));
   PetscCall(VecRestoreArrayRead(b, &from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FactorSolveTransposed - solves A^T x = b.
+
+  Collective
+
+  Input Parameters:
++ f - holds the factor of A
+- b - right-hand side, distributed as the rows of A
+
+  Output Parameter:
+. x - solution; infinite where there is no factor
+@*/
+PetscErrorCode FactorSolveTransposed(Factor f, Vec b, Vec x)
+{
+  const MUMPS_INT plain = f->mumps.ICNTL(9);
+
+  PetscFunctionBeginUser;
+  f->mumps.ICNTL(9) = SOLVE_TRANSPOSED;
+  PetscCall(FactorSolve(f, b, x));
+  f->mumps.ICNTL(9) = plain;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -25,6 +25,10 @@
 #define LINEAR_ITERATIONS 1000
 #define LINEAR_RESTART    100
 
+/* Relative residual above which a solution with the transposed operator is not taken: those are weights of an error
+   estimate, for which three digits are enough. */
+#define LINEAR_TRANSPOSED 1e-3
+
 struct _n_LinearSolver {
   KSP          ksp;
   Multigrid    multigrid; /* NULL: direct */
@@ -220,6 +224,60 @@ PetscErrorCode LinearSolverRenew(LinearSolver solver)
     PetscCall(
       KSPSetTolerances(solver->ksp, PETSC_DEFAULT, 0, PETSC_DEFAULT, PETSC_DEFAULT)); /* this was for the last step */
   if (solver->kept) PetscCall(ReusedFactorRenew(solver->kept));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  LinearSolverTransposed - solves A^T x = b with the operator of the KSP.
+
+  Collective
+
+  Input Parameters:
++ solver - the linear solver, after LinearSolverRenew() and LinearSolverNext()
+. A      - the operator
+- b      - right-hand side
+
+  Output Parameters:
++ x      - the solution, where it was found
+- solved - PETSC_FALSE: the operator is singular, or it is not symmetric and no factor of this program serves
+
+  Note:
+  A symmetric operator is solved with as it stands, by any solver.
+@*/
+PetscErrorCode LinearSolverTransposed(LinearSolver solver, Mat A, Vec b, Vec x, PetscBool *solved)
+{
+  PetscReal right, left;
+  Factor    factor;
+  Vec       r, d;
+
+  PetscFunctionBeginUser;
+  *solved = PETSC_FALSE;
+  PetscCall(VecNorm(b, NORM_2, &right));
+  PetscCall(VecDuplicate(b, &r));
+  PetscCall(VecDuplicate(x, &d));
+  if (solver->symmetric)
+    PetscCall(KSPSolve(solver->ksp, b, x));
+  else {
+    PetscCall(DirectSolverFactor(solver->ksp, &factor));
+    if (factor) PetscCall(KSPSetUp(solver->ksp));
+    if (factor)
+      PetscCall(FactorSolveTransposed(factor, b, x));
+    else
+      PetscCall(VecSet(x, INFINITY));
+    PetscCall(MatMultTranspose(A, x, r));
+    PetscCall(VecAYPX(r, -1, b));
+    if (factor) PetscCall(FactorSolveTransposed(factor, r, d));
+    if (factor) PetscCall(VecAXPY(x, 1, d));
+  }
+  if (solver->symmetric)
+    PetscCall(MatMult(A, x, r));
+  else
+    PetscCall(MatMultTranspose(A, x, r));
+  PetscCall(VecAYPX(r, -1, b));
+  PetscCall(VecNorm(r, NORM_2, &left));
+  *solved = (PetscBool)(left <= LINEAR_TRANSPOSED * right);
+  PetscCall(VecDestroy(&d));
+  PetscCall(VecDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -61,6 +61,7 @@ struct _n_BlockMatrix {
   PetscReal       *whole;   /* [pairs][size*size]: of blocks that are not symmetric; NULL: there are none */
   PetscBool        uneven;  /* such a block was added */
   PetscInt        *coupled; /* room for the result of BlockMatrixGetCoupled() */
+  PetscBool        transposed; /* the blocks are multiplied transposed */
   const PetscReal *along;   /* vector that blocks are multiplied by when they are added, or NULL */
   PetscReal       *product;
   PetscBool        restored; /* the matrix is not the one that its user knows */
@@ -734,18 +735,25 @@ PetscErrorCode BlockMatrixAddOuter(BlockMatrix blocks, int list, PetscInt n, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* product += rows * along, the rows of a block that is not symmetric. */
+/* product += rows * along, the rows of a block that is not symmetric, or their transposed times along. */
 static void MultiplyRows(BlockMatrix blocks, PetscInt n_rows, const PetscInt *row, PetscInt n, const PetscInt *node,
                          const PetscReal *value)
 {
   const int size = blocks->size;
 
   for (PetscInt i = 0; i < n_rows * size; i++) {
-    PetscReal sum = 0;
+    const PetscInt at  = row[i / size] * size + i % size;
+    PetscReal      sum = 0;
 
-    for (PetscInt j = 0; j < n * size; j++)
-      sum += value[i * n * size + j] * blocks->along[node[j / size] * size + j % size];
-    blocks->product[row[i / size] * size + i % size] += sum;
+    for (PetscInt j = 0; j < n * size; j++) {
+      const PetscInt column = node[j / size] * size + j % size;
+
+      if (blocks->transposed)
+        blocks->product[column] += value[i * n * size + j] * blocks->along[at];
+      else
+        sum += value[i * n * size + j] * blocks->along[column];
+    }
+    blocks->product[at] += sum;
   }
 }
 
@@ -813,17 +821,19 @@ PetscErrorCode BlockMatrixAddRows(BlockMatrix blocks, int list, PetscInt n_rows,
   Not collective
 
   Input Parameters:
-+ blocks - the block matrix
-. x      - over the nodes of the blocks' list, borrowed; NULL ends the multiplication
-- y      - over the same nodes, borrowed; added to
++ blocks     - the block matrix
+. transposed - y += block^T * x
+. x          - over the nodes of the blocks' list, borrowed; NULL ends the multiplication
+- y          - over the same nodes, borrowed; added to
 
   Note:
   Entries without a global dof are included. BlockMatrixBegin() ends the multiplication too.
 @*/
-void BlockMatrixMultiply(BlockMatrix blocks, const PetscReal *x, PetscReal *y)
+void BlockMatrixMultiply(BlockMatrix blocks, PetscBool transposed, const PetscReal *x, PetscReal *y)
 {
-  blocks->along   = x;
-  blocks->product = y;
+  blocks->transposed = transposed;
+  blocks->along      = x;
+  blocks->product    = y;
 }
 
 /* Fills the lower triangle of the sums on the diagonal. Blocks only add to the upper one. */

@@ -33,7 +33,7 @@ PetscErrorCode BlockMatrixAdd(BlockMatrix, int list, PetscInt n, const PetscInt 
 PetscErrorCode BlockMatrixAddOuter(BlockMatrix, int list, PetscInt n, const PetscInt node[], const PetscReal v[]);
 PetscErrorCode BlockMatrixAddRows(BlockMatrix, int list, PetscInt n_rows, const PetscInt row[], PetscInt n,
                                   const PetscInt node[], const PetscReal value[]);
-void           BlockMatrixMultiply(BlockMatrix, const PetscReal *x, PetscReal *y);
+void           BlockMatrixMultiply(BlockMatrix, PetscBool transposed, const PetscReal *x, PetscReal *y);
 PetscErrorCode BlockMatrixEnd(BlockMatrix, Mat *);
 PetscErrorCode BlockMatrixGetCoupled(BlockMatrix, PetscInt dof, PetscInt *n, const PetscInt **coupled);
 

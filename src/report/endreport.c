@@ -317,6 +317,7 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
     PrintPenaltyError(&figures->pairs[p], stream);
     PrintSides(&figures->pairs[p], stream);
   }
+  ProbeErrorsPrint(figures->errors, stream);
   for (int i = 0; i < figures->n_fluids && figures->last; i++) PrintFluid(&figures->fluids[i], stream);
   if (SceneIsPlastic(figures->scene) && figures->last) PrintEnergy(&figures->last->energy, stream);
   PrintCertificate(figures, stream);

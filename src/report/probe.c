@@ -1,9 +1,7 @@
 /* The scalars that a scene asks for, see probe.h. */
-#include "report/probe.h"
+#include "probeimpl.h"
 #include "contact/contactedge.h"
-#include "search/freeedge.h"
 #include "base/refusal.h"
-#include "base/gathertable.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,25 +22,6 @@ enum {
   SLAVE_AREA     = SLAVE_POSITION + 3,
   SLAVE_PRESSURE,
   SLAVE_COLUMNS
-};
-
-typedef struct {
-  const SceneProbe *scene;
-  const MeshGroup  *group; /* reaction; slave surface of the pair */
-  int               pair;
-  PetscInt          id[2];      /* node_id of the points */
-  PetscInt          node[2];    /* the local node on its owner, -1 elsewhere */
-  FreeEdges         free_edges; /* of the slave surface, NULL: not asked for */
-  PetscReal         face_size;  /* mean, of the slave surface */
-  PetscReal         spacing;
-} Probe;
-
-struct _n_Probes {
-  Model        model;
-  Scene        scene;
-  int         *node_body; /* index into scene->bodies, during the preparation */
-  Probe       *probe;
-  GatherTable *slaves; /* per pair, of the evaluation under way; row NULL: not asked for yet */
 };
 
 typedef enum { NAMES_NOTHING, NAMES_SURFACE, NAMES_PAIR } ProbeNames;
@@ -714,6 +693,7 @@ PetscErrorCode ProbesEvaluate(Probes probes, PetscReal values[])
     const SceneProbe *scene = &probes->scene->probes[i];
 
     PetscCall(types[scene->kind].evaluate(probes, &probes->probe[i], &values[i]));
+    probes->probe[i].plain = values[i];
     if (scene->absolute) values[i] = PetscAbsReal(values[i]);
     values[i] *= scene->factor;
   }

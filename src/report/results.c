@@ -19,6 +19,7 @@ struct _n_Results {
   StepsCsv    csv;
   Fields      fields;
   Terminal    terminal;
+  ProbeErrors errors; /* NULL: the scene does not ask for them */
   PetscReal  *values; /* of the probes, at the last accepted step */
   PetscBool  *met;    /* per contact pair: some slave node has met its master */
   StepRecord  last;
@@ -64,6 +65,7 @@ PetscErrorCode ResultsCreate(Model model, Probes probes, Scene scene, const char
                          &results->standing));
   PetscCall(StepsCsvCreate(scene, directory, &results->csv));
   PetscCall(FieldsCreate(model, scene, directory, &results->fields));
+  PetscCall(ProbeErrorsCreate(model, probes, scene, &results->errors));
   PetscCall(OptionRecordCreate(&results->options));
   PetscCall(TerminalCreate(model, probes, scene, directory, quiet, &results->terminal));
   *result = results;
@@ -85,6 +87,7 @@ PetscErrorCode ResultsDestroy(Results *results)
   PetscCall(StepsCsvDestroy(&(*results)->csv));
   PetscCall(FieldsDestroy(&(*results)->fields));
   PetscCall(OptionRecordDestroy(&(*results)->options));
+  PetscCall(ProbeErrorsDestroy(&(*results)->errors));
   PetscCall(TerminalDestroy(&(*results)->terminal));
   PetscCall(PetscFree3((*results)->values, (*results)->met, (*results)->standing));
   PetscCall(PetscFree(*results));
@@ -198,6 +201,21 @@ static PetscErrorCode ResultsWatchContact(Results results)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &met, 1, MPI_INT, MPI_LOR, model->mesh->comm));
     results->met[p] = met ? PETSC_TRUE : PETSC_FALSE;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ResultsLastSolution - takes what the results need of the solution at the end of the load, before it is accepted.
+
+  Collective
+
+  Input Parameter:
+. results - of the run, after ResultsStart()
+@*/
+PetscErrorCode ResultsLastSolution(Results results)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ProbeErrorsEstimate(results->errors));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -373,6 +391,7 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   usage.wall_s = results->before.wall_s + run->wall_s;
   PetscCall(RunFiguresCollect(results->model, results->scene, run, &usage, results->restarts,
                               results->stepped ? &results->last : NULL, &figures));
+  figures.errors          = results->errors;
   figures.options_changed = results->options.changes;
   figures.results_bytes   = RunResultsBytes(results->directory);
   for (int p = 0; p < figures.n_pairs; p++)

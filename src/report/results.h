@@ -2,7 +2,7 @@
    the terminal. Ties the parts that write them; does not know how values were computed.
 
    ResultsCreate() touches no file. ResultsStart() makes the directory and prints the first lines, ResultsStep() writes
-   each accepted step, ResultsFinish() ends the run however it went. ResultsArchive() keeps the state of all this in a
+   each accepted step, ResultsLastSolution() comes before the last one is accepted, ResultsFinish() ends the run however it went. ResultsArchive() keeps the state of all this in a
    checkpoint; loaded before ResultsStart(), it lets the run go on in the same files. Which directory may be used is
    decided before, by rundirectory.h. */
 #pragma once
@@ -32,6 +32,7 @@ typedef struct {
 PetscErrorCode ResultsCreate(Model, Probes, Scene, const char *directory, PetscBool quiet, Results *);
 PetscErrorCode ResultsDestroy(Results *);
 PetscErrorCode ResultsStart(Results);
+PetscErrorCode ResultsLastSolution(Results);
 PetscErrorCode ResultsStep(Results, const StepRecord *);
 PetscErrorCode ResultsFinish(Results, const RunRecord *);
 PetscErrorCode ResultsArchive(Results, Archive);

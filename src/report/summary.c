@@ -192,6 +192,32 @@ static void AddState(cJSON *json, Scene scene, PetscBool has_contact, const Step
   for (int i = 0; i < scene->n_probes; i++) AddReal(map, scene->probes[i].name, last ? probes[i] : NAN);
 }
 
+/* Adds the estimated errors of the probes, if the scene asks for them. */
+static void AddErrors(cJSON *json, const RunFigures *figures)
+{
+  cJSON *map = figures->errors ? cJSON_AddObjectToObject(json, "error") : NULL;
+
+  for (int i = 0; map && i < figures->scene->n_probes; i++) {
+    cJSON               *probe = cJSON_AddObjectToObject(map, figures->scene->probes[i].name), *parts;
+    const char          *why;
+    PetscReal            value;
+    const QuantityError *error = ProbeErrorsGet(figures->errors, i, &value, &why);
+
+    if (why) cJSON_AddStringToObject(probe, "not_estimated", why);
+    if (why) continue;
+    AddReal(probe, "value", value);
+    AddReal(probe, "sum", error->sum);
+    AddReal(probe, "magnitude", error->magnitude);
+    AddReal(probe, "per_cent", value != 0 ? 100 * error->sum / PetscAbsReal(value) : NAN);
+    parts = cJSON_AddObjectToObject(probe, "causes");
+    for (int c = 0; c < ERROR_CAUSES; c++)
+      if (isnan((double)error->part[c]))
+        cJSON_AddStringToObject(parts, ErrorCauses[c], "not included");
+      else
+        AddReal(parts, ErrorCauses[c], error->part[c]);
+  }
+}
+
 /* Adds the energies of plastic bodies, if there are any. */
 static void AddEnergy(cJSON *json, Scene scene, const StepRecord *last)
 {
@@ -386,6 +412,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddUsage(json, figures);
   AddGuards(json, run->way);
   AddState(json, figures->scene, figures->n_pairs ? PETSC_TRUE : PETSC_FALSE, figures->last, probes);
+  AddErrors(json, figures);
   AddEnergy(json, figures->scene, figures->last);
   AddPartition(json, mesh);
   AddContact(json, figures);

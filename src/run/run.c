@@ -129,6 +129,16 @@ static PetscErrorCode RunMonitor(LoadStepper stepper, const StepRecord *record, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* At the solution of the last step. */
+static PetscErrorCode RunLastSolution(void *context)
+{
+  Run *run = context;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsLastSolution(run->results));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Makes results and stepper, ready for the first step. */
 static PetscErrorCode RunCreateStepper(Run *run, const RunInput *input)
 {
@@ -139,6 +149,7 @@ static PetscErrorCode RunCreateStepper(Run *run, const RunInput *input)
   PetscCall(LoadStepperSetFromScene(run->stepper, run->scene));
   PetscCall(LoadStepperSetFromOptions(run->stepper));
   PetscCall(LoadStepperMonitorSet(run->stepper, RunMonitor, run));
+  if (run->scene->output.error) PetscCall(LoadStepperLastSet(run->stepper, RunLastSolution, run));
   PetscCall(CheckpointSetRun(run->checkpoint, run->scene, run->model, run->stepper, run->results));
   if (input->restart) PetscCall(CheckpointRead(run->checkpoint));
   PetscCall(ResultsStart(run->results));

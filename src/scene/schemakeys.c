@@ -375,6 +375,8 @@ const SchemaKey SchemaKeys[] = {
    .help = "steps between two checkpoints; 0: only when the run ends early"},
   {"output.certificate", BOOLEAN, .preset = "true",
    .help = "true: each step is judged before it is accepted: nothing passed through anything unseen"},
+  {"output.error", BOOLEAN, .preset = "false",
+   .help = "true: the error of each probe is estimated at the end, split by cause; one more solve for each"},
   {"certificate", MAP, .help = "what a step must hold to be certified"},
   {"certificate.penetration", REAL, .range = "(0, inf)", .unit = "face sizes", .preset = "0.1",
    .help = "largest depth to which faces may cross, in sizes of the smaller face, besides what the shape of faces "

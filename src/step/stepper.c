@@ -38,6 +38,8 @@ struct _n_LoadStepper {
   StepperReport        report;
   PetscInt             n_landings, next_landing;
   PetscReal           *landings; /* load parameters that steps must end on, ascending; the last one is 1 */
+  LoadStepperLastFn    last; /* NULL: nobody wants the last solution */
+  void                *last_context;
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
   PetscReal            used;   /* by the last attempt of this step, of what the bounds on plastic flow allow; 0: none */
@@ -216,6 +218,24 @@ PetscErrorCode LoadStepperMonitorSet(LoadStepper stepper, LoadStepperMonitorFn m
 }
 
 /*@
+  LoadStepperLastSet - sets a function that is called at the solution of the last step, before that is accepted.
+
+  Logically collective
+
+  Input Parameters:
++ stepper - the stepper
+. last    - the function; it leaves the model as it is
+- context - handed to it; borrowed
+@*/
+PetscErrorCode LoadStepperLastSet(LoadStepper stepper, LoadStepperLastFn last, void *context)
+{
+  PetscFunctionBeginUser;
+  stepper->last         = last;
+  stepper->last_context = context;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   LoadStepperView - prints control, dt, its bounds and the landing points.
 
   Collective on the viewer
@@ -349,6 +369,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   stepper->size.dt = PetscMin(stepper->size.dt_max, PetscMax(stepper->size.dt, PetscMin(dt, stepper->size.dt_min)));
   record->beta     = stepper->size.beta;
   record->tied     = stepper->size.tied;
+  if (stepper->last && model->t >= 1 - STEPPER_SAME_T) PetscCall(stepper->last(stepper->last_context));
   PetscCall(ModelAccept(model));
   record->energy = EnergyBalanceGet(model->balance);
   if (solve->jump[0]) {

@@ -55,6 +55,7 @@ typedef struct {
 
 typedef struct _n_LoadStepper *LoadStepper;
 typedef PetscErrorCode (*LoadStepperMonitorFn)(LoadStepper, const StepRecord *, void *);
+typedef PetscErrorCode (*LoadStepperLastFn)(void *);
 
 PetscErrorCode LoadStepperCreate(MPI_Comm, LoadStepper *);
 PetscErrorCode LoadStepperDestroy(LoadStepper *);
@@ -62,6 +63,7 @@ PetscErrorCode LoadStepperSetModel(LoadStepper, Model);
 PetscErrorCode LoadStepperSetFromScene(LoadStepper, Scene);
 PetscErrorCode LoadStepperSetFromOptions(LoadStepper);
 PetscErrorCode LoadStepperMonitorSet(LoadStepper, LoadStepperMonitorFn, void *);
+PetscErrorCode LoadStepperLastSet(LoadStepper, LoadStepperLastFn, void *);
 PetscErrorCode LoadStepperStop(LoadStepper);
 PetscErrorCode LoadStepperSolve(LoadStepper, StepperReport *);
 PetscErrorCode LoadStepperArchive(LoadStepper, Archive);

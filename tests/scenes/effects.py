@@ -34,6 +34,8 @@ EFFECTS = {
     "augmented penalty": (["contact.0.penalty.augment=true", *WINDOW], "ContactAdjust", "contactpenalty|anderson"),
     "control by contact":
     (["stepping={control: contact, initial: 0.5, N_c: 5}"], "ContactTouch", "contacttouch|touchstep"),
+    "errors of probes": (["output.error=true"], "ProbeError",
+                         "adjoint|bodyerror|quantityerror|probeerrors|probevariation|cellpoints|recovery"),
     "follower load": (["loads.0.follower=true"], "LoadsFollower", ""),
 }
 # Keys that are there and off
@@ -42,7 +44,7 @@ OFF = [
     "contact.0.derivatives=diffuse", "contact.0.offset=live", "contact.0.penalty.adjust=false",
     "contact.0.penalty.when=step", "contact.0.penalty.clamp=10", "contact.0.penalty.augment=false",
     "contact.0.penalty.max_updates=5", *WINDOW, "loads.0.follower=false", "stepping.N_c=5",
-    "stepping.prediction=tangent", "output.checkpoint=0"
+    "stepping.prediction=tangent", "output.checkpoint=0", "output.error=false"
 ]
 # These files hold the text of the scene, the edits of it and its record. Their length follows the number of keys that
 # are given, not the effects.

@@ -1,5 +1,5 @@
-/* What elasticity.c, enclosed.c, volumes.c, plasticstates.c and plasticpath.c share: the cells of an elasticity in
-   batches. elasticity.c is below the others. */
+/* What elasticity.c, cellpoints.c, enclosed.c, volumes.c, plasticstates.c and plasticpath.c share: the cells of an
+   elasticity in batches. elasticity.c is below the others. */
 #pragma once
 #include "bodies/elasticity.h"
 #include "kernels/elementkernel.h"
@@ -81,6 +81,9 @@ int        ElasticityBatchCells(const CellGroup *, PetscInt batch);
 PetscReal *ElasticityYieldingOf(Elasticity, const CellGroup *, PetscInt batch);
 PetscReal *ElasticityMultipliers(Elasticity, const CellGroup *, PetscInt batch);
 PetscReal *ElasticityMultipliersOf(const CellGroup *, PetscInt batch, PetscReal *multipliers);
+void       ElasticityGatherCell(Elasticity, CellGroup *, PetscInt slot, const PetscReal *u, PetscReal X[MAX_DOFS],
+                                PetscReal cell_u[MAX_DOFS], PetscReal constants[MATERIAL_MAX_CONSTANTS],
+                                PetscReal m[MIXED_PRESSURES]);
 void       ElasticitySlotCoordinates(Elasticity, const CellGroup *, PetscInt slot, PetscReal *X);
 PetscReal  ElasticityPointStrain(const CellGroup *, const PetscReal *state, PetscInt slot, int p);
 PetscReal  ElasticityPointWork(const CellGroup *, const PetscReal *state, PetscInt slot, int p);

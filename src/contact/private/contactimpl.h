@@ -138,6 +138,7 @@ struct _n_Contact {
   ContactVectors  border;  /* the first variations of its terms */
   ContactVectors  one;     /* room for one of them */
   ContactProduct *product; /* of each pair; NULL: no product is asked for */
+  PetscBool       transposed; /* it is one with the transposed tangent */
   PetscReal      *outer;   /* forces of tools and mirror images are added here; NULL: nobody asks */
   PetscReal      *hold;    /* forces that drive the tools of pairs are added here; NULL: nobody asks */
   PetscLogEvent   event_search, event_project, event_residual, event_tangent;

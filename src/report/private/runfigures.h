@@ -2,6 +2,7 @@
    prints them, and advice judges them. RunUsageCollect() is also used between steps, for a checkpoint. */
 #pragma once
 #include "base/blas.h"
+#include "probeerrors.h"
 #include "report/results.h"
 #include "base/timing.h"
 
@@ -47,6 +48,7 @@ typedef struct {
   PetscBool          certified; /* all accepted steps were judged and hold */
   int                n_fluids;
   FluidReport       *fluids;
+  ProbeErrors        errors; /* of the probes; NULL: not asked for */
 } RunFigures;
 
 PetscErrorCode RunUsageCollect(MPI_Comm, RunUsage *);

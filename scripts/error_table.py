@@ -1,0 +1,149 @@
+"""Estimates of the probes' errors against the true ones: scenes of this repository on several meshes, both orders, with
+output.error, against a reference of the same scene on a finer mesh. Leaves one record per probe and mesh and prints the
+table; --print tables an existing record, --only runs some scenes.
+    python scripts/error_table.py [--burnish BINARY] [--record FILE] [--only NAME ...]
+Effectivity is the true error over the estimated one. Rows whose true error is below 0.05 %, or below four times that of
+the reference as estimated, are listed apart: they say nothing of the estimate."""
+import shutil
+import subprocess
+
+from launch import ROOT, command, environment, read_records, read_summary, table_parser, write_records
+
+SMALL, TIMES = 0.05, 4  # per cent; of the reference's own error
+COLUMNS = ("scene", "order", "mesh", "probe", "status", "dofs", "cpu_s", "value", "estimate", "bodies", "penetration",
+           "reference", "reference_error")
+
+
+class Case:
+    """A scene with its meshes: parameters of each, and of the reference, with overrides of that alone."""
+
+    def __init__(self, scene, probes, meshes, reference, overrides=(), orders=(1, 2), finest=("mesh.order=2", ),
+                 second=()):
+        self.scene, self.probes, self.meshes, self.reference = scene, probes, meshes, reference
+        self.overrides, self.orders, self.finest, self.second = overrides, orders, finest, second
+
+    def edits(self, order, mesh):
+        return [f"mesh.order={order}", f"mesh.parameters={{{mesh}}}", *self.overrides,
+                *(self.second if order == 2 else ())]
+
+
+SHORT = ("bodies.0.formulation=full", )
+STIFF = "contact.0.penalty={initial: auto, scale: 1000}"
+CASES = {
+    "cook":
+    Case("runs/cook.yaml", ("tip_uy", ), ("n: 4", "n: 8", "n: 16"), "n: 48", second=("bodies.0.formulation=mixed", ),
+         finest=("mesh.order=2", "bodies.0.formulation=mixed")),
+    "cantilever":
+    Case("runs/cantilever.yaml", ("high_x", "high_y"), orders=(2, ), meshes=
+         ("lx: 100, ly: 1, nx: 8, ny: 1, skew: 0", "lx: 100, ly: 1, nx: 16, ny: 1, skew: 0",
+          "lx: 100, ly: 1, nx: 32, ny: 1, skew: 0"), reference="lx: 100, ly: 1, nx: 256, ny: 4, skew: 0", second=SHORT,
+         finest=("mesh.order=2", *SHORT)),
+    "ring_pinch":
+    Case("runs/ring_pinch.yaml", ("force", "width"),
+         ("r_in: 99, r_out: 101, n_arc: 8, n_wall: 1", "r_in: 99, r_out: 101, n_arc: 16, n_wall: 1",
+          "r_in: 99, r_out: 101, n_arc: 32, n_wall: 1"), "r_in: 99, r_out: 101, n_arc: 128, n_wall: 3", second=SHORT, orders=(2, ),
+         finest=("mesh.order=2", *SHORT)),
+    "ring_in_ring":
+    Case("runs/ring_in_ring.yaml", ("mean_pressure", ), ("n_inner: 8, n_outer: 10", "n_inner: 16, n_outer: 20",
+                                                         "n_inner: 32, n_outer: 40"), "n_inner: 64, n_outer: 80"),
+    "spheres":
+    Case("runs/spheres.yaml", ("mean_pressure", ), ("n_inner: 3, n_outer: 4", "n_inner: 5, n_outer: 6"),
+         "n_inner: 8, n_outer: 10"),
+    "hertz_line":
+    Case("runs/hertz_line.yaml", ("force", "push"),
+         ("h: 1.6, growth: 0.6", "h: 0.8, growth: 0.3", "h: 0.4, growth: 0.15"), "h: 0.2, growth: 0.06",
+         overrides=("loads=[{surface: cylinder_cut, ux: free, uy: -0.3}]", ), finest=("mesh.order=2", STIFF)),
+    "hertz_sphere":
+    Case("runs/hertz_sphere.yaml", ("force", ), ("n: 3, growth: 1.8", "n: 4, growth: 1.6"), "n: 6, growth: 1.3",
+         finest=("mesh.order=2", STIFF)),
+    "two_balls":
+    Case("runs/two_balls.yaml", ("force", ), ("n_lower: 7, n_upper: 9", "n_lower: 14, n_upper: 18"),
+         "n_lower: 40, n_upper: 50", finest=("mesh.order=2", STIFF)),
+    "o_ring":
+    Case("runs/o_ring.yaml", ("force", ), ("n: 6", "n: 12", "n: 24"), "n: 40",
+         finest=("mesh.order=2", STIFF, "contact.1.penalty={initial: auto, scale: 1000}")),
+    "punch":
+    Case("runs/punch.yaml", ("force", ), ("n: 2", "n: 4", "n: 8"), "n: 32"),
+    "cup_flattening":
+    Case("runs/cup_flattening.yaml", ("plane_force", ), ("n_arc: 30, n_wall: 1", "n_arc: 60, n_wall: 2"),
+         "n_arc: 160, n_wall: 3"),
+    "plate_cylinder":
+    Case("runs/plate_cylinder.yaml", ("tip_uy", "cylinder_fx"),
+         ("h_contact: 1, h_far: 8, n_thick: 2, n_width: 2", "h_contact: 0.5, h_far: 5, n_thick: 3, n_width: 3"),
+         "h_contact: 0.25, h_far: 2.5, n_thick: 4, n_width: 6"),
+    "pipe_pinch":
+    Case("runs/pipe_pinch.yaml", ("plate_force", "diameter_h_mid"), ("n_arc: 12, n_wall: 1, n_len: 5",
+                                                                     "n_arc: 24, n_wall: 1, n_len: 10"),
+         "n_arc: 40, n_wall: 1, n_len: 16", orders=(2, )),
+}
+
+
+def solve(args, name, edits):
+    out = args.out / name
+    shutil.rmtree(out, ignore_errors=True)
+    line = command(args.burnish, 1, ROOT / CASES[name].scene, out, (*edits, "output.error=true"), "-quiet", "-overwrite")
+    finished = subprocess.run(line, env=environment(args.burnish), capture_output=True, text=True, check=False)
+    if finished.returncode:
+        print(name, edits, finished.stderr[-400:])
+    return read_summary(out) if finished.returncode == 0 else None
+
+
+def records(args, name):
+    """Those of all probes of a scene on all meshes."""
+    case, rows = CASES[name], []
+    best = solve(args, name, [*case.edits(2, case.reference), *case.finest])
+    for order in case.orders:
+        for mesh in case.meshes:
+            found = solve(args, name, case.edits(order, mesh))
+            for probe in case.probes if found and best else ():
+                error, own = found["error"].get(probe, {}), best["error"].get(probe, {})
+                if "sum" not in error or "sum" not in own:
+                    print(name, probe, error, own)
+                    continue
+                rows.append({
+                    "scene": name, "order": order, "mesh": mesh.replace(",", ";"), "probe": probe, "status": found["status"],
+                    "dofs": found["dofs"], "cpu_s": f"{found['cpu_s']:.2f}", "value": f"{error['value']:.9g}",
+                    "estimate": f"{error['sum']:.4g}", "bodies": f"{error['causes']['bodies']:.4g}",
+                    "penetration": f"{error['causes']['penetration']:.4g}", "reference": f"{own['value']:.9g}",
+                    "reference_error": f"{own['magnitude']:.3g}"
+                })
+    return rows
+
+
+def true_error(row):
+    return float(row["reference"]) - float(row["value"])
+
+
+def apart(row):
+    """Says whether the true error is too small to judge the estimate."""
+    error, value = abs(true_error(row)), abs(float(row["reference"]))
+    return error < SMALL / 100 * value or error < TIMES * float(row["reference_error"])
+
+
+def table(rows):
+    print("| scene | order | unknowns | probe | value | true error (%) | estimate (%) | effectivity |")
+    print("| --- " * 8 + "|")
+    judged = [row for row in rows if not apart(row)]
+    for row in judged + [row for row in rows if apart(row)]:
+        value, true = float(row["reference"]), true_error(row)
+        ratio = "apart" if apart(row) else f"{true / float(row['estimate']):.2f}"
+        print(f"| {row['scene']} | {row['order']} | {row['dofs']} | {row['probe']} | {float(row['value']):.5g} "
+              f"| {100 * true / abs(value):+.3g} | {100 * float(row['estimate']) / abs(value):+.3g} | {ratio} |")
+    ratios = [true_error(row) / float(row["estimate"]) for row in judged]
+    good = sum(0.5 <= ratio <= 2 for ratio in ratios)
+    print(f"\n{good} of {len(ratios)} between 0.5 and 2, the least {min(ratios, default=0):.2f}, "
+          f"the largest {max(ratios, default=0):.2f}; {len(rows) - len(judged)} apart")
+
+
+def main():
+    parser = table_parser(__doc__, "error")
+    parser.add_argument("--only", nargs="*", default=list(CASES), metavar="NAME", help="of these scenes")
+    args = parser.parse_args()
+    if not args.only_print:
+        args.out.mkdir(parents=True, exist_ok=True)
+        write_records(args.record, COLUMNS, lambda name: records(args, name), args.only, 1)
+    table(read_records(args.record))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,147 @@
+/* The quadrature points of one cell: their places, displacement gradients and stresses, and how these change. */
+#include "elasticityimpl.h"
+
+/* Part of a cell's size by which its nodes are moved to both sides for a derivative of its displacement gradients. The
+   error of the difference, which is as the square, and that of rounding are then both about 1e-10 of it. */
+#define POINT_STEP 1e-5
+
+/*@
+  ElasticityEnhanced - says whether any cell is an enhanced element, whose gradients are not those of displacements.
+
+  Collective
+
+  Input Parameter:
+. e - the elasticity
+
+  Output Parameter:
+. any - the same on all ranks
+@*/
+PetscErrorCode ElasticityEnhanced(Elasticity e, PetscBool *any)
+{
+  PetscFunctionBeginUser;
+  *any = PETSC_FALSE;
+  for (int g = 0; g < e->n_groups; g++)
+    *any = (PetscBool)(*any || e->groups[g].kernel.formulation == FORMULATION_ENHANCED);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, any, 1, MPIU_BOOL, MPI_LOR, e->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElasticityPlacePoints - gives the quadrature points of a cell.
+
+  Not collective
+
+  Input Parameters:
++ e    - the elasticity
+- cell - a local cell
+
+  Output Parameters:
++ x      - reference coordinates (length) [points][dim]
+- volume - reference volumes, axisymmetric: over 360 degrees [points]
+@*/
+PetscErrorCode ElasticityPlacePoints(Elasticity e, PetscInt cell, PetscReal *x, PetscReal *volume)
+{
+  const CellGroup *g       = &e->groups[e->cell_group[cell]];
+  const Element   *element = ElementGet(g->kernel.type);
+  PetscReal        X[MAX_DOFS];
+
+  PetscFunctionBeginUser;
+  ElasticitySlotCoordinates(e, g, e->cell_slot[cell], X);
+  ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, X, volume);
+  for (int p = 0; p < element->points; p++) {
+    for (int i = 0; i < e->dim; i++) {
+      x[p * e->dim + i] = 0;
+      for (int a = 0; a < element->nodes; a++) x[p * e->dim + i] += element->N[p][a] * X[a * e->dim + i];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElasticityPointStates - gives displacement gradients and stresses at the quadrature points of a cell.
+
+  Not collective
+
+  Input Parameters:
++ e    - the elasticity; its multipliers and its accepted plastic state are those of the step to u
+. cell - a local cell
+- u    - local displacements (length) [n_nodes*dim]
+
+  Output Parameters:
++ H          - displacement gradient at 3 i + I, as the element evaluates the law with [points][9]
+. P          - first Piola-Kirchhoff stress, with small strains the stress, at 3 i + I [points][9]
+. pressure   - of a mixed element (stress), 0 of others [points]
+- compliance - of the volume of a mixed element: one over the modulus (one over stress); 0 of others
+@*/
+PetscErrorCode ElasticityPointStates(Elasticity e, PetscInt cell, const PetscReal *u, PetscReal *H, PetscReal *P,
+                                     PetscReal *pressure, PetscReal *compliance)
+{
+  CellGroup *g = &e->groups[e->cell_group[cell]];
+  PetscReal  X[MAX_DOFS], cell_u[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES];
+
+  PetscFunctionBeginUser;
+  ElasticityGatherCell(e, g, e->cell_slot[cell], u, X, cell_u, constants, m);
+  ElementPointNominal(&g->kernel, X, cell_u, constants, m, H, pressure, P);
+  *compliance = 0;
+  if (g->kernel.formulation == FORMULATION_MIXED) {
+    VolumeModuli moduli;
+
+    ElementVolumeModuli(&g->kernel, constants, 1, &moduli);
+    *compliance = 1 / moduli.projected;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Largest difference of the entries of v between two nodes of a cell. */
+static PetscReal LargestDifference(int nodes, int dim, const PetscReal *v)
+{
+  PetscReal most = 0;
+
+  for (int a = 1; a < nodes; a++)
+    for (int i = 0; i < dim; i++) most = PetscMax(most, PetscAbsReal(v[a * dim + i] - v[i]));
+  return most;
+}
+
+/*@
+  ElasticityPointRates - gives how displacement gradients and pressures at the quadrature points of a cell change along
+  a motion.
+
+  Not collective
+
+  Input Parameters:
++ e    - the elasticity, as for ElasticityPointStates()
+. cell - a local cell
+. u    - local displacements (length) [n_nodes*dim]
+- v    - local motion [n_nodes*dim]
+
+  Output Parameters:
++ H        - derivative of the displacement gradient along v [points][9]
+- pressure - derivative of the pressure of a mixed element, 0 of others [points]
+@*/
+PetscErrorCode ElasticityPointRates(Elasticity e, PetscInt cell, const PetscReal *u, const PetscReal *v, PetscReal *H,
+                                    PetscReal *pressure)
+{
+  CellGroup *g      = &e->groups[e->cell_group[cell]];
+  const int  points = ElementGet(g->kernel.type)->points, nodes = ElementGet(g->kernel.type)->nodes;
+  PetscReal  X[MAX_DOFS], at[MAX_DOFS], cell_u[MAX_DOFS], cell_v[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS],
+    m[MIXED_PRESSURES], H_at[ELEMENT_MAX_POINTS * 9], pressure_at[ELEMENT_MAX_POINTS], most, step;
+
+  PetscFunctionBeginUser;
+  ElasticityGatherCell(e, g, e->cell_slot[cell], v, X, cell_v, constants, m);
+  ElasticityGatherCell(e, g, e->cell_slot[cell], u, X, cell_u, constants, m);
+  PetscCall(PetscArrayzero(H, points * 9));
+  PetscCall(PetscArrayzero(pressure, points));
+  most = PetscMax(LargestDifference(nodes, e->dim, cell_v),
+                  LargestDifference(g->nodes - nodes, e->dim, &cell_v[nodes * e->dim]));
+  if (g->kernel.geometry == GEOMETRY_AXISYMMETRIC)
+    for (int a = 0; a < nodes; a++) most = PetscMax(most, PetscAbsReal(cell_v[a * e->dim]));
+  if (!(most > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  step = POINT_STEP * CellLength(g->kernel.type, e->dim, X) / most;
+  for (int side = -1; side <= 1; side += 2) {
+    for (int k = 0; k < g->nodes * e->dim; k++) at[k] = cell_u[k] + side * step * cell_v[k];
+    ElementPointNominal(&g->kernel, X, at, constants, m, H_at, pressure_at, NULL);
+    for (int k = 0; k < points * 9; k++) H[k] += side * H_at[k] / (2 * step);
+    for (int p = 0; p < points; p++) pressure[p] += side * pressure_at[p] / (2 * step);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,33 @@
+/* What the elements of the bodies leave of error in quantities of the solution.
+
+   With the true solution u, the computed one u_h, the adjoint one y of a quantity J (solve/adjoint.h) and the form
+   a = dR/du of the bodies, the error is
+
+     J(u) - J(u_h) = -a(u - u_h, y - y_h),
+
+   because a(u - u_h, y_h) = 0 by Galerkin's orthogonality. Both errors are estimated by recovered fields
+   (errors/recovery.h): P* of the first Piola-Kirchhoff stress P of u_h, G* of the displacement gradient G of y_h:
+
+     J(u) - J(u_h) ~ -sum over points of volume (P* - P) : (G* - G).
+
+   Where the elements are mixed, the pressure p has its own equation, that
+   the volume be right: with q the pressure of y and theta = ln det F (with small strains tr grad u) the form is that of
+   the saddle point, and
+
+     (q* - q)(theta* - theta) - (p* - p)(q* - q) / modulus
+
+   is added to the product at each point; p itself is in P already.
+
+   The product of two recovered differences is of the order of the true one, and its sign is kept. It is no bound. Near a
+   singularity both fields are off, and there the estimate is low.
+
+   BodyErrorCreate() recovers the fields of the solution once, BodyErrorEvaluate() weighs them with one adjoint solution.
+   Sources: Zienkiewicz and Zhu (1992); Becker and Rannacher (2001); Zhang and Naga (2005). */
+#pragma once
+#include "errors/recovery.h"
+
+typedef struct _n_BodyError *BodyError;
+
+PetscErrorCode BodyErrorCreate(Mesh, Elasticity, Kinematics, const PetscReal *u, BodyError *);
+PetscErrorCode BodyErrorDestroy(BodyError *);
+PetscErrorCode BodyErrorEvaluate(BodyError, const PetscReal *y, PetscReal *error);

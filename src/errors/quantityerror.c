@@ -1,0 +1,75 @@
+/* The error of quantities of a solution, see quantityerror.h. */
+#include "errors/quantityerror.h"
+#include "errors/bodyerror.h"
+#include <math.h>
+
+const char *const ErrorCauses[] = {[ERROR_BODIES]      = "bodies",
+                                   [ERROR_GEOMETRY]    = "contact surfaces",
+                                   [ERROR_PENETRATION] = "penetration",
+                                   [ERROR_SLIP]        = "elastic slip",
+                                   [ERROR_STEPS]       = "load steps",
+                                   [ERROR_SOLVER]      = "solver"};
+
+/* Does the answer depend on the way to it? */
+static PetscBool DependsOnPath(Model model)
+{
+  return (PetscBool)(ProblemIsPlastic(model->problem) || ContactHasFriction(model->contact));
+}
+
+/* Joins the parts of one quantity. bodies: NULL where no adjoint solution is known. */
+static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint, QuantityError *error)
+{
+  PetscFunctionBeginUser;
+  error->known = adjoint->known;
+  error->sum = error->magnitude = 0;
+  for (int c = 0; c < ERROR_CAUSES; c++) error->part[c] = NAN;
+  if (!error->known) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyErrorEvaluate(bodies, adjoint->y, &error->part[ERROR_BODIES]));
+  error->part[ERROR_GEOMETRY]    = model->contact ? NAN : 0;
+  error->part[ERROR_PENETRATION] = adjoint->penetration;
+  error->part[ERROR_SLIP]        = adjoint->slip;
+  error->part[ERROR_STEPS]       = DependsOnPath(model) ? NAN : 0;
+  error->part[ERROR_SOLVER]      = adjoint->residual;
+  for (int c = 0; c < ERROR_CAUSES; c++) {
+    if (isnan((double)error->part[c])) continue;
+    error->sum += error->part[c];
+    error->magnitude += PetscAbsReal(error->part[c]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  QuantityErrorsEstimate - estimates the errors of quantities at the solution of a step.
+
+  Collective
+
+  Input Parameters:
++ model      - after ModelSolve() has found a solution, before ModelAccept()
+. n          - number of quantities
+- functional - their first variations
+
+  Output Parameter:
+. error - of each
+
+  Note:
+  The state stays as it is. One tangent is factored for all quantities, and solved with once for each.
+@*/
+PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional functional[], QuantityError error[])
+{
+  const PetscInt dofs = model->mesh->n_nodes * model->mesh->dim;
+  BodyError      bodies;
+  Adjoint       *adjoint;
+
+  PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n, &adjoint));
+  for (int i = 0; i < n; i++) PetscCall(PetscCalloc1(dofs, &adjoint[i].y));
+  PetscCall(ModelAdjoint(model, n, functional, adjoint));
+  PetscCall(BodyErrorCreate(model->mesh, model->problem->elasticity, model->scene->kinematics, model->problem->trial,
+                            &bodies));
+  for (int i = 0; i < n; i++) PetscCall(Join(model, bodies, &adjoint[i], &error[i]));
+  PetscCall(BodyErrorDestroy(&bodies));
+  for (int i = 0; i < n; i++) PetscCall(PetscFree(adjoint[i].y));
+  PetscCall(PetscFree(adjoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,16 @@
+/* The estimated errors of a run's probes: made once at its end, then printed, and written to summary.json.
+
+   ProbeErrorsCreate() makes the object where the scene asks for it, else NULL, which all functions take.
+   ProbeErrorsEstimate() is called at the solution of the last step, before it is accepted. */
+#pragma once
+#include <stdio.h>
+#include "errors/quantityerror.h"
+#include "probevariation.h"
+
+typedef struct _n_ProbeErrors *ProbeErrors;
+
+PetscErrorCode       ProbeErrorsCreate(Model, Probes, Scene, ProbeErrors *);
+PetscErrorCode       ProbeErrorsDestroy(ProbeErrors *);
+PetscErrorCode       ProbeErrorsEstimate(ProbeErrors);
+const QuantityError *ProbeErrorsGet(ProbeErrors, int probe, PetscReal *value, const char **why);
+void                 ProbeErrorsPrint(ProbeErrors, FILE *);

@@ -1,0 +1,177 @@
+/* The estimated errors of a run's probes, see probeerrors.h. */
+#include "probeerrors.h"
+#include <math.h>
+
+struct _n_ProbeErrors {
+  Model          model;
+  Probes         probes;
+  Scene          scene;
+  PetscReal     *value; /* of each probe */
+  const char   **why;   /* why there is no estimate of it; NULL: there is one */
+  QuantityError *error;
+};
+
+/*@
+  ProbeErrorsCreate - makes room for the errors of all probes.
+
+  Not collective
+
+  Input Parameters:
++ model  - of the run
+. probes - of that model
+- scene  - of that model
+
+  Output Parameter:
+. result - NULL: the scene does not ask for them
+@*/
+PetscErrorCode ProbeErrorsCreate(Model model, Probes probes, Scene scene, ProbeErrors *result)
+{
+  ProbeErrors errors;
+
+  PetscFunctionBeginUser;
+  *result = NULL;
+  if (!scene->output.error) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscNew(&errors));
+  errors->model  = model;
+  errors->probes = probes;
+  errors->scene  = scene;
+  PetscCall(PetscCalloc3(scene->n_probes, &errors->value, scene->n_probes, &errors->why, scene->n_probes,
+                         &errors->error));
+  for (int i = 0; i < scene->n_probes; i++) errors->why[i] = "the run ended before the end of its load";
+  *result = errors;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ProbeErrorsDestroy - frees the errors.
+
+  Not collective
+
+  Input Parameter:
+. errors - set to NULL; may be NULL already
+@*/
+PetscErrorCode ProbeErrorsDestroy(ProbeErrors *errors)
+{
+  PetscFunctionBeginUser;
+  if (!*errors) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree3((*errors)->value, (*errors)->why, (*errors)->error));
+  PetscCall(PetscFree(*errors));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Estimates the errors of those probes that have a first variation. */
+static PetscErrorCode Estimate(ProbeErrors errors, Functional *functional)
+{
+  const int      all = errors->scene->n_probes;
+  int            n   = 0, *probe;
+  QuantityError *error;
+  PetscBool      enhanced;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(all, &probe, all, &error));
+  PetscCall(ElasticityEnhanced(errors->model->problem->elasticity, &enhanced));
+  for (int i = 0; i < all; i++) {
+    PetscCall(ProbeVary(errors->probes, i, &functional[n], &errors->why[i]));
+    if (enhanced) errors->why[i] = "a body has enhanced elements (bodies.*.formulation)";
+    if (errors->why[i]) PetscCall(ProbeVariationFree(&functional[n]));
+    probe[n] = i;
+    n += !errors->why[i];
+  }
+  PetscCall(QuantityErrorsEstimate(errors->model, n, functional, error));
+  for (int k = 0; k < n; k++) {
+    errors->error[probe[k]] = error[k];
+    if (!error[k].known) errors->why[probe[k]] = "the transposed tangent cannot be solved with";
+    PetscCall(ProbeVariationFree(&functional[k]));
+  }
+  PetscCall(PetscFree2(probe, error));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ProbeErrorsEstimate - estimates the errors of all probes at the model's present solution.
+
+  Collective
+
+  Input Parameter:
+. errors - may be NULL
+
+  Note:
+  To be called before the solution is accepted: states of plastic bodies and of friction are those of the step then.
+@*/
+PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
+{
+  Functional *functional;
+  Model       model;
+  PetscBool   ok;
+
+  PetscFunctionBeginUser;
+  if (!errors || !errors->scene->n_probes) PetscFunctionReturn(PETSC_SUCCESS);
+  model = errors->model;
+  PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
+  PetscCall(ProbesEvaluate(errors->probes, errors->value));
+  PetscCall(PetscCalloc1(errors->scene->n_probes, &functional));
+  PetscCall(Estimate(errors, functional));
+  PetscCall(PetscFree(functional));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ProbeErrorsGet - gives the error of a probe.
+
+  Not collective
+
+  Input Parameters:
++ errors - the errors
+- probe  - number of the probe
+
+  Output Parameters:
++ value - of the probe
+- why   - why there is no estimate; NULL: there is one
+@*/
+const QuantityError *ProbeErrorsGet(ProbeErrors errors, int probe, PetscReal *value, const char **why)
+{
+  *value = errors->value[probe];
+  *why   = errors->why[probe];
+  return &errors->error[probe];
+}
+
+/* Prints one probe: the sum, then its parts. */
+static void PrintError(const char *name, PetscReal value, const QuantityError *error, FILE *stream)
+{
+  const double part = value != 0 ? 100 / fabs((double)value) : NAN;
+
+  fprintf(stream, "error    %s: %+.3g", name, (double)error->sum);
+  if (isfinite(part)) fprintf(stream, " (%+.2g %%)", part * (double)error->sum);
+  fprintf(stream, " =");
+  for (int c = 0; c < ERROR_CAUSES; c++) {
+    if (error->part[c] == 0) continue;
+    if (isnan((double)error->part[c]))
+      fprintf(stream, " %s not included", ErrorCauses[c]);
+    else
+      fprintf(stream, " %s %+.3g", ErrorCauses[c], (double)error->part[c]);
+    if (isfinite(part) && !isnan((double)error->part[c])) fprintf(stream, " (%+.2g %%)", part * (double)error->part[c]);
+  }
+  fprintf(stream, "\n");
+}
+
+/*@
+  ProbeErrorsPrint - prints the estimated errors, true less computed values.
+
+  Not collective
+
+  Input Parameters:
++ errors - may be NULL
+- stream - where to
+@*/
+void ProbeErrorsPrint(ProbeErrors errors, FILE *stream)
+{
+  for (int i = 0; errors && i < errors->scene->n_probes; i++) {
+    const char *name = errors->scene->probes[i].name;
+
+    if (errors->why[i])
+      fprintf(stream, "error    %s: not estimated: %s\n", name, errors->why[i]);
+    else
+      PrintError(name, errors->value[i], &errors->error[i], stream);
+  }
+}

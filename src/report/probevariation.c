@@ -1,0 +1,193 @@
+/* First variations of probes, see probevariation.h. */
+#include "probevariation.h"
+
+/* Makes room for a vector over the local dofs, of zeros. */
+static PetscErrorCode NewVector(Mesh mesh, PetscReal **vector)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, vector));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A reaction is the residual at the prescribed dofs. */
+static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional *f, const char **why)
+{
+  const Problem problem = probes->model->problem;
+  const Mesh    mesh    = problem->mesh;
+
+  PetscFunctionBeginUser;
+  if (LoadsSpringForce(problem->loads)) {
+    *why = "springs under a surface bear a part of the reactions";
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(NewVector(mesh, &f->held));
+  for (PetscInt i = 0; i < probe->group->n_nodes; i++) {
+    const PetscInt dof = probe->group->nodes[i] * mesh->dim + probe->scene->component;
+
+    if (LoadsPrescribed(problem->loads, dof)) f->held[dof] = 1;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the slave nodes of a pair on this rank, ghosts included. *shared: the master has some of them too. */
+static PetscErrorCode MarkSlaves(Probes probes, const Probe *probe, PetscReal *mark, PetscBool *shared)
+{
+  const Mesh   mesh = probes->model->mesh;
+  ContactPlace place;
+  ContactSides sides;
+  PetscInt     joined;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < probe->group->n_nodes; i++) mark[probe->group->nodes[i]] = 1;
+  PetscCall(MeshSumNodes(mesh, 1, mark));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) mark[n] = mark[n] > 0;
+  PetscCall(ContactPairJoined(probes->model->contact, probe->pair, &joined, &place));
+  ContactPairSides(probes->model->contact, probe->pair, &sides);
+  *shared = (PetscBool)(joined > 0 || (sides.master && sides.master->group == sides.slave->group));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The force on the master is the residual of the pair at the nodes of the slave. */
+static PetscErrorCode VaryContactForce(Probes probes, const Probe *probe, Functional *f, const char **why)
+{
+  const Mesh mesh = probes->model->mesh;
+  PetscReal *mark;
+  PetscBool  shared;
+
+  PetscFunctionBeginUser;
+  if (ContactPairScene(probes->model->contact, probe->pair)->friction) {
+    *why = "forces of pairs with friction are not varied";
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscCalloc1(mesh->n_nodes, &mark));
+  PetscCall(MarkSlaves(probes, probe, mark, &shared));
+  if (shared)
+    *why = "slave and master of the pair share nodes";
+  else {
+    PetscCall(NewVector(mesh, &f->pressed));
+    f->pair = probe->pair;
+    for (PetscInt n = 0; n < mesh->n_nodes; n++) f->pressed[n * mesh->dim + probe->scene->component] = mark[n];
+  }
+  PetscCall(PetscFree(mark));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VaryDisplacement(Probes probes, const Probe *probe, Functional *f, const char **why)
+{
+  const Mesh mesh = probes->model->mesh;
+
+  PetscFunctionBeginUser;
+  (void)why;
+  PetscCall(NewVector(mesh, &f->direct));
+  if (probe->node[0] >= 0) f->direct[probe->node[0] * mesh->dim + probe->scene->component] = 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A distance changes by the difference of the displacements along the line between the points. */
+static PetscErrorCode VaryDistance(Probes probes, const Probe *probe, Functional *f, const char **why)
+{
+  const Mesh mesh = probes->model->mesh;
+  const int  dim  = mesh->dim;
+  PetscReal  x[6] = {0}, length = 0;
+
+  PetscFunctionBeginUser;
+  (void)why;
+  for (int k = 0; k < 2; k++)
+    for (int i = 0; i < dim && probe->node[k] >= 0; i++)
+      x[3 * k + i] = mesh->coords[probe->node[k] * dim + i] + probes->model->u[probe->node[k] * dim + i];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, x, 6, MPIU_REAL, MPIU_SUM, mesh->comm));
+  for (int i = 0; i < dim; i++) length += PetscSqr(x[3 + i] - x[i]);
+  length = PetscSqrtReal(length);
+  PetscCall(NewVector(mesh, &f->direct));
+  for (int k = 0; k < 2; k++)
+    for (int i = 0; i < dim && probe->node[k] >= 0 && length > 0; i++)
+      f->direct[probe->node[k] * dim + i] += (k ? 1 : -1) * (x[3 + i] - x[i]) / length;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The mean pressure is the sum of the nodes' normal forces over their present areas, weighted by their reference areas.
+   That areas and normals change besides is left out. */
+static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functional *f, const char **why)
+{
+  const Mesh   mesh = probes->model->mesh;
+  const int    dim  = mesh->dim;
+  ContactNodes slaves;
+  PetscReal   *mark, area = 0;
+  PetscBool    shared;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes, &mark));
+  PetscCall(MarkSlaves(probes, probe, mark, &shared));
+  PetscCall(PetscFree(mark));
+  if (shared || ContactPairScene(probes->model->contact, probe->pair)->friction) {
+    *why = shared ? "slave and master of the pair share nodes" : "forces of pairs with friction are not varied";
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ContactGetNodes(probes->model->contact, probe->pair, probes->model->u, &slaves));
+  for (PetscInt k = 0; k < slaves.n; k++) area += slaves.area[k];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
+  PetscCall(NewVector(mesh, &f->pressed));
+  f->pair = probe->pair;
+  for (PetscInt k = 0; k < slaves.n; k++) {
+    const PetscReal weight = slaves.force[k] > 0 ? slaves.area[k] * slaves.pressure[k] / slaves.force[k] : 1;
+
+    for (int i = 0; i < dim; i++) f->pressed[slaves.node[k] * dim + i] = -slaves.normal[3 * k + i] * weight / area;
+  }
+  PetscCall(MeshSumNodes(mesh, dim, f->pressed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ProbeVary - gives the first variation of a probe at the model's present solution.
+
+  Collective
+
+  Input Parameters:
++ probes - the probes, after ProbesEvaluate()
+- i      - number of the probe
+
+  Output Parameters:
++ functional - free it with ProbeVariationFree()
+- why        - why the probe has none; NULL: it has one
+@*/
+PetscErrorCode ProbeVary(Probes probes, int i, Functional *functional, const char **why)
+{
+  const Probe    *probe = &probes->probe[i];
+  const PetscReal scale = (probe->scene->absolute && probe->plain < 0 ? -1 : 1) * probe->scene->factor;
+  const PetscInt  n     = probes->model->mesh->n_nodes * probes->model->mesh->dim;
+
+  PetscFunctionBeginUser;
+  *functional = (Functional){.direct = NULL};
+  *why        = NULL;
+  if (PetscIsInfOrNanReal(probe->plain))
+    *why = "it has no value";
+  else
+    switch (probe->scene->kind) {
+    case PROBE_REACTION: PetscCall(VaryReaction(probes, probe, functional, why)); break;
+    case PROBE_CONTACT_FORCE: PetscCall(VaryContactForce(probes, probe, functional, why)); break;
+    case PROBE_DISPLACEMENT: PetscCall(VaryDisplacement(probes, probe, functional, why)); break;
+    case PROBE_DISTANCE: PetscCall(VaryDistance(probes, probe, functional, why)); break;
+    case PROBE_PRESSURE_MEAN: PetscCall(VaryPressureMean(probes, probe, functional, why)); break;
+    default: *why = "its kind is no smooth function of the displacements";
+    }
+  for (PetscInt k = 0; k < n; k++) {
+    if (functional->direct) functional->direct[k] *= scale;
+    if (functional->held) functional->held[k] *= scale;
+    if (functional->pressed) functional->pressed[k] *= scale;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ProbeVariationFree - frees what ProbeVary() gave.
+
+  Not collective
+@*/
+PetscErrorCode ProbeVariationFree(Functional *functional)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(functional->direct));
+  PetscCall(PetscFree(functional->held));
+  PetscCall(PetscFree(functional->pressed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

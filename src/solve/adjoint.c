@@ -1,0 +1,128 @@
+/* Adjoint solutions, see adjoint.h. */
+#include "solve/adjoint.h"
+#include "modelimpl.h"
+
+/* Computes direct + (K^T held) + (C_p^T pressed) over the free dofs; the elastic tangent is that of the state. */
+static PetscErrorCode RightHandSide(Model model, const Functional *functional, Vec b)
+{
+  const PetscInt  n       = model->mesh->n_nodes * model->mesh->dim;
+  const PetscBool pressed = (PetscBool)(model->contact && (functional->held || functional->pressed));
+  PetscReal      *r, *none;
+  PetscBool       changed;
+  Mat             C;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(n, &r, n, &none));
+  if (functional->direct) PetscCall(PetscArraycpy(r, functional->direct, n));
+  if (functional->held) PetscCall(ElasticityMultiplyTransposed(model->problem->elasticity, functional->held, r));
+  if (pressed) {
+    PetscCall(ContactMultiplyBegin(model->contact, functional->held ? functional->held : none, model->t, model->t));
+    PetscCall(
+      ContactMultiplyTransposed(model->contact, functional->pressed ? functional->pair : -1, functional->pressed));
+    PetscCall(ContactTangent(model->contact, model->problem->trial, model->t, &C, &changed));
+    PetscCall(ContactMultiplyEnd(model->contact, r));
+  }
+  PetscCall(MeshLocalToGlobal(model->mesh, r, b));
+  PetscCall(VecScale(b, -1));
+  PetscCall(PetscFree2(r, none));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sums x . f over the nodes that this rank owns, and over all ranks; f is complete there. */
+static PetscErrorCode Work(Mesh mesh, const PetscReal *x, const PetscReal *f, PetscReal *work)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  *work = 0;
+  for (PetscInt n = 0; n < mesh->n_nodes; n++)
+    for (int d = 0; d < mesh->dim && mesh->node_owner[n] == rank; d++)
+      *work += x[n * mesh->dim + d] * f[n * mesh->dim + d];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, work, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* dJ/d(ln s), s being a factor on the penalties: the error that they leave (penaltyerror.c). */
+static PetscErrorCode PenaltyPart(Model model, const Functional *functional, const PetscReal *y, PenaltySource source,
+                                  PetscReal *error)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *f, own = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &f));
+  PetscCall(ContactStifferForces(model->contact, source, f));
+  PetscCall(Work(model->mesh, y, f, error));
+  if (functional->pressed) {
+    PetscCall(PetscArrayzero(f, n));
+    PetscCall(ContactPairStifferForces(model->contact, functional->pair, source, f));
+    PetscCall(Work(model->mesh, functional->pressed, f, &own));
+  }
+  *error += own;
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves for y and weighs what penalties and solver leave with it. F: residual of the free dofs. */
+static PetscErrorCode Solve(Model model, const Functional *functional, Vec F, Adjoint *adjoint)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  Vec            b, x;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(model->x, &b));
+  PetscCall(VecDuplicate(model->x, &x));
+  adjoint->penetration = adjoint->slip = adjoint->residual = 0;
+  PetscCall(RightHandSide(model, functional, b));
+  PetscCall(LinearSolverTransposed(model->work->solver, model->problem->A, b, x, &adjoint->known));
+  if (adjoint->known) {
+    PetscCall(PetscArrayzero(adjoint->y, n));
+    if (functional->held) PetscCall(PetscArraycpy(adjoint->y, functional->held, n));
+    PetscCall(MeshGlobalToLocal(model->mesh, x, adjoint->y));
+    PetscCall(VecDot(x, F, &adjoint->residual));
+    if (model->contact) PetscCall(PenaltyPart(model, functional, adjoint->y, BY_PENETRATION, &adjoint->penetration));
+    if (ContactHasFriction(model->contact))
+      PetscCall(PenaltyPart(model, functional, adjoint->y, BY_SLIP, &adjoint->slip));
+  }
+  PetscCall(VecDestroy(&b));
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelAdjoint - computes adjoint solutions at the solution of a step, and what penalties and solver leave of error.
+
+  Collective
+
+  Input Parameters:
++ model      - after ModelSolve() has found a solution, before ModelAccept()
+. n          - number of functionals
+- functional - first variations of quantities of the solution
+
+  Input/Output Parameter:
+. adjoint - with room for y of each
+
+  Note:
+  The state stays as it is. One tangent is made and factored for all functionals.
+@*/
+PetscErrorCode ModelAdjoint(Model model, int n, const Functional functional[], Adjoint adjoint[])
+{
+  PetscBool ok;
+  KSP       ksp;
+  Vec       F;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(model->x, &F));
+  PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
+  PetscCall(ProblemCollectResidual(model->problem, model->x, F));
+  PetscCall(LinearSolverRenew(model->work->solver));
+  PetscCall(LinearSolverSetStart(model->work->solver, 0));
+  PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(KSPSetOperators(ksp, model->problem->A, model->problem->P));
+  for (int i = 0; i < n; i++) PetscCall(Solve(model, &functional[i], F, &adjoint[i]));
+  PetscCall(VecDestroy(&F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,37 @@
+"""The error of a probe, as estimated, is the true one within a factor of 2, on any number of ranks; what has no estimate
+says so, and nothing is written where the scene does not ask."""
+from harness import Check, arguments, run, SCENES
+
+RUNS = SCENES.parent.parent / "runs"
+TIP = 6.925  # second order, 48 x 48 mixed elements
+
+
+def cook(order, formulation, *overrides):
+    return run(args, RUNS / "cook.yaml", out=f"{formulation}_{order}",
+               overrides=[f"mesh.order={order}", f"bodies.0.formulation={formulation}", *overrides]).summary()
+
+
+args = arguments()
+check = Check()
+for order, formulation, allowed in ((1, "fbar", 1e-2), (2, "mixed", 1e-2)):
+    summary = cook(order, formulation, "output.error=true")
+    error = summary["error"]["tip_uy"]
+    ratio = (TIP - summary["probes"]["tip_uy"]) / error["sum"]
+    check.holds(f"order {order}, {formulation}: effectivity", 0.5 <= ratio <= 2, f"{ratio:.3f}")
+    check.holds("the sum is that of the parts",
+                abs(error["sum"] - sum(v for v in error["causes"].values() if v != "not included")) < 1e-9)
+    alone = {1: 0.30358, 2: 0.05642}[order]
+    check.holds("the same on all ranks", abs(error["sum"] / alone - 1) < allowed, f"{error['sum']:.6g}")
+enhanced = cook(1, "enhanced", "output.error=true", "bodies.0.material.nu=0.49")
+check.holds("enhanced elements have no estimate", "enhanced" in enhanced["error"]["tip_uy"].get("not_estimated", ""))
+check.holds("nothing unless asked for", "error" not in cook(1, "fbar"))
+
+rings = run(args, RUNS / "ring_in_ring.yaml", out="rings", overrides=["output.error=true"]).summary()
+error, pair = rings["error"], rings["contact"][0]["penalty"]
+part = abs(error["mean_pressure"]["causes"]["penetration"]) / rings["probes"]["mean_pressure"]
+check.holds("penetration: as the estimate of the pair", abs(part / pair["error_pressure"] - 1) < 0.02,
+            f"{part:.4g} and {pair['error_pressure']:.4g}")
+check.holds("surfaces in contact are not included",
+            error["mean_pressure"]["causes"]["contact surfaces"] == "not included")
+check.holds("a deviation has no estimate", "smooth" in error["noise_max"].get("not_estimated", ""))
+check.finish()
