@@ -298,7 +298,8 @@ LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const 
 
   for (int lane = 0; lane < LANES; lane++) {
     const double before = m->W[lane], now = (*W)[lane], scale = m->scale[lane], at = m->at[lane];
-    const double round_off = energy_round_off * before + strain_round_off * sqrt(scale / converged_strain2 * before);
+    const double round_off =
+      energy_round_off * fabs(before) + strain_round_off * sqrt(scale / converged_strain2 * fabs(before));
     double       slope = 0, work = 0; /* work: twice the energy that the correction releases */
 
     if (m->active[lane] == 0) continue;
@@ -325,10 +326,24 @@ LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const 
       work += f[k][lane] * d[k][lane];
     }
     m->slope[lane] = m->low_slope[lane] = -work;
-    m->active[lane]                     = !(work <= converged_energy * now + scale);
+    m->active[lane]                     = !(work <= converged_energy * fabs(now) + scale);
     left += m->active[lane] != 0;
   }
   return left;
+}
+
+/* Lanes that are inverted without modes get none. Their energy may have no minimum. */
+LANES_INLINE void LeaveInverted(const BatchCall *call, const int points, const int dim, const int hoop,
+                                const Enhanced *x, ModesState *m)
+{
+  for (int q = 0; q < points && call->finite; q++) {
+    Lanes H[9], dilatation;
+
+    PointGradient(dim, hoop, x, q, H);
+    MaterialDilatation(H, &dilatation);
+    for (int lane = 0; lane < LANES; lane++)
+      if (dilatation[lane] <= -1) m->active[lane] = 0;
+  }
 }
 
 /* Solves for the modes of each lane. A lane that does not converge gets J = NaN and no modes. With small strains and
@@ -341,6 +356,7 @@ LANES_INLINE void SolveModes(const BatchCall *call, const int points, const int 
   int        left        = LANES;
   Lanes      K[MAX_MODES][MAX_MODES], mu;
 
+  LeaveInverted(call, points, dim, hoop, x, &modes_state);
   call->law->shear(call->n_constants, call->constants, &mu);
   for (int q = 0; q < points; q++) modes_state.scale += converged_strain2 * mu * x->volume[q];
   for (int iteration = 0; left && iteration < (iterates ? MAX_ITERATIONS : 1); iteration++) {
