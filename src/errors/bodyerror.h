@@ -21,7 +21,7 @@
    The product of two recovered differences is of the order of the true one, and its sign is kept. It is no bound. Near a
    singularity both fields are off, and there the estimate is low.
 
-   BodyErrorCreate() recovers the fields of the solution once, BodyErrorEvaluate() weighs them with one adjoint solution.
+   BodyErrorCreate() recovers the fields of the solution once, BodyErrorEvaluate() weighs them with an adjoint solution.
    Sources: Zienkiewicz and Zhu (1992); Becker and Rannacher (2001); Zhang and Naga (2005). */
 #pragma once
 #include "errors/recovery.h"

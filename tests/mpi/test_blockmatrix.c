@@ -37,7 +37,7 @@ static void AddBlocks(BlockMatrix blocks, int node, const PetscInt *dof, PetscRe
       value[4 * i + j] = j < i ? NAN : scale * (1 + row + column + 2 * (row == column));
     }
   }
-  BlockMatrixMultiply(blocks, in, out);
+  BlockMatrixMultiply(blocks, PETSC_FALSE, in, out);
   assert_int_equal(BlockMatrixAdd(blocks, 0, n, nodes, value), 0);
   assert_int_equal(BlockMatrixAddOuter(blocks, 0, n, nodes, vector), 0);
   assert_int_equal(BlockMatrixEnd(blocks, matrix), 0);
@@ -116,7 +116,7 @@ static void test_uneven_rows(void **state)
     assert_int_equal(BlockMatrixName(blocks, 0, n, (PetscInt[]){3, 1, 2, 0}, PETSC_TRUE), 0);
     assert_int_equal(BlockMatrixPlace(blocks, ROWS, &changed), 0);
     BlockMatrixGetNodes(blocks, 0, &count, &nodes);
-    BlockMatrixMultiply(blocks, in, out);
+    BlockMatrixMultiply(blocks, PETSC_FALSE, in, out);
     assert_int_equal(BlockMatrixAddOuter(blocks, 0, n, nodes, vector), 0);
     assert_int_equal(BlockMatrixAddRows(blocks, 0, 2, row, 4, column, rows), 0);
     assert_int_equal(BlockMatrixEnd(blocks, &matrix), 0);
