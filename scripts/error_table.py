@@ -41,7 +41,8 @@ CASES = {
     "ring_pinch":
     Case("runs/ring_pinch.yaml", ("force", "width"),
          ("r_in: 99, r_out: 101, n_arc: 8, n_wall: 1", "r_in: 99, r_out: 101, n_arc: 16, n_wall: 1",
-          "r_in: 99, r_out: 101, n_arc: 32, n_wall: 1"), "r_in: 99, r_out: 101, n_arc: 128, n_wall: 3", second=SHORT, orders=(2, ),
+          "r_in: 99, r_out: 101, n_arc: 32, n_wall: 1"), "r_in: 99, r_out: 101, n_arc: 128, n_wall: 3", second=SHORT,
+         orders=(2, ),
          finest=("mesh.order=2", *SHORT)),
     "ring_in_ring":
     Case("runs/ring_in_ring.yaml", ("mean_pressure", ), ("n_inner: 8, n_outer: 10", "n_inner: 16, n_outer: 20",
@@ -67,7 +68,8 @@ CASES = {
 def solve(args, name, edits):
     out = args.out / name
     shutil.rmtree(out, ignore_errors=True)
-    line = command(args.burnish, 1, ROOT / CASES[name].scene, out, (*edits, "output.error=true"), "-quiet", "-overwrite")
+    line = command(args.burnish, 1, ROOT / CASES[name].scene, out, (*edits, "output.error=true"), "-quiet",
+                   "-overwrite")
     finished = subprocess.run(line, env=environment(args.burnish), capture_output=True, text=True, check=False)
     if finished.returncode:
         print(name, edits, finished.stderr[-400:])
@@ -87,7 +89,8 @@ def records(args, name):
                     print(name, probe, error, own)
                     continue
                 rows.append({
-                    "scene": name, "order": order, "mesh": mesh.replace(",", ";"), "probe": probe, "status": found["status"],
+                    "scene": name, "order": order, "mesh": mesh.replace(",", ";"), "probe": probe,
+                    "status": found["status"],
                     "dofs": found["dofs"], "cpu_s": f"{found['cpu_s']:.2f}", "value": f"{error['value']:.9g}",
                     "estimate": f"{error['sum']:.4g}", "bodies": f"{error['causes']['bodies']:.4g}",
                     "penetration": f"{error['causes']['penetration']:.4g}", "reference": f"{own['value']:.9g}",
