@@ -289,7 +289,8 @@ PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, 
   for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairStiffness(contact, &contact->pairs[p], u, t));
   PetscCall(PlaceBlocks(contact, changed));
   for (int p = 0; p < contact->n_pairs; p++) {
-    if (contact->product) BlockMatrixMultiply(contact->blocks, contact->transposed, contact->product[p].x, contact->product[p].y);
+    if (contact->product)
+      BlockMatrixMultiply(contact->blocks, contact->transposed, contact->product[p].x, contact->product[p].y);
     PetscCall(PairBlocks(contact, &contact->pairs[p], p, t, &block));
   }
   PetscCall(BlockMatrixEnd(contact->blocks, C));

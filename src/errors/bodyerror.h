@@ -10,19 +10,18 @@
 
      J(u) - J(u_h) ~ -sum over points of volume (P* - P) : (G* - G).
 
-   Where the elements are mixed, the pressure p has its own equation, that
-   the volume be right: with q the pressure of y and theta = ln det F (with small strains tr grad u) the form is that of
-   the saddle point, and
+   Where the elements are mixed, the pressure p has its own equation, that the volume be right: with q the pressure
+   of y and theta = ln det F (with small strains tr grad u) the form is that of the saddle point, and
 
      (q* - q)(theta* - theta) - (p* - p)(q* - q) / modulus
 
    is added to the product at each point; p itself is in P already.
 
-   The product of two recovered differences is of the order of the true one, and its sign is kept. It is no bound. Near a
-   singularity both fields are off, and there the estimate is low.
+   The product of two recovered differences is of the order of the true one, and its sign is kept. It is no bound.
+   Near a singularity both fields are off, and there the estimate is low.
 
-   BodyErrorCreate() recovers the fields of the solution once, BodyErrorEvaluate() weighs them with one adjoint solution.
-   Sources: Zienkiewicz and Zhu (1992); Becker and Rannacher (2001); Zhang and Naga (2005). */
+   BodyErrorCreate() recovers the fields of the solution once, BodyErrorEvaluate() weighs them with an adjoint
+   solution. Sources: Zienkiewicz and Zhu (1992); Becker and Rannacher (2001); Zhang and Naga (2005). */
 #pragma once
 #include "errors/recovery.h"
 

@@ -1,18 +1,27 @@
 /* The error of quantities of a solution, split by cause.
 
-   QuantityErrorsEstimate() takes first variations of quantities (solve/adjoint.h), solves for their adjoint solutions, and
-   weighs with them what each cause leaves: the elements of the bodies (errors/bodyerror.h), penetration and elastic slip
-   (the derivative by the penalty, solve/penaltyerror.c), and the residual at which the solver stopped. Every part is the
-   true less the computed value, in the units of the quantity. A part that is not known is NaN: that of the load steps where
-   the answer depends on the path, and that of the surfaces in contact, whose facets and fits are not the true surface. It
-   is 0 where there is no such cause. That straight edges of elements stand for curved boundaries is in no part.
+   QuantityErrorsEstimate() takes first variations of quantities (solve/adjoint.h), solves for their adjoint
+   solutions, and weighs with them what each cause leaves: the elements of the bodies (errors/bodyerror.h),
+   penetration and elastic slip (the derivative by the penalty, solve/penaltyerror.c), and the residual at which the
+   solver stopped. Every part is the true less the computed value, in the units of the quantity. A part that is not
+   known is NaN: that of the load steps where the answer depends on the path, and that of the surfaces in contact,
+   whose facets and fits are not the true surface. It is 0 where there is no such cause. That straight edges of
+   elements stand for curved boundaries is in no part.
 
-   Models with enhanced elements have no estimate: the true solution has no such modes, and what they leave is not the
-   product of two recovered differences. */
+   Models with enhanced elements have no estimate: the true solution has no such modes, and what they leave is not
+   the product of two recovered differences. */
 #pragma once
 #include "solve/adjoint.h"
 
-typedef enum { ERROR_BODIES, ERROR_GEOMETRY, ERROR_PENETRATION, ERROR_SLIP, ERROR_STEPS, ERROR_SOLVER, ERROR_CAUSES } ErrorCause;
+typedef enum {
+  ERROR_BODIES,
+  ERROR_GEOMETRY,
+  ERROR_PENETRATION,
+  ERROR_SLIP,
+  ERROR_STEPS,
+  ERROR_SOLVER,
+  ERROR_CAUSES
+} ErrorCause;
 extern const char *const ErrorCauses[]; /* in words */
 
 typedef struct {

@@ -48,13 +48,15 @@ static PetscErrorCode SizePatches(Recovery r)
       const PetscInt node = mesh->cell_nodes[mesh->cell_ptr[c] + k];
 
       for (PetscInt p = r->point_ptr[c]; p < r->point_ptr[c + 1]; p++) {
-        for (int i = 0; i < r->dim; i++) sum[2 * node] += PetscSqr(r->x[p * r->dim + i] - mesh->coords[node * r->dim + i]);
+        for (int i = 0; i < r->dim; i++)
+          sum[2 * node] += PetscSqr(r->x[p * r->dim + i] - mesh->coords[node * r->dim + i]);
         sum[2 * node + 1]++;
       }
     }
   }
   PetscCall(MeshSumNodes(mesh, 2, sum));
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) r->size[n] = sum[2 * n + 1] > 0 ? 2 * PetscSqrtReal(sum[2 * n] / sum[2 * n + 1]) : 1;
+  for (PetscInt n = 0; n < mesh->n_nodes; n++)
+    r->size[n] = sum[2 * n + 1] > 0 ? 2 * PetscSqrtReal(sum[2 * n] / sum[2 * n + 1]) : 1;
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

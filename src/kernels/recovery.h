@@ -1,18 +1,18 @@
 /* Recovery of a field from its values at points around a node: the polynomial of a patch. Plain C, no PETSc, no
    allocation.
 
-   A patch is the cells around a node. Its polynomial is the one of given degree that is next to the values at the points
-   of the patch, by least squares. RecoveryBasis() evaluates the terms of a polynomial at a point, RecoveryAdd() adds a
-   point to the sums of a patch. The sums of two parts of a patch are added, so that ranks may share it. RecoveryFactor()
-   factors the matrix of the sums once, RecoverySolve() then gives the coefficients of any field. A field that is a
-   polynomial of that degree comes back exactly.
+   A patch is the cells around a node. Its polynomial is the one of given degree that is next to the values at the
+   points of the patch, by least squares. RecoveryBasis() evaluates the terms of a polynomial at a point,
+   RecoveryAdd() adds a point to the sums of a patch. The sums of two parts of a patch are added, so that ranks may
+   share it. RecoveryFactor() factors the matrix of the sums once, RecoverySolve() then gives the coefficients of
+   any field. A field that is a polynomial of that degree comes back exactly.
 
-   The terms are ordered by degree. The matrix of a lower degree is therefore the upper left part of that of a higher
-   one, and a patch of too few points has a polynomial of lower degree without new sums.
+   The terms are ordered by degree. The matrix of a lower degree is therefore the upper left part of that of a
+   higher one, and a patch of too few points has a polynomial of lower degree without new sums.
 
-   Sources: Zienkiewicz and Zhu, International Journal for Numerical Methods in Engineering 33 (1992), part 1, for the
-   patches; Zhang and Naga, SIAM Journal on Scientific Computing 26 (2005), for polynomials of the order of the elements
-   and for nodes at the boundary, where patches of nodes inside serve. */
+   Sources: Zienkiewicz and Zhu, International Journal for Numerical Methods in Engineering 33 (1992), part 1, for
+   the patches; Zhang and Naga, SIAM Journal on Scientific Computing 26 (2005), for polynomials of the order of the
+   elements and for nodes at the boundary, where patches of nodes inside serve. */
 #pragma once
 
 enum {

@@ -9,6 +9,7 @@ struct _n_ProbeErrors {
   PetscReal     *value; /* of each probe */
   const char   **why;   /* why there is no estimate of it; NULL: there is one */
   QuantityError *error;
+  PetscLogEvent  event;
 };
 
 /*@
@@ -26,7 +27,8 @@ struct _n_ProbeErrors {
 @*/
 PetscErrorCode ProbeErrorsCreate(Model model, Probes probes, Scene scene, ProbeErrors *result)
 {
-  ProbeErrors errors;
+  ProbeErrors  errors;
+  PetscClassId classid;
 
   PetscFunctionBeginUser;
   *result = NULL;
@@ -38,6 +40,8 @@ PetscErrorCode ProbeErrorsCreate(Model model, Probes probes, Scene scene, ProbeE
   PetscCall(PetscCalloc3(scene->n_probes, &errors->value, scene->n_probes, &errors->why, scene->n_probes,
                          &errors->error));
   for (int i = 0; i < scene->n_probes; i++) errors->why[i] = "the run ended before the end of its load";
+  PetscCall(PetscClassIdRegister("ProbeErrors", &classid));
+  PetscCall(PetscLogEventRegister("ProbeErrors", classid, &errors->event));
   *result = errors;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -106,6 +110,7 @@ PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
 
   PetscFunctionBeginUser;
   if (!errors || !errors->scene->n_probes) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscLogEventBegin(errors->event, 0, 0, 0, 0));
   model = errors->model;
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
@@ -113,6 +118,7 @@ PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
   PetscCall(PetscCalloc1(errors->scene->n_probes, &functional));
   PetscCall(Estimate(errors, functional));
   PetscCall(PetscFree(functional));
+  PetscCall(PetscLogEventEnd(errors->event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -4,20 +4,19 @@
 
      dJ = direct . du + held . dR + pressed . dR_p
 
-   R is the residual (element and contact forces less the loads), R_p its part from one contact pair. A displacement has
-   `direct` alone; a reaction is the residual at prescribed dofs, which `held` sums up; a contact force is the residual of
-   a pair at the nodes of its slave, which `pressed` sums up. The adjoint solution y is `held` at the prescribed dofs, and
-   at the free ones it solves
+   R is the residual (element and contact forces less the loads), R_p its part from one contact pair. A displacement
+   has `direct` alone; a reaction is the residual at prescribed dofs, which `held` sums up; a contact force is the
+   residual of a pair at the nodes of its slave, which `pressed` sums up. The adjoint solution y is `held` at the
+   prescribed dofs, and at the free ones it solves
 
      (K^T y)_f = -(direct + C_p^T pressed)_f,  K = dR/du, C_p = dR_p/du.
 
-   A change dR of the residual then changes J by y . dR, after the solution has followed (and by pressed . dR_p besides).
-   So y weighs every cause of error: what the elements leave (errors/bodyerror.h), what penetration leaves, what the
-   solver leaves of the residual.
+   A change dR of the residual then changes J by y . dR, after the solution has followed (and by pressed . dR_p
+   besides). So y weighs every cause of error: what the elements leave (errors/bodyerror.h), what penetration
+   leaves, what the solver leaves of the residual.
 
-   ModelAdjoint() computes y for any number of functionals with one tangent and one factor. Source: Becker and Rannacher,
-   Acta Numerica 10 (2001); with contact Rademacher and Schroeder, International Journal for Numerical Methods in
-   Engineering 104 (2015): what is in contact at the solution stays so. */
+   ModelAdjoint() computes y for any number of functionals with one tangent and one factor. What is in
+   contact at the solution stays so. Source: Becker and Rannacher, Acta Numerica 10 (2001). */
 #pragma once
 #include "solve/model.h"
 
