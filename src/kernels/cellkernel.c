@@ -81,6 +81,27 @@ static void PlasticStress(const KernelCase *kernel, const double *X, const doubl
   for (int r = 0; r < 9; r++) P[r] = lanes_P[r][0];
 }
 
+/* Takes the constants with which a law gives the stress at a point. Returns their number. */
+static int StressConstants(const KernelCase *kernel, const double *constants, double used[MATERIAL_MAX_CONSTANTS])
+{
+  const int n = kernel->n_constants ? kernel->n_constants : MaterialGetLaw(kernel->law)->constants;
+
+  for (int k = 0; k < n; k++) used[k] = constants[k];
+  if (kernel->formulation == FORMULATION_MIXED) used[0] = 0; /* the pressure takes the place of this part */
+  return n;
+}
+
+/* First Piola-Kirchhoff stress of the law at one point, without the pressure of a mixed element. used: n constants of
+   StressConstants(). */
+static void LawStress(const KernelCase *kernel, const double *X, const double *u, int n, const double *used, int p,
+                      const double H[9], double P[9])
+{
+  if (kernel->plastic)
+    PlasticStress(kernel, X, u, used, p, H, P);
+  else
+    MaterialEvaluate(kernel->law, n, used, H, NULL, P, NULL);
+}
+
 /*@
   ElementPointStress - computes the Cauchy stress at the quadrature points of one element.
 
@@ -102,20 +123,15 @@ void ElementPointStress(const KernelCase *kernel, const double *X, const double 
 {
   const Element *e      = ElementGet(kernel->type);
   const int      finite = kernel->kinematics == KINEMATICS_FINITE;
-  const int      n      = kernel->n_constants ? kernel->n_constants : MaterialGetLaw(kernel->law)->constants;
   double         H[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS], used[MATERIAL_MAX_CONSTANTS];
+  const int      n = StressConstants(kernel, constants, used);
 
-  for (int k = 0; k < n; k++) used[k] = constants[k];
-  if (kernel->formulation == FORMULATION_MIXED) used[0] = 0; /* the pressure takes the place of this part */
   ElementPointState(kernel, X, u, constants, multiplier, H, pressure);
   for (int p = 0; p < e->points; p++) {
     double J[3][3], P[9];
 
     volume[p] = PointVolume(e, p, e->dim, kernel->geometry, X, J);
-    if (kernel->plastic)
-      PlasticStress(kernel, X, u, used, p, &H[9 * p], P);
-    else
-      MaterialEvaluate(kernel->law, n, used, &H[9 * p], NULL, P, NULL);
+    LawStress(kernel, X, u, n, used, p, &H[9 * p], P);
     CauchyStress(&H[9 * p], P, pressure[p], finite, &stress[6 * p]);
   }
 }
@@ -160,17 +176,12 @@ void ElementPointNominal(const KernelCase *kernel, const double *X, const double
 {
   const Element *e      = ElementGet(kernel->type);
   const int      finite = kernel->kinematics == KINEMATICS_FINITE;
-  const int      n      = kernel->n_constants ? kernel->n_constants : MaterialGetLaw(kernel->law)->constants;
   double         used[MATERIAL_MAX_CONSTANTS];
+  const int      n = StressConstants(kernel, constants, used);
 
-  for (int k = 0; k < n; k++) used[k] = constants[k];
-  if (kernel->formulation == FORMULATION_MIXED) used[0] = 0; /* the pressure takes the place of this part */
   ElementPointState(kernel, X, u, constants, multiplier, H, pressure);
   for (int p = 0; p < e->points && P; p++) {
-    if (kernel->plastic)
-      PlasticStress(kernel, X, u, used, p, &H[9 * p], &P[9 * p]);
-    else
-      MaterialEvaluate(kernel->law, n, used, &H[9 * p], NULL, &P[9 * p], NULL);
+    LawStress(kernel, X, u, n, used, p, &H[9 * p], &P[9 * p]);
     if (kernel->formulation == FORMULATION_MIXED) AddPressureStress(&H[9 * p], pressure[p], finite, &P[9 * p]);
   }
 }
