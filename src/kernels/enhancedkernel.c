@@ -230,13 +230,15 @@ LANES_INLINE void SolveModesSystem(const int modes, Lanes K[MAX_MODES][MAX_MODES
   }
 }
 
-/* Computes the element's energy W and the force f of the modes. If renew, also computes and factors their tangent K. */
+/* Computes the element's energy W, the least dilatation of its points and the force f of the modes. If renew, also
+   computes and factors their tangent K. */
 LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int dim, const int hoop, const int renew,
-                             Enhanced *x, Lanes *W, Lanes f[MAX_MODES], Lanes K[MAX_MODES][MAX_MODES])
+                             Enhanced *x, Lanes *W, Lanes *least, Lanes f[MAX_MODES], Lanes K[MAX_MODES][MAX_MODES])
 {
   const int modes = dim * dim + hoop;
 
-  *W = (Lanes){0};
+  *W     = (Lanes){0};
+  *least = (Lanes){0} + INFINITY;
   for (int k = 0; k < modes; k++) {
     f[k] = (Lanes){0};
     for (int l = k; l < modes && renew; l++) K[k][l] = (Lanes){0};
@@ -246,6 +248,8 @@ LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int 
 
     PointGradient(dim, hoop, x, q, H);
     MaterialDilatation(H, &dilatation);
+    for (int lane = 0; lane < LANES; lane++)
+      if (dilatation[lane] < (*least)[lane]) (*least)[lane] = dilatation[lane];
     PointLaw(call, q, H, &dilatation, &energy, P, renew ? x->c.A[q] : NULL);
     *W += energy * x->volume[q];
     for (int r = 0; r < 9; r++) P[r] *= x->volume[q];
@@ -332,18 +336,11 @@ LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const 
   return left;
 }
 
-/* Lanes that are inverted without modes get none. Their energy may have no minimum. */
-LANES_INLINE void LeaveInverted(const BatchCall *call, const int points, const int dim, const int hoop,
-                                const Enhanced *x, ModesState *m)
+/* Lanes that are inverted without modes get none. Their energy may have no minimum. least: dilatation without modes. */
+static inline void LeaveInverted(const Lanes *least, ModesState *m)
 {
-  for (int q = 0; q < points && call->finite; q++) {
-    Lanes H[9], dilatation;
-
-    PointGradient(dim, hoop, x, q, H);
-    MaterialDilatation(H, &dilatation);
-    for (int lane = 0; lane < LANES; lane++)
-      if (dilatation[lane] <= -1) m->active[lane] = 0;
-  }
+  for (int lane = 0; lane < LANES; lane++)
+    if ((*least)[lane] <= -1) m->active[lane] = 0;
 }
 
 /* Solves for the modes of each lane. A lane that does not converge gets J = NaN and no modes. With small strains and
@@ -356,13 +353,13 @@ LANES_INLINE void SolveModes(const BatchCall *call, const int points, const int 
   int        left        = LANES;
   Lanes      K[MAX_MODES][MAX_MODES], mu;
 
-  LeaveInverted(call, points, dim, hoop, x, &modes_state);
   call->law->shear(call->n_constants, call->constants, &mu);
   for (int q = 0; q < points; q++) modes_state.scale += converged_strain2 * mu * x->volume[q];
   for (int iteration = 0; left && iteration < (iterates ? MAX_ITERATIONS : 1); iteration++) {
-    Lanes W, f[MAX_MODES], d[MAX_MODES];
+    Lanes W, least, f[MAX_MODES], d[MAX_MODES];
 
-    ModeSystem(call, points, dim, hoop, iteration < RENEWED_FIRST || iteration >= RENEWED_AGAIN, x, &W, f, K);
+    ModeSystem(call, points, dim, hoop, iteration < RENEWED_FIRST || iteration >= RENEWED_AGAIN, x, &W, &least, f, K);
+    if (iteration == 0 && call->finite) LeaveInverted(&least, &modes_state);
     for (int k = 0; k < modes; k++) d[k] = f[k];
     SolveModesSystem(modes, K, d);
     left = Advance(modes, &W, f, d, &modes_state, x);
