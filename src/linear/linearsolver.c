@@ -227,6 +227,27 @@ PetscErrorCode LinearSolverRenew(LinearSolver solver)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Solves A^T x = b with the factor of the KSP, and refines x once; r is work space. *found: there is a factor. */
+static PetscErrorCode SolveTransposed(LinearSolver solver, Mat A, Vec b, Vec x, Vec r, PetscBool *found)
+{
+  Factor factor;
+  Vec    d;
+
+  PetscFunctionBeginUser;
+  PetscCall(DirectSolverFactor(solver->ksp, &factor));
+  *found = factor ? PETSC_TRUE : PETSC_FALSE;
+  if (!factor) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPSetUp(solver->ksp));
+  PetscCall(FactorSolveTransposed(factor, b, x));
+  PetscCall(MatMultTranspose(A, x, r));
+  PetscCall(VecAYPX(r, -1, b));
+  PetscCall(VecDuplicate(x, &d));
+  PetscCall(FactorSolveTransposed(factor, r, d));
+  PetscCall(VecAXPY(x, 1, d));
+  PetscCall(VecDestroy(&d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   LinearSolverTransposed - solves A^T x = b with the operator of the KSP.
 
@@ -247,36 +268,22 @@ PetscErrorCode LinearSolverRenew(LinearSolver solver)
 PetscErrorCode LinearSolverTransposed(LinearSolver solver, Mat A, Vec b, Vec x, PetscBool *solved)
 {
   PetscReal right, left;
-  Factor    factor;
-  Vec       r, d;
+  Vec       r;
 
   PetscFunctionBeginUser;
-  *solved = PETSC_FALSE;
-  PetscCall(VecNorm(b, NORM_2, &right));
+  *solved = PETSC_TRUE;
   PetscCall(VecDuplicate(b, &r));
-  PetscCall(VecDuplicate(x, &d));
   if (solver->symmetric)
     PetscCall(KSPSolve(solver->ksp, b, x));
-  else {
-    PetscCall(DirectSolverFactor(solver->ksp, &factor));
-    if (factor) PetscCall(KSPSetUp(solver->ksp));
-    if (factor)
-      PetscCall(FactorSolveTransposed(factor, b, x));
-    else
-      PetscCall(VecSet(x, INFINITY));
-    PetscCall(MatMultTranspose(A, x, r));
-    PetscCall(VecAYPX(r, -1, b));
-    if (factor) PetscCall(FactorSolveTransposed(factor, r, d));
-    if (factor) PetscCall(VecAXPY(x, 1, d));
-  }
-  if (solver->symmetric)
-    PetscCall(MatMult(A, x, r));
   else
-    PetscCall(MatMultTranspose(A, x, r));
-  PetscCall(VecAYPX(r, -1, b));
-  PetscCall(VecNorm(r, NORM_2, &left));
-  *solved = (PetscBool)(left <= LINEAR_TRANSPOSED * right);
-  PetscCall(VecDestroy(&d));
+    PetscCall(SolveTransposed(solver, A, b, x, r, solved));
+  if (*solved) {
+    PetscCall((solver->symmetric ? MatMult : MatMultTranspose)(A, x, r));
+    PetscCall(VecAYPX(r, -1, b));
+    PetscCall(VecNorm(r, NORM_2, &left));
+    PetscCall(VecNorm(b, NORM_2, &right));
+    *solved = (PetscBool)(left <= LINEAR_TRANSPOSED * right);
+  }
   PetscCall(VecDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
