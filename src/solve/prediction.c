@@ -191,19 +191,19 @@ static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Computes the norm of the residual at free displacements x and model->t, which become the trial state. It is infinite
-   where an element is inverted, or where the contact lists do not reach. */
-static PetscErrorCode ModelTryStart(Model model, Vec x, PetscReal *norm)
+/* Computes the norm of the residual at free displacements x and model->t, which become the trial state. *ok: no element
+   is inverted. The norm is infinite where one is, or where the contact lists do not reach. */
+static PetscErrorCode ModelTryStart(Model model, Vec x, PetscBool *ok, PetscReal *norm)
 {
   const Problem problem = model->problem;
-  PetscBool     ok, within;
+  PetscBool     within;
   Vec           f;
 
   PetscFunctionBeginUser;
   *norm = PETSC_INFINITY;
   PetscCall(ProblemSetTrial(problem, x, model->t));
-  PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
-  if (!ok) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, ok));
+  if (!*ok) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactListsReach(model->contact, &within));
   if (!within) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(x, &f));
@@ -213,34 +213,23 @@ static PetscErrorCode ModelTryStart(Model model, Vec x, PetscReal *norm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says whether the accepted state is nearer to balance at model->t than a predicted one whose contact was not found. A
-   tool that leaves by much more than bodies spring back drags them along where the prediction holds contact. */
-static PetscErrorCode ModelBetterStays(Model model, PetscBool *stays)
-{
-  PetscReal there, here;
-
-  PetscFunctionBeginUser;
-  *stays = PETSC_FALSE;
-  if (!model->work->unsettled) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ModelTryStart(model, model->work->accepted_x, &here));
-  PetscCall(ModelTryStart(model, model->x, &there));
-  *stays = (PetscBool)(here < there);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* After a prediction with contact: sets model->x to the accepted state if the prediction failed, has inverted an
-   element, or is farther from balance than that state. Close to a limit of the stability that contact gives a linear
-   step goes far, however little the load changes, and its pieces lead away from every equilibrium. */
+   element, or has not found its contact and is farther from balance than that state. Close to a limit of the stability
+   that contact gives a linear step goes far, however little the load changes, and its pieces lead away from every
+   equilibrium. A tool that leaves by much more than bodies spring back drags them along where the prediction holds
+   contact. */
 static PetscErrorCode ModelStayBehind(Model model, SolveReport *report)
 {
   const Problem problem = model->problem;
-  PetscBool     ok      = PETSC_FALSE, stays;
+  PetscReal     here = PETSC_INFINITY, there = PETSC_INFINITY;
+  PetscBool     ok = PETSC_FALSE, stands;
 
   PetscFunctionBeginUser;
-  PetscCall(ProblemSetTrial(problem, model->x, model->t));
-  if (report->result == SOLVE_CONVERGED) PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
-  if (ok) PetscCall(ModelBetterStays(model, &stays));
-  if (ok && !stays) PetscFunctionReturn(PETSC_SUCCESS);
+  if (report->result == SOLVE_CONVERGED) {
+    if (model->work->unsettled) PetscCall(ModelTryStart(model, model->work->accepted_x, &stands, &here));
+    PetscCall(ModelTryStart(model, model->x, &ok, &there));
+  }
+  if (ok && !(here < there)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscInfo(model->snes, "the prediction goes too far: the step starts from the accepted state\n"));
   PetscCall(VecCopy(model->work->accepted_x, model->x));
   PetscCall(ProblemSetTrial(problem, model->x, model->t));
