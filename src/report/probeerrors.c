@@ -75,8 +75,10 @@ static PetscErrorCode Estimate(ProbeErrors errors, Functional *functional)
   PetscCall(PetscMalloc2(all, &probe, all, &error));
   PetscCall(ElasticityEnhanced(errors->model->problem->elasticity, &enhanced));
   for (int i = 0; i < all; i++) {
-    PetscCall(ProbeVary(errors->probes, i, &functional[n], &errors->why[i]));
-    if (enhanced) errors->why[i] = "a body has enhanced elements (bodies.*.formulation)";
+    if (enhanced)
+      errors->why[i] = "a body has enhanced elements (bodies.*.formulation)";
+    else
+      PetscCall(ProbeVary(errors->probes, i, &functional[n], &errors->why[i]));
     if (errors->why[i]) PetscCall(ProbeVariationFree(&functional[n]));
     probe[n] = i;
     n += !errors->why[i];
