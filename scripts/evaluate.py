@@ -9,6 +9,7 @@ Points are reference coordinates. One without a node takes the nearest node, and
 step becomes a row of DIR/evaluated.csv. Forces (reaction, contact_force) need the solver and are refused."""
 import argparse
 import csv
+import functools
 import pathlib
 import sys
 
@@ -45,6 +46,7 @@ class Results:
         if not self.steps:
             raise Mistake(f"{directory} has no written step; allowed: a run with output.every")
 
+    @functools.cache
     def rows(self, body):
         """Nodes of a body, of all bodies for None."""
         if body is None:
@@ -138,10 +140,11 @@ def along(results, probe):
     """Rows of a probe along a line: step, t, part of the way, place and value at the nearest node, its distance."""
     ends = [numpy.pad(numpy.array(end, float), (0, 3 - len(end))) for end in probe["line"]]
     rows, body = [], results.rows(probe.get("body"))
+    parts = numpy.linspace(0, 1, int(probe.get("points", 11)))
+    found = [results.nearest(ends[0] + part * (ends[1] - ends[0]), body) for part in parts]
     for step in results.steps:
         values = results.field(step, probe["field"], probe.get("component"))
-        for part in numpy.linspace(0, 1, int(probe.get("points", 11))):
-            node, off = results.nearest(ends[0] + part * (ends[1] - ends[0]), body)
+        for part, (node, off) in zip(parts, found):
             rows.append([int(step.attrs["step"]), float(step.attrs["t"]), float(part), *map(float, results.nodes[node]),
                          changed(values[node], probe), off])
     return rows

@@ -391,8 +391,12 @@ class DeckScene:
         raise MeshError(f"{card.where}: this law is not available; there are NEO HOOKE, MOONEY-RIVLIN, YEOH, OGDEN and "
                         "ARRUDA-BOYCE")
 
+    def _interaction(self, card):
+        """The interaction that the card of a pair names; an empty one where there is none."""
+        return self.interactions.get(card.parameters.get("INTERACTION", "").upper(), {})
+
     def _pair(self, k, slave, master, card):
-        interaction = self.interactions.get(card.parameters.get("INTERACTION", "").upper(), {})
+        interaction = self._interaction(card)
         entries = [f"name: pair_{k + 1}", f"slave: {name_of(self._surface(slave))}",
                    f"master: {name_of(self._surface(master))}", "smoother: facet", *self._where_measured(card),
                    "initial_overlap: resolve"]
@@ -487,8 +491,7 @@ class DeckScene:
         return supports, loads
 
     def _rubs(self, k):
-        interaction = self.interactions.get(self.pairs[k][2].parameters.get("INTERACTION", "").upper(), {})
-        return bool(self._friction(interaction))
+        return bool(self._friction(self._interaction(self.pairs[k][2])))
 
     def _probes(self):
         lines = []
