@@ -174,7 +174,7 @@ PetscErrorCode ElasticityFollow(Elasticity e, const PetscReal *u, const StressRe
 
 /*@
   ElasticityYield - makes the energy one whose minimum can be searched along a step, until ElasticityYieldSet() ends
-that.
+  that.
 
   Not collective
 

@@ -2,8 +2,8 @@
    the terminal. Ties the parts that write them; does not know how values were computed.
 
    ResultsCreate() touches no file. ResultsStart() makes the directory and prints the first lines, ResultsStep() writes
-   each accepted step, ResultsLastSolution() comes before the last one is accepted, ResultsFinish() ends the run however it went. ResultsArchive() keeps the state of all this in a
-   checkpoint; loaded before ResultsStart(), it lets the run go on in the same files. Which directory may be used is
+   each accepted step, ResultsLastSolution() comes before the last one is accepted, ResultsFinish() ends the run however
+   it went. ResultsArchive() keeps the state of all this in a checkpoint; loaded before ResultsStart(), it lets the run go on in the same files. Which directory may be used is
    decided before, by rundirectory.h. */
 #pragma once
 #include "solve/model.h"

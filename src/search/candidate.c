@@ -57,7 +57,7 @@ void CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *c)
 
 /*@
   CandidateBoxDistance - returns the distance (length) of a place to the bounding box of a candidate. The candidate is
-not nearer than that.
+  not nearer than that.
 
   Not collective
 
