@@ -47,11 +47,11 @@ def leak(args, mesh, squeeze, refine):
 
 def limit(values):
     """Richardson's limit of the three meshes, by their own order between 1/2 and 4."""
-    falls = (values[1] - values[0]) / (values[2] - values[1])
-    if falls <= 0:
+    first, last = values[1] - values[0], values[2] - values[1]
+    if first * last <= 0:
         return values[2]
-    order = min(max(math.log(falls, REFINE[1] / REFINE[0]), 0.5), 4)
-    return values[2] + (values[2] - values[1]) / ((REFINE[1] / REFINE[0])**order - 1)
+    order = min(max(math.log(first / last, REFINE[1] / REFINE[0]), 0.5), 4)
+    return values[2] + last / ((REFINE[1] / REFINE[0])**order - 1)
 
 
 def profiles(args, axis):
