@@ -60,10 +60,12 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   PetscCall(FluidCreate(mesh, scene, problem->loads, problem->contact, &problem->fluids));
   PetscCall(PetscCalloc2(n, &problem->f, n, &problem->trial));
   PetscCall(ElasticityTangent(problem->elasticity, problem->trial, NULL));
+  PetscCall(LoadsTangent(problem->loads, 0, problem->trial, problem->elasticity));
   PetscCall(ElasticityMatrix(problem->elasticity, NULL, NULL, &problem->P));
   problem->A = problem->P;
   PetscCall(PetscObjectReference((PetscObject)problem->A));
-  PetscCall(MatCreateVecs(problem->A, &problem->diagonal, NULL));
+  PetscCall(MatCreateVecs(problem->A, &problem->diagonal, &problem->undeformed));
+  PetscCall(MatGetDiagonal(problem->P, problem->undeformed));
   PetscCall(FreeModesCreate(mesh, scene, problem->loads, &problem->modes));
   if (problem->contact)
     PetscCall(FreeBodiesCreate(mesh, scene, problem->loads, problem->contact, problem->modes, &problem->bodies));
@@ -92,6 +94,7 @@ PetscErrorCode ProblemDestroy(Problem *problem)
   PetscCall(FreeModesDestroy(&p->modes));
   PetscCall(MatDestroy(&p->A));
   PetscCall(VecDestroy(&p->diagonal));
+  PetscCall(VecDestroy(&p->undeformed));
   PetscCall(ContactDestroy(&p->contact));
   PetscCall(ElasticityDestroy(&p->elasticity));
   PetscCall(LoadsDestroy(&p->loads));
@@ -287,6 +290,26 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The 2-norm of the diagonal of the elastic tangent, in which no dof is far stiffer than in the undeformed state. */
+static PetscErrorCode ProblemStiffness(Problem problem, PetscReal *stiffness)
+{
+  const PetscScalar *now, *undeformed;
+  PetscReal          sum = 0;
+  PetscInt           n;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(problem->diagonal, &n));
+  PetscCall(VecGetArrayRead(problem->diagonal, &now));
+  PetscCall(VecGetArrayRead(problem->undeformed, &undeformed));
+  for (PetscInt i = 0; i < n; i++)
+    sum += PetscSqr(PetscMin(PetscAbsReal(now[i]), PROBLEM_STIFFENING * PetscAbsReal(undeformed[i])));
+  PetscCall(VecRestoreArrayRead(problem->diagonal, &now));
+  PetscCall(VecRestoreArrayRead(problem->undeformed, &undeformed));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, problem->mesh->comm));
+  *stiffness = PetscSqrtReal(sum);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ProblemTangent - computes the tangent of elements, loads, contact, contact springs and damping at (u, t) into
   problem->A and problem->P.
@@ -303,7 +326,8 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
 . change - the contact part, and what is new against the tangent before
 
   Note:
-  problem->stiffness is set to the norm of the diagonal without contact, from which ProblemRoundOff() estimates.
+  problem->stiffness is set to the norm of the diagonal without contact, from which ProblemRoundOff() estimates. Where
+  elements are nearly inverted, the diagonal of the undeformed state bounds it.
 @*/
 PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const StressReference *reference, PetscReal t,
                               TangentChange *change)
@@ -318,7 +342,7 @@ PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const StressR
   PetscCall(ElasticityTangent(problem->elasticity, u, reference));
   PetscCall(LoadsTangent(problem->loads, t, u, problem->elasticity));
   PetscCall(ElasticityMatrix(problem->elasticity, joined ? change->C : NULL, problem->diagonal, &problem->P));
-  PetscCall(VecNorm(problem->diagonal, NORM_2, &problem->stiffness));
+  PetscCall(ProblemStiffness(problem, &problem->stiffness));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(ContactSpringsTangent(problem->springs, problem->P));
   PetscCall(DofSpringsTangent(problem->damping, problem->P));

@@ -18,6 +18,10 @@
 /* Round-off of the residual in machine epsilons times stiffness times displacement. A body that is moved without any
    force has no other scale for its residual. The measured factor is 0.1 to 1.5. */
 #define PROBLEM_ROUND_OFF 16
+/* No dof is stiffer in that estimate than this multiple of what it is in the undeformed state. Rubber at half or twice
+   its length is some 10 times stiffer. Elements about to be inverted are stiffer without bound, and would let residuals
+   pass that are no round-off. */
+#define PROBLEM_STIFFENING 100
 /* Contact lists are made for this multiple of the expected motion, which follows from the rate of the last step. Lists
    that replace others after a step are made for the same multiple, so that they serve an equal next step. */
 #define PROBLEM_MOTION_SAFETY 1.5
@@ -58,11 +62,12 @@ typedef struct _n_Problem {
   Mat            A;            /* K + C */
   Mat            P;            /* K + C or K, see TangentForm; owned by the elasticity */
   Vec            diagonal;     /* of the elastic tangent, during its evaluation */
+  Vec            undeformed;   /* diagonal of the elastic tangent in the undeformed state */
   PetscReal     *f;            /* local residual of the last evaluation (force), all dofs */
   PetscReal     *trial;        /* local displacements of the iterate (length), prescribed ones included */
   PetscReal      force;        /* norm of the forces in the last residual, before assembly */
   PetscReal      force_so_far; /* largest such norm of all accepted states */
-  PetscReal      stiffness;    /* 2-norm of the diagonal of the elastic tangent */
+  PetscReal      stiffness;    /* 2-norm of the diagonal of the elastic tangent, see PROBLEM_STIFFENING */
   PetscReal      edge;         /* shortest edge of a cell (length) with finite strains, else 0 */
   PetscReal      expected;     /* motion (length) that ProblemGatherLists() made the contact lists for */
   PetscInt       inverted;     /* gmsh's tag of a cell of this rank that a residual found inverted, or -1 */
