@@ -318,10 +318,25 @@ def elastic():
     check.holds("the run's choice: what is left", friction["default"]["error_force"] < 0.004)
     check.holds("it has raised the penalty", raised["default"] > 10)
     check.holds("penalties of the scene stay", raised["soft"] == raised["stiff"] == raised["named"] == 1)
-    lost = [friction["stiff"]["force"][d] - friction["soft"]["force"][d] for d in (0, 1)]
-    part = math.hypot(*lost) / math.hypot(*friction["soft"]["force"])
-    check.near("error of the friction's force, estimated over true", friction["soft"]["error_force"] / part, 1, 0.3)
     check.holds("a raise in two parts", ends["named"]["contact"][0]["penalty"]["error_force"] < 0.004)
+    estimated_slip()
+
+
+def estimated_slip():
+    """The estimate against the true error, where one penalty holds all the way and the steps are the same. It is of first
+    order: at a penalty of 5 it says 10 % where the truth is 15 %."""
+    forces, estimates = {}, {}
+    for penalty in (20, 80, 20000):
+        finished = run(args, SCENES.parent / "jobs/tyre_kerb.yaml", out=f"penalty_{penalty}", overrides=[
+            "contact.0.friction.mu=0.4", "output.every=0", "contact.0.penalty.scale=700",
+            f"contact.0.friction.stick.penalty={penalty}", "stepping={control: fixed, initial: 0.125}"
+        ])
+        friction = finished.summary()["contact"][0]["friction"]
+        forces[penalty], estimates[penalty] = numpy.array(friction["force"]), friction["error_force"]
+    for penalty in (20, 80):
+        lost = numpy.linalg.norm(forces[20000] - forces[penalty]) / numpy.linalg.norm(forces[penalty])
+        check.near(f"penalty {penalty}: error of the friction's force, estimated over true", estimates[penalty] / lost, 1,
+                   0.15)
 
 
 def ironing():
@@ -330,6 +345,8 @@ def ironing():
         finished = run(args, SCENES.parent / "jobs/ironing.yaml", out=f"mu_{mu}",
                        overrides=[f"contact.0.friction.mu={mu}", "output.every=0"])
         probes = finished.summary()["probes"]
+        check.holds(f"mu {mu}: no step is taken for round-off that is none",
+                    max(row["residual"] for row in finished.steps()) < 1e-6)
         check.holds(f"mu {mu}: the penalty's error is known and small",
                     finished.summary()["contact"][0]["penalty"]["error_force"] < 0.004)
         print(f"     mu {mu}: force {probes['fx']:.3f}, {probes['fy']:.3f}")
