@@ -195,6 +195,13 @@ JOBS = [
     Job("clip_on_rod", "clip pushed over a rod and pulled back", [
         Answer("push", 2.098, 2.1, "limit"),  # it varies by that with the mesh
     ], steps=12),
+    Job("brake_block", "brake block on a drum that turns", [
+        Answer("torque", -7178.4, 0.05, "limit"),
+    ], steps=12),
+    Job("wedge_lock", "wedge driven in, let go and pulled", [
+        Answer("grip", 1979, 0.05, "limit"),
+        Answer("hold", 228, 0.3, "limit"),
+    ], steps=14, pairs=2),
     Job("cam_follower", "cam lifts a follower", [
         Answer("lift", 3.344, 0.06, "limit"),
         Answer("torque", -161.8, 0.05, "limit"),

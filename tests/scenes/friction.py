@@ -323,8 +323,8 @@ def elastic():
 
 
 def estimated_slip():
-    """The estimate against the true error, where one penalty holds all the way and the steps are the same. It is of first
-    order: at a penalty of 5 it says 10 % where the truth is 15 %."""
+    """The estimate against the true error, where one penalty holds all the way and the steps are the same. It is of
+    first order: at a penalty of 5 it says 10 % where the truth is 15 %."""
     forces, estimates = {}, {}
     for penalty in (20, 80, 20000):
         finished = run(args, SCENES.parent / "jobs/tyre_kerb.yaml", out=f"penalty_{penalty}", overrides=[
@@ -335,8 +335,8 @@ def estimated_slip():
         forces[penalty], estimates[penalty] = numpy.array(friction["force"]), friction["error_force"]
     for penalty in (20, 80):
         lost = numpy.linalg.norm(forces[20000] - forces[penalty]) / numpy.linalg.norm(forces[penalty])
-        check.near(f"penalty {penalty}: error of the friction's force, estimated over true", estimates[penalty] / lost, 1,
-                   0.15)
+        check.near(f"penalty {penalty}: error of the friction's force, estimated over true", estimates[penalty] / lost,
+                   1, 0.15)
 
 
 def ironing():
