@@ -149,6 +149,21 @@ static PetscReal ToolsWork(const OuterWork work, PetscReal t_0, PetscReal t)
   return sum;
 }
 
+/* Takes the first state. Its bodies carry nothing yet, so that forces of supports and tools in it are those of
+   overlaps, which the first step resolves: they do no work over its length. */
+static PetscErrorCode Start(OuterWork work)
+{
+  const PetscInt n = work->problem->mesh->n_nodes * work->problem->mesh->dim;
+
+  PetscFunctionBeginUser;
+  work->begun         = PETSC_TRUE;
+  work->figures.given = work->figures.stored;
+  PetscCall(PetscArrayzero(work->now.hold, work->n_pairs * MOTION_COMPONENTS));
+  for (PetscInt i = 0; i < n; i++)
+    if (LoadsPrescribed(work->problem->loads, i)) work->now.force[i] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   OuterWorkAdd - takes an accepted state.
 
@@ -169,8 +184,7 @@ PetscErrorCode OuterWorkAdd(OuterWork work, const PetscReal *u_0, PetscReal t_0,
   PetscFunctionBeginUser;
   if (work->problem->contact) ContactWatchTools(work->problem->contact, NULL);
   PetscCall(Collect(work, u_0, t_0, u, t));
-  if (!work->begun) work->figures.given = work->figures.stored;
-  work->begun = PETSC_TRUE;
+  if (!work->begun) PetscCall(Start(work));
   PetscCall(PetscArraycpy(work->u, u, mesh->n_nodes * mesh->dim));
   for (PetscInt i = 0; i < mesh->n_nodes * mesh->dim; i++)
     if (mesh->node_owner[i / mesh->dim] == work->rank)

@@ -1,7 +1,7 @@
 """The balance of energies of a plastic block: the work on it is what it stores and dissipates, and the work from outside is
 that and what contact stores and friction takes. This holds whatever does the work, a tool that is pushed, moved or
-turned, friction, its weight, springs below it, a pressure that follows it, displacements, an overlap that grows, or a
-fluid that enters below it. The bound is the error of the trapezoidal rule over 50 steps, and of friction's own rule,
+turned, friction, its weight, springs below it, a pressure that follows it, displacements, an overlap that grows or is
+there at the start, or a fluid that enters below it. The bound is the error of the trapezoidal rule over 50 steps, and of friction's own rule,
 which takes the traction at the end of a step for all of its slip."""
 from harness import SCENES, Check, arguments, run
 
@@ -19,6 +19,10 @@ CASES = {
     "moved, friction": MOVED + FRICTION,
     "turned and moved, friction": [TOOL + "motion: [{uy: -0.8, rz: -20}]}}"] + FRICTION,
     "overlap that grows": [TOOL + "motion: [{uy: 0}]}}", "contact.0.initial_overlap={add: 0.9}"],
+    "overlap resolved at once": [
+        "contact.0.master={cylinder: {point: [5, 7.995], radius: 3, motion: [{uy: -0.8, ux: 0.3}]}}",
+        "contact.0.initial_overlap=resolve"
+    ],
     "augmented": MOVED + ["contact.0.penalty={augment: true, g_max: 1e-3, unit: length}"],
     "springs and weight": [*PUSHED, "supports.0={surface: y_min, spring: [500, 500]}",
                            "loads=[{volume: block, body_force: [0, -3]}]"],
