@@ -5,10 +5,17 @@
 /* Returns the interval i with t[i] <= t < t[i + 1]: -1 before the first breakpoint, n - 1 from the last one on. */
 static int HistoryInterval(const History *history, double t)
 {
-  int i = -1;
+  int below = -1, above = history->n; /* t[below] <= t < t[above] */
 
-  while (i + 1 < history->n && t >= history->t[i + 1]) i++;
-  return i;
+  while (above - below > 1) {
+    const int middle = below + (above - below) / 2;
+
+    if (t >= history->t[middle])
+      below = middle;
+    else
+      above = middle;
+  }
+  return below;
 }
 
 /*@

@@ -6,6 +6,7 @@
 #include "scenematerial.h"
 #include "sceneplasticity.h"
 #include "sceneread.h"
+#include "scenetable.h"
 #include "base/refusal.h"
 #include <string.h>
 
@@ -265,6 +266,7 @@ static PetscErrorCode SceneReadAll(Scene scene, const char *file)
   Document *document = SceneDocument(scene);
 
   PetscFunctionBeginUser;
+  PetscCall(SceneReadTables(document, file));
   PetscCall(SchemaCheck(document));
   PetscCall(SceneReadNames(scene, file));
   PetscCall(DocumentText(document, &scene->text));
