@@ -68,7 +68,7 @@ def read(directory):
         sys.exit(f"plot.py: {path}/steps.csv has no accepted step")
     columns = list(steps)
     title = read_summary(path)["name"] if (path / "summary.json").exists() else path.name
-    return {"steps": steps, "probes": columns[columns.index("wall_s") + 1 :], "name": path.name, "title": title}
+    return {"steps": steps, "probes": [c for c in columns[columns.index("wall_s") + 1 :] if c != "during"], "name": path.name, "title": title}
 
 
 def main():

@@ -627,7 +627,7 @@ PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, Petsc
     }
     if (force2) *force2 += PetscSqr(factor) * dead->force2;
   }
-  PetscCall(FoundationResidual(loads->foundation, u, f, energy, force2));
+  PetscCall(FoundationResidual(loads->foundation, t, u, f, energy, force2));
   if (!loads->n_follower || !(f || force2)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(loads->event_follower, 0, 0, 0, 0));
   for (PetscInt l = 0; l < loads->n_follower; l++) {
@@ -662,7 +662,7 @@ PetscErrorCode LoadsTangent(Loads loads, PetscReal t, const PetscReal *u, Elasti
   int      n;
 
   PetscFunctionBeginUser;
-  PetscCall(FoundationTangent(loads->foundation, elasticity));
+  PetscCall(FoundationTangent(loads->foundation, t, elasticity));
   if (!loads->n_follower) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LoadsMove(loads, t));
   PetscCall(PetscLogEventBegin(loads->event_follower, 0, 0, 0, 0));

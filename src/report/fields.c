@@ -2,6 +2,7 @@
 #include "fields.h"
 #include "files/fileimage.h"
 #include "files/hdf5table.h"
+#include "scene/stepcolumns.h"
 #include "toolshapes.h"
 #include "vtkhdf.h"
 #include "xdmf.h"
@@ -718,6 +719,7 @@ PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
   CallHDF5(group = H5Gcreate2(file, path, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   PetscCall(Hdf5WriteAttribute(group, "t", H5T_NATIVE_DOUBLE, 1, &t));
   PetscCall(Hdf5WriteAttribute(group, "step", H5T_NATIVE_INT64, 1, &number));
+  if (SceneStepAt(fields->scene, t)) PetscCall(Hdf5WriteText(group, STEP_COLUMN_DURING, SceneStepAt(fields->scene, t)));
   CallHDF5(H5Gclose(group));
   if (FieldsShows(fields, SHOW_DISPLACEMENT)) PetscCall(FieldsWriteDisplacement(fields, file));
   if (FieldsShows(fields, SHOW_STRESS)) PetscCall(FieldsWriteStress(fields, file));

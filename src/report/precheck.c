@@ -60,6 +60,17 @@ PetscErrorCode PrecheckPlasticity(Model model, FILE *stream)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Prints the steps with names, and what acts during each of them. */
+static void PrintSteps(Scene scene, FILE *stream)
+{
+  for (int i = 0; i < scene->stepping.n_steps; i++) {
+    const SceneStep *step = &scene->stepping.steps[i];
+
+    fprintf(stream, "%-8s '%s' from t = %g to %g%s%s\n", i ? "" : "steps", step->name, step->begin, step->until,
+            step->acts ? ": " : "", step->acts ? step->acts : "");
+  }
+}
+
 /* Largest factor of a history, whatever its sign. */
 static double LargestFactor(const History *history)
 {
@@ -114,6 +125,7 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
   if (!rank) WarnOfLengths(model);
   if (report) {
     PetscCall(PrintEffects(model, stream));
+    if (!rank) PrintSteps(model->scene, stream);
     PetscCall(PrecheckPlasticity(model, stream));
     if (!rank) LawReport(model->scene, stream);
     PetscCall(FreeModesReport(model->problem->modes, PETSC_TRUE, stream));

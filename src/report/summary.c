@@ -3,6 +3,7 @@
 #include "advice.h"
 #include "files/textfile.h"
 #include "scene/commandline.h"
+#include "scene/stepcolumns.h"
 #include <cJSON.h>
 #include <math.h>
 #include <stdlib.h>
@@ -185,6 +186,8 @@ static void AddState(cJSON *json, Scene scene, PetscBool has_contact, const Step
   cJSON          *map;
 
   AddReal(json, "t", last ? last->t : 0.0);
+  if (scene->stepping.n_steps)
+    cJSON_AddStringToObject(json, STEP_COLUMN_DURING, SceneStepAt(scene, last ? last->t : 0.0));
   AddReal(json, "max_penetration", touches ? last->contact.max_penetration : NAN);
   AddReal(json, "max_penetration_over_h", touches ? last->contact.max_penetration_over_h : NAN);
   cJSON_AddNumberToObject(json, "contact_nodes", touches ? (double)last->contact.nodes : 0.0);
@@ -346,8 +349,7 @@ static void AddCertificate(cJSON *json, const RunFigures *figures)
   AddReal(map, "largest_over_allowed", figures->certificate.ratio);
   AddReal(map, "residual", figures->last ? figures->last->residual : NAN);
   AddReal(map, "force_balance", figures->certificate.force);
-  AddReal(map, "moment_balance",
-          figures->scene->geometry == GEOMETRY_AXISYMMETRIC ? NAN : figures->certificate.moment);
+  AddReal(map, "moment_balance", figures->scene->geometry == GEOMETRY_AXISYMMETRIC ? NAN : figures->certificate.moment);
   AddReal(map, "dissipated_by_friction", figures->last ? figures->last->contact.dissipated : NAN);
   AddReal(map, "dissipated_by_flow",
           figures->last && SceneIsPlastic(figures->scene) ? figures->last->energy.plastic : NAN);

@@ -6,6 +6,7 @@
 #include "scenematerial.h"
 #include "sceneplasticity.h"
 #include "sceneread.h"
+#include "scenesteps.h"
 #include "scenetable.h"
 #include "base/refusal.h"
 #include <string.h>
@@ -269,6 +270,7 @@ static PetscErrorCode SceneReadAll(Scene scene, const char *file)
   PetscCall(SceneReadTables(document, file));
   PetscCall(SchemaCheck(document));
   PetscCall(SceneReadNames(scene, file));
+  PetscCall(SceneReadSteps(scene));
   PetscCall(DocumentText(document, &scene->text));
   scene->geometry   = (Geometry)SchemaChoice(document, "geometry");
   scene->kinematics = (Kinematics)SchemaChoice(document, "kinematics");
@@ -384,12 +386,20 @@ PetscBool SceneSameProblem(const char *a, const char *b)
 static PetscErrorCode CheckEdits(Document *document, const char *text, int n_set, char *const *set)
 {
   char     *edited;
-  PetscBool same;
+  PetscBool same, unchanged;
 
   PetscFunctionBeginUser;
   PetscCall(DocumentText(document, &edited));
-  same = SceneSameProblem(text, edited);
+  same      = SceneSameProblem(text, edited);
+  unchanged = (PetscBool)!strcmp(text, edited);
   PetscCall(PetscFree(edited));
+  for (int i = 0; i < n_set; i++) {
+    if (!strncmp(set[i], "stepping.steps", strlen("stepping.steps")) && !unchanged)
+      PetscCall(RefuseInput(document->comm,
+                            "-set %s: histories of loads follow from steps with names; allowed in a restart: other "
+                            "keys of stepping, keys of output and solver",
+                            set[i]));
+  }
   for (int i = 0; i < n_set && !same; i++) {
     if (!IsChangeable(set[i], ".="))
       PetscCall(RefuseInput(
@@ -480,6 +490,7 @@ PetscErrorCode SceneDestroy(Scene *scene)
   for (int i = 0; i < s->n_supports; i++) {
     PetscCall(PetscFree(s->supports[i].path));
     PetscCall(PetscFree(s->supports[i].surface));
+    PetscCall(PetscFree2(s->supports[i].history.t, s->supports[i].history.v));
   }
   for (int i = 0; i < s->n_loads; i++) {
     for (int k = 0; k < 3; k++) PetscCall(ExpressionDestroy(&s->loads[i].expression[k]));
@@ -499,6 +510,7 @@ PetscErrorCode SceneDestroy(Scene *scene)
   PetscCall(PetscFree(s->loads));
   PetscCall(PetscFree(s->probes));
   PetscCall(PetscFree(s->stepping.at));
+  PetscCall(SceneDestroySteps(s));
   PetscCall(PairsDestroy(s->n_parameters, &s->parameters));
   PetscCall(PairsDestroy(s->n_petsc, &s->petsc));
   PetscCall(PetscFree(s->file));

@@ -6,7 +6,8 @@
    reads the scene of a checkpoint, and SceneSameProblem() tells whether a restart may continue results of another text.
    Reading loads and runs nothing: SceneLoadRoutines() loads the libraries of users that the scene names.
    Checks that need the mesh are made later by the part that owns them. Their messages start with SceneWhere().
-   SceneBreaks() tells the step control where loads change their rate. SceneReference() prints the scene reference. */
+   SceneBreaks() tells the step control where loads change their rate, SceneStepAt() the name of the step at t.
+   SceneReference() prints the scene reference. */
 #pragma once
 #include <petscsys.h>
 #include "smooth/analyticsurface.h"
@@ -37,10 +38,17 @@ typedef struct {
 } SceneBody;
 
 typedef struct {
-  char  *path, *surface;
-  int    fixed[3];  /* whether a component of the displacement is held at 0 */
-  double spring[3]; /* stiffness of springs to the ground (force per length and area); 0: there are none */
+  char   *path, *surface;
+  int     fixed[3];  /* whether a component of the displacement is held at 0 */
+  double  spring[3]; /* stiffness of springs to the ground (force per length and area); 0: there are none */
+  History history;   /* factor on springs over the load parameter; with n = 0 it is 1 */
 } SceneSupport;
+
+/* A step with a name: a part of the load parameter's way, which may have many load steps. */
+typedef struct {
+  char  *name, *acts; /* acts: paths of what names it in `during`, or NULL */
+  double begin, until;
+} SceneStep;
 
 /* An end of a surface: another surface that has nodes in common with it, or a point; neither: the scene does not say.
  */
@@ -198,6 +206,8 @@ typedef struct {
     int             damped;           /* 1 if steps that fail are tried with a viscous restraint */
     int             n_at;
     double         *at; /* load parameters at which a step must end [n_at] */
+    int             n_steps;
+    SceneStep      *steps; /* steps with names [n_steps]; they follow each other from 0 to 1 */
   } stepping;
   struct {
     SolverType type;
@@ -232,6 +242,7 @@ void           SceneBodySkin(const SceneBody *, char *name, size_t size);
 PetscBool      SceneIsPlastic(Scene);
 PetscBool      SceneHasRoutine(Scene);
 PetscBool      SceneBreaks(Scene, PetscReal t);
+const char    *SceneStepAt(Scene, PetscReal t);
 PetscBool      SceneLoadVaries(const SceneLoad *, int component);
 PetscReal      SceneLoadValue(const SceneLoad *, int component, const PetscReal X[3], PetscReal t);
 PetscErrorCode SceneReference(FILE *);

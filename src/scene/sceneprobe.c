@@ -192,8 +192,10 @@ static PetscErrorCode SceneReadProbeAt(Scene scene, SceneProbe *probe)
 static PetscErrorCode SceneCheckProbeName(Scene scene, const SceneProbe *probe)
 {
   PetscFunctionBeginUser;
-  for (int k = 0; k < STEP_COLUMNS; k++) {
-    if (!strcmp(probe->name, StepColumnNames[k]))
+  for (int k = 0; k <= STEP_COLUMNS; k++) {
+    const char *column = k < STEP_COLUMNS ? StepColumnNames[k] : STEP_COLUMN_DURING;
+
+    if (!strcmp(probe->name, column))
       PetscCall(SceneRefuse(scene, probe->path, "name", "is a column of steps.csv already; allowed: another name",
                             probe->name));
   }

@@ -23,6 +23,9 @@
    .help = "rotation component, multiplied by the history"}, \
   {tool ".motion.*.rz", REAL | FORMULA, .unit = "degrees", .help = "rotation component, multiplied by the history"}, \
   {tool ".motion.*.history", HISTORY, .preset = "[[0, 0], [1, 1]]", .help = "factor over the load parameter t"}, \
+  {tool ".motion.*.during", NAME | TEXTS, \
+   .help = "step, or list of steps one after the other, in which it moves, from 0 to the whole way; it stays there. In " \
+           "the place of history"}, \
   {tool ".free", CHOICES, .values = "ux | uy | uz | rx | ry | rz", \
    .help = "components of the motion that are unknowns: the tool moves along them until its contact balances force " \
            "and moment. In the plane ux, uy and rz, axisymmetric uy alone"}, \
@@ -36,7 +39,9 @@
   {tool ".moment.z", REAL | FORMULA, .unit = "force times length", \
    .help = "moment on the tool, which does its work along the rotation vector (rx, ry, rz), as force"}, \
   {tool ".history", HISTORY, .preset = "[[0, 0], [1, 1]]", \
-   .help = "factor on force and moment over the load parameter t"}
+   .help = "factor on force and moment over the load parameter t"}, \
+  {tool ".during", NAME | TEXTS, \
+   .help = "steps in which force and moment act, in the place of history, as loads.N.during"}
 
 const SchemaKey SchemaKeys[] = {
   {"name", NAME, .help = "name of the run and of its results; the default is the name of the scene file"},
@@ -138,6 +143,10 @@ const SchemaKey SchemaKeys[] = {
   {"supports.*.spring", POINT, .range = "[0, inf)", .unit = "force per length and area",
    .help = "stiffness of springs from the surface to the ground, along each axis; an axisymmetric scene has the radius "
            "as x. They act on the reference area along the axes, however the body moves"},
+  {"supports.*.history", HISTORY, .help = "factor on spring over the load parameter t; without the key it is 1"},
+  {"supports.*.during", NAME | TEXTS,
+   .help = "steps in which springs hold, in the place of history, as loads.N.during; in the first step of all they are "
+           "there from the start"},
   {"loads", LIST,
    .help = "loads, each of one kind and equal to its value multiplied by its history. A value may be an expression "
            "such as \"1e7 + 1e6*cos(2*theta)\", in x, y, z (reference coordinates), r = sqrt(x^2 + y^2), theta = "
@@ -172,6 +181,10 @@ const SchemaKey SchemaKeys[] = {
    .help = "body force, such as the weight"},
   {"loads.*.history", HISTORY, .preset = "[[0, 0], [1, 1]]",
    .help = "factor on the value over the load parameter t; not allowed beside an expression with t"},
+  {"loads.*.during", NAME | TEXTS,
+   .help = "step, or list of steps one after the other, in which the load acts, in the place of history: it grows in the "
+           "first one, stays until the last one ends, and goes to 0 in the step that follows. A displacement grows over "
+           "all of them and stays"},
   {"contact", LIST, .help = "contact pairs of a slave and a master surface, and lists of surfaces that meet each other"},
   {"contact.*", MAP, .help = "one contact pair, with slave and master, or a list of surfaces"},
   {"contact.*.name", NAME, REQUIRED, .help = "name of the pair in probes and results"},
@@ -306,6 +319,13 @@ const SchemaKey SchemaKeys[] = {
    .help = "auto: where static steps fail, the bodies are followed in pseudo-time, slowed down by a viscous restraint "
            "that is taken away before the step ends; the last screen says how much energy it took"},
   {"stepping.at", REALS, .range = "(0, 1]", .help = "load parameters at which a step must end"},
+  {"stepping.steps", LIST, .range = "[1, inf)",
+   .help = "parts of the way from t = 0 to 1, with names that `during` uses. Each may have many load steps, and one ends "
+           "at each of their ends"},
+  {"stepping.steps.*", MAP, .help = "a step with a name"},
+  {"stepping.steps.*.name", NAME, REQUIRED, .help = "its name"},
+  {"stepping.steps.*.until", REAL, REQUIRED, .range = "(0, 1]",
+   .help = "load parameter at which it ends; increasing from one step to the next, the last one 1"},
   {"solver", MAP, .help = "nonlinear and linear solver"},
   {"solver.type", CHOICE, .values = "direct | iterative | auto", .preset = "auto",
    .help = "linear solver; auto chooses it by the number of unknowns. Mixed triangles and tetrahedra of first order "

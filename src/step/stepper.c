@@ -129,16 +129,19 @@ static PetscInt MotionBreakpoints(const Motion *motion)
 /* Collects every load parameter that a step must end on: `at` of the scene, the breakpoints of all histories, and 1. */
 static PetscErrorCode LoadStepperSetLandings(LoadStepper stepper, Scene scene)
 {
-  PetscInt n = scene->stepping.n_at + 1, kept = 0;
+  PetscInt n = scene->stepping.n_at + scene->stepping.n_steps + 1, kept = 0;
 
   PetscFunctionBeginUser;
   for (int l = 0; l < scene->n_loads; l++) n += scene->loads[l].history.n;
+  for (int s = 0; s < scene->n_supports; s++) n += scene->supports[s].history.n;
   for (int b = 0; b < scene->n_bodies; b++) n += MotionBreakpoints(&scene->bodies[b].motion);
   for (int c = 0; c < scene->n_contacts; c++) n += MotionBreakpoints(&scene->contacts[c].motion);
   PetscCall(PetscFree(stepper->landings));
   PetscCall(PetscMalloc1(n, &stepper->landings));
   n = 0;
   for (int i = 0; i < scene->stepping.n_at; i++) stepper->landings[n++] = scene->stepping.at[i];
+  for (int i = 0; i < scene->stepping.n_steps; i++) stepper->landings[n++] = scene->stepping.steps[i].until;
+  for (int s = 0; s < scene->n_supports; s++) PetscCall(AddHistory(&scene->supports[s].history, &n, stepper->landings));
   for (int l = 0; l < scene->n_loads; l++) PetscCall(AddHistory(&scene->loads[l].history, &n, stepper->landings));
   for (int b = 0; b < scene->n_bodies; b++) PetscCall(AddMotion(&scene->bodies[b].motion, &n, stepper->landings));
   for (int c = 0; c < scene->n_contacts; c++) PetscCall(AddMotion(&scene->contacts[c].motion, &n, stepper->landings));
