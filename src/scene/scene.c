@@ -94,7 +94,19 @@ static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
 
   PetscFunctionBeginUser;
   body->chosen = choice == FORMULATIONS;
-  if (body->chosen && plastic)
+  if (scene->plane_stress && plastic)
+    PetscCall(SceneRefuse(scene, body->path, "material.law",
+                          "has a state at its points, which has no plane stress; allowed with geometry: plane_stress: "
+                          "laws without plasticity and routines",
+                          NULL));
+  if (scene->plane_stress && !body->chosen && choice != FORMULATION_FULL && choice != FORMULATION_ENHANCED)
+    PetscCall(SceneRefuse(scene, body->path, "formulation",
+                          "has no plane stress, in which no element locks by its volume; allowed with geometry: "
+                          "plane_stress: full | enhanced | auto",
+                          Formulations[choice]));
+  if (body->chosen && scene->plane_stress)
+    body->formulation = FORMULATION_FULL;
+  else if (body->chosen && plastic)
     body->formulation = scene->order == 1                          ? FORMULATION_FBAR
                         : body->material.law == MATERIAL_VON_MISES ? FORMULATION_MIXED
                                                                    : FORMULATION_FULL;
@@ -261,6 +273,9 @@ static PetscErrorCode SceneReadNames(Scene scene, const char *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Place of plane_stress among the words of the key geometry, behind those of Geometry */
+enum { SCENE_PLANE_STRESS = GEOMETRY_AXISYMMETRIC + 1 };
+
 /* Reads all parts of the document, in the order in which mistakes are refused. */
 static PetscErrorCode SceneReadAll(Scene scene, const char *file)
 {
@@ -272,7 +287,9 @@ static PetscErrorCode SceneReadAll(Scene scene, const char *file)
   PetscCall(SceneReadNames(scene, file));
   PetscCall(SceneReadSteps(scene));
   PetscCall(DocumentText(document, &scene->text));
-  scene->geometry   = (Geometry)SchemaChoice(document, "geometry");
+  scene->geometry     = (Geometry)SchemaChoice(document, "geometry");
+  scene->plane_stress = (int)scene->geometry == SCENE_PLANE_STRESS;
+  if (scene->plane_stress) scene->geometry = GEOMETRY_PLANE_STRAIN;
   scene->kinematics = (Kinematics)SchemaChoice(document, "kinematics");
   scene->dim        = document->dim;
   PetscCall(SceneReadMesh(scene));

@@ -186,7 +186,8 @@ typedef struct {
   ScenePair    *parameters; /* of the .geo file */
   Geometry      geometry;
   Kinematics    kinematics;
-  int           dim; /* 3 for solid, else 2 */
+  int           dim;          /* 3 for solid, else 2 */
+  int           plane_stress; /* 1: geometry is plane strain for everything but the law, which has no stress across */
   int           n_bodies;
   SceneBody    *bodies;
   int           n_supports;

@@ -52,8 +52,9 @@ const SchemaKey SchemaKeys[] = {
   {"mesh.order", INTEGER, .range = "[1, 2]",
    .help = "order of the elements; the default is 1 for a .geo file, and that of the file for the others"},
   {"mesh.parameters", FREE, .help = "numbers and texts that are passed to the .geo file"},
-  {"geometry", CHOICE, .values = "solid | plane_strain | axisymmetric", .preset = "solid",
-   .help = "geometry of the model; for axisymmetric, x is the radius and y is the axial coordinate"},
+  {"geometry", CHOICE, .values = "solid | plane_strain | axisymmetric | plane_stress", .preset = "solid",
+   .help = "geometry of the model; for axisymmetric, x is the radius and y is the axial coordinate; plane_stress is for "
+           "thin parts, free to become thinner or thicker"},
   {"kinematics", CHOICE, .values = "small | finite", .preset = "finite",
    .help = "whether strains and displacements are small or finite"},
   {"bodies", LIST, REQUIRED, .range = "[1, inf)", .help = "the bodies of the scene"},
