@@ -313,7 +313,7 @@ static PetscErrorCode DeadLoadNodes(Loads loads, PetscReal t, DeadLoad *dead)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   for (int c = 0; c < mesh->dim; c++) {
-    PetscReal value = load->expression[c] ? SceneLoadValue(load, c, X, t) : load->value[c];
+    PetscReal value = (load->expression[c] ? SceneLoadValue(load, c, X, t) : load->value[c]) / loads->scene->thickness;
 
     if (LoadVaries(load) && !SceneLoadVaries(load, c)) value *= HistoryValue(&load->history, t);
     for (PetscInt i = 0; i < dead->group->n_nodes; i++) {
@@ -330,7 +330,8 @@ static PetscErrorCode DeadLoadNodes(Loads loads, PetscReal t, DeadLoad *dead)
 /* Spreads a force evenly over the faces of its group, or over its nodes where it has no faces. */
 static PetscErrorCode DeadLoadForce(Loads loads, PetscReal t, DeadLoad *dead)
 {
-  const PetscInt n = loads->mesh->n_nodes * loads->mesh->dim;
+  const PetscInt  n         = loads->mesh->n_nodes * loads->mesh->dim;
+  const PetscReal thickness = loads->scene->thickness;
 
   PetscFunctionBeginUser;
   if (dead->area == 0) {
@@ -338,8 +339,8 @@ static PetscErrorCode DeadLoadForce(Loads loads, PetscReal t, DeadLoad *dead)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(DeadLoadSurface(loads, t, dead));
-  for (PetscInt i = 0; i < n; i++) loads->dense[i] /= dead->area;
-  dead->force2 /= PetscSqr(dead->area);
+  for (PetscInt i = 0; i < n; i++) loads->dense[i] /= dead->area * thickness;
+  dead->force2 /= PetscSqr(dead->area * thickness);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -60,6 +60,13 @@ PetscErrorCode PrecheckPlasticity(Model model, FILE *stream)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Prints what is special about a scene in the plane. */
+static void PrintPlane(Scene scene, FILE *stream)
+{
+  if (!scene->plane_stress && scene->thickness == 1) return;
+  fprintf(stream, "plane    %s, thickness %g\n", scene->plane_stress ? "stress" : "strain", scene->thickness);
+}
+
 /* Prints the steps with names, and what acts during each of them. */
 static void PrintSteps(Scene scene, FILE *stream)
 {
@@ -125,6 +132,7 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
   if (!rank) WarnOfLengths(model);
   if (report) {
     PetscCall(PrintEffects(model, stream));
+    if (!rank) PrintPlane(model->scene, stream);
     if (!rank) PrintSteps(model->scene, stream);
     PetscCall(PrecheckPlasticity(model, stream));
     if (!rank) LawReport(model->scene, stream);

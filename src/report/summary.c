@@ -141,8 +141,8 @@ static void AddDamping(cJSON *json, const RunFigures *figures)
   cJSON               *map = cJSON_AddObjectToObject(json, "damping");
 
   cJSON_AddNumberToObject(map, "steps", (double)way->damped);
-  AddReal(map, "energy_taken", way->damping);
-  AddReal(map, "stored_energy", figures->stored);
+  AddReal(map, "energy_taken", way->damping * figures->scene->thickness);
+  AddReal(map, "stored_energy", figures->stored * figures->scene->thickness);
 }
 
 /* Adds what was done for bodies that only contact holds, if there are any. */
@@ -158,7 +158,7 @@ static void AddSprings(cJSON *json, const RunFigures *figures)
   AddReal(map, "force_share", way->share);
   AddReal(map, "held_force_share", way->tied);
   cJSON_AddNumberToObject(map, "relaxed", (double)way->relaxed);
-  AddReal(map, "energy_taken", way->taken);
+  AddReal(map, "energy_taken", way->taken * figures->scene->thickness);
   AddReal(map, "largest_energy_share", way->left);
 }
 

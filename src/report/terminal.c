@@ -475,7 +475,7 @@ static void PrintDamping(const RunFigures *figures)
   if (!report->damped) return;
   printf("damping of steps that failed without it: %lld steps, took an energy of %.4g, %.2g of what is stored; all "
          "steps end in static equilibrium\n",
-         (long long)report->damped, (double)report->damping, (double)share);
+         (long long)report->damped, (double)report->damping * figures->scene->thickness, (double)share);
   if (share > TERMINAL_DAMPED)
     fprintf(stderr,
             "burnish: warning: damping took %.3g of the energy that is stored at the end: the bodies went through "

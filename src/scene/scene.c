@@ -273,6 +273,19 @@ static PetscErrorCode SceneReadNames(Scene scene, const char *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads the thickness of a scene in the plane. The solution does not depend on it, as all forces are per thickness. */
+static PetscErrorCode SceneReadThickness(Scene scene)
+{
+  PetscFunctionBeginUser;
+  scene->thickness = SchemaReal(SceneDocument(scene), "thickness");
+  if (SchemaHas(SceneDocument(scene), "thickness") && scene->geometry != GEOMETRY_PLANE_STRAIN)
+    PetscCall(SceneRefuse(scene, "", "thickness",
+                          "has no meaning here; allowed: with geometry: plane_strain or "
+                          "plane_stress",
+                          NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Place of plane_stress among the words of the key geometry, behind those of Geometry */
 enum { SCENE_PLANE_STRESS = GEOMETRY_AXISYMMETRIC + 1 };
 
@@ -292,6 +305,7 @@ static PetscErrorCode SceneReadAll(Scene scene, const char *file)
   if (scene->plane_stress) scene->geometry = GEOMETRY_PLANE_STRAIN;
   scene->kinematics = (Kinematics)SchemaChoice(document, "kinematics");
   scene->dim        = document->dim;
+  PetscCall(SceneReadThickness(scene));
   PetscCall(SceneReadMesh(scene));
   PetscCall(SceneReadBodies(scene));
   PetscCall(SceneReadSupports(scene));

@@ -188,6 +188,7 @@ typedef struct {
   Kinematics    kinematics;
   int           dim;          /* 3 for solid, else 2 */
   int           plane_stress; /* 1: geometry is plane strain for everything but the law, which has no stress across */
+  double        thickness; /* of the bodies in the plane (length), by which results multiply forces; else 1 */
   int           n_bodies;
   SceneBody    *bodies;
   int           n_supports;

@@ -207,6 +207,13 @@ static PetscErrorCode SceneCheckProbeName(Scene scene, const SceneProbe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Tells whether a probe's value is one per thickness of the plane. */
+static int ProbePerThickness(ProbeKind kind)
+{
+  return kind == PROBE_REACTION || kind == PROBE_CONTACT_FORCE || kind == PROBE_FRICTION_FORCE ||
+         kind == PROBE_FRICTION_TORQUE || kind == PROBE_SLIPPED_AREA;
+}
+
 static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
 {
   Document   *document = SceneDocument(scene);
@@ -259,6 +266,7 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
     PetscCall(SceneRefuse(scene, path, "only", "stands beside excluding; allowed: one of them", NULL));
   probe->absolute = SchemaBoolean(document, "%s.absolute", path);
   probe->factor   = SchemaReal(document, "%s.factor", path);
+  if (ProbePerThickness(probe->kind)) probe->factor *= scene->thickness;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

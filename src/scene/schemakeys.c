@@ -30,7 +30,7 @@
    .help = "components of the motion that are unknowns: the tool moves along them until its contact balances force " \
            "and moment. In the plane ux, uy and rz, axisymmetric uy alone"}, \
   {tool ".force", POINT | FORMULA, .unit = "force", \
-   .help = "force on the tool at its point, in the plane per thickness, axisymmetric on the whole tool; it acts along " \
+   .help = "force on the tool at its point, in the plane over thickness, axisymmetric on the whole tool; it acts along " \
            "the free displacements. Numbers are multiplied by the history, expressions are of t; the default is no " \
            "force"}, \
   {tool ".moment", MAP, .help = "moment on the tool along its free rotations; the default is none"}, \
@@ -55,6 +55,9 @@ const SchemaKey SchemaKeys[] = {
   {"geometry", CHOICE, .values = "solid | plane_strain | axisymmetric | plane_stress", .preset = "solid",
    .help = "geometry of the model; for axisymmetric, x is the radius and y is the axial coordinate; plane_stress is for "
            "thin parts, free to become thinner or thicker"},
+  {"thickness", REAL, .range = "(0, inf)", .unit = "length", .preset = "1",
+   .help = "of geometry plane_strain and plane_stress: thickness of all bodies. Forces in the scene and in the results are "
+           "those on the whole thickness; without the key they are per unit of it"},
   {"kinematics", CHOICE, .values = "small | finite", .preset = "finite",
    .help = "whether strains and displacements are small or finite"},
   {"bodies", LIST, REQUIRED, .range = "[1, inf)", .help = "the bodies of the scene"},
@@ -176,7 +179,7 @@ const SchemaKey SchemaKeys[] = {
   {"loads.*.traction", POINT | FORMULA, .unit = "force per reference area", .help = "traction of fixed direction"},
   {"loads.*.force", POINT | FORMULA, .unit = "force",
    .help = "force of fixed direction in all: spread evenly over the faces of a surface, or in equal parts over the nodes "
-           "of a curve or of points; in the plane per thickness, axisymmetric over 360 degrees; an expression may have t "
+           "of a curve or of points; in the plane over thickness, axisymmetric over 360 degrees; an expression may have t "
            "only"},
   {"loads.*.body_force", POINT | FORMULA, .unit = "force per reference volume",
    .help = "body force, such as the weight"},

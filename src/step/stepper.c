@@ -38,7 +38,7 @@ struct _n_LoadStepper {
   StepperReport        report;
   PetscInt             n_landings, next_landing;
   PetscReal           *landings; /* load parameters that steps must end on, ascending; the last one is 1 */
-  LoadStepperLastFn    last; /* NULL: nobody wants the last solution */
+  LoadStepperLastFn    last;     /* NULL: nobody wants the last solution */
   void                *last_context;
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
@@ -353,6 +353,18 @@ static PetscInt StepIterations(const SolveReport *solve)
   return solve->first && !solve->damped ? solve->first : solve->newton;
 }
 
+/* Multiplies force and energies of a record by the thickness of the plane. */
+static void ScaleRecord(Scene scene, StepRecord *record)
+{
+  PetscReal *per_thickness[] = {&record->contact.force,      &record->contact.dissipated,
+                                &record->energy.elastic,     &record->energy.plastic,
+                                &record->energy.work,        &record->energy.lag,
+                                &record->energy.outer.work,  &record->energy.outer.stored,
+                                &record->energy.outer.given, &record->energy.outer.friction};
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(per_thickness); i++) *per_thickness[i] *= scene->thickness;
+}
+
 /* Accepts a converged step of dt: fills its record, lets the control choose the next dt, which is at most `most` and
    which it must not shrink below dt_min, and accepts the state. */
 static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscReal most, PetscBool clipped,
@@ -375,6 +387,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   if (stepper->last && model->t >= 1 - STEPPER_SAME_T) PetscCall(stepper->last(stepper->last_context));
   PetscCall(ModelAccept(model));
   record->energy = EnergyBalanceGet(model->balance);
+  ScaleRecord(model->scene, record);
   if (solve->jump[0]) {
     report->jumps++;
     PetscCall(PetscSNPrintf(report->jump, sizeof(report->jump), "from t = %.6g to %.6g: %s", (double)report->t,
