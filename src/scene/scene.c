@@ -236,8 +236,10 @@ static PetscErrorCode SceneReadStepping(Scene scene)
 
 static PetscErrorCode SceneReadOutput(Scene scene)
 {
-  const char *const names[] = {"displacement", "stress", "contact"};
-  int *const        flags[] = {&scene->output.displacement, &scene->output.stress, &scene->output.contact};
+  /* The first three are written without the key */
+  const char *const names[] = {"displacement", "stress", "contact", "principal", "strain"};
+  int *const        flags[] = {&scene->output.displacement, &scene->output.stress, &scene->output.contact,
+                               &scene->output.principal, &scene->output.strain};
   Node              fields  = NodeFind(SceneDocument(scene)->root, "output.fields");
 
   PetscFunctionBeginUser;
@@ -246,8 +248,8 @@ static PetscErrorCode SceneReadOutput(Scene scene)
   scene->output.error            = SchemaBoolean(SceneDocument(scene), "output.error");
   scene->output.certificate      = SchemaBoolean(SceneDocument(scene), "output.certificate");
   scene->certificate.penetration = SchemaReal(SceneDocument(scene), "certificate.penetration");
-  for (int k = 0; k < 3; k++) {
-    *flags[k] = !fields;
+  for (int k = 0; k < (int)PETSC_STATIC_ARRAY_LENGTH(names); k++) {
+    *flags[k] = !fields && k < 3;
     for (int i = 0; fields && i < fields->n; i++) *flags[k] |= !strcmp(fields->child[i]->text, names[k]);
   }
   PetscCall(SceneReadPairs(scene, "petsc", &scene->n_petsc, &scene->petsc));

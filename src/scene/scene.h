@@ -221,7 +221,7 @@ typedef struct {
   struct {
     int every;                         /* steps between two outputs, or 0 for the last state only */
     int checkpoint;                    /* steps between two checkpoints, or 0 for one only when the run ends early */
-    int displacement, stress, contact; /* which fields are written */
+    int displacement, stress, contact, principal, strain; /* which fields are written */
     int error;                         /* 1 if the errors of the probes are estimated */
     int certificate;                   /* 1 if each accepted step is judged */
   } output;

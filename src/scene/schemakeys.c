@@ -393,8 +393,9 @@ const SchemaKey SchemaKeys[] = {
   {"output", MAP, .help = "results that are written"},
   {"output.every", INTEGER, .range = "[0, inf)", .unit = "steps", .preset = "1",
    .help = "steps between two outputs of the fields; 0: only the last state is written"},
-  {"output.fields", CHOICES, .values = "displacement | stress | contact",
-   .help = "fields that are written; the default is all of them"},
+  {"output.fields", CHOICES, .values = "displacement | stress | contact | principal | strain",
+   .help = "fields that are written; the default is displacement, stress and contact. principal: principal stresses and "
+           "their directions; strain: strain and energy density"},
   {"output.checkpoint", INTEGER, .range = "[0, inf)", .unit = "steps", .preset = "0",
    .help = "steps between two checkpoints; 0: only when the run ends early"},
   {"output.certificate", BOOLEAN, .preset = "true",
