@@ -3,6 +3,7 @@
 #include "contactreport.h"
 #include "estimate.h"
 #include "lawreport.h"
+#include "units.h"
 #include "bodies/freemodes.h"
 #include "kernels/elementkernel.h"
 #include "bodies/hinges.h"
@@ -58,6 +59,18 @@ PetscErrorCode PrecheckPlasticity(Model model, FILE *stream)
       fprintf(stream, "         '%s' names no formulation: it is %s\n", body->name, Formulations[body->formulation]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Prints the units that the scene names, and what forces are meant of. */
+static void PrintUnits(Scene scene, FILE *stream)
+{
+  char stress[UNITS_TEXT], forces[UNITS_TEXT];
+
+  if (!scene->units.length || !scene->units.force) return;
+  UnitsStress(scene, stress);
+  UnitsForces(scene, forces);
+  fprintf(stream, "units    length %s, force %s, stress %s; forces %s\n", scene->units.length, scene->units.force,
+          stress, forces);
 }
 
 /* Prints what is special about a scene in the plane. */
@@ -132,6 +145,7 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
   if (!rank) WarnOfLengths(model);
   if (report) {
     PetscCall(PrintEffects(model, stream));
+    if (!rank) PrintUnits(model->scene, stream);
     if (!rank) PrintPlane(model->scene, stream);
     if (!rank) PrintSteps(model->scene, stream);
     PetscCall(PrecheckPlasticity(model, stream));

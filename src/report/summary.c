@@ -1,6 +1,7 @@
 /* The run in one JSON file, see summary.h. */
 #include "summary.h"
 #include "advice.h"
+#include "units.h"
 #include "files/textfile.h"
 #include "scene/commandline.h"
 #include "scene/stepcolumns.h"
@@ -193,6 +194,26 @@ static void AddState(cJSON *json, Scene scene, PetscBool has_contact, const Step
   cJSON_AddNumberToObject(json, "contact_nodes", touches ? (double)last->contact.nodes : 0.0);
   map = cJSON_AddObjectToObject(json, "probes");
   for (int i = 0; i < scene->n_probes; i++) AddReal(map, scene->probes[i].name, last ? probes[i] : NAN);
+}
+
+/* Adds the units of the values, what forces are meant of, and the units of the probes. */
+static void AddUnits(cJSON *json, Scene scene)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "units"), *probes;
+  char   text[UNITS_TEXT];
+
+  cJSON_AddStringToObject(map, "length", scene->units.length ? scene->units.length : "length");
+  cJSON_AddStringToObject(map, "force", scene->units.force ? scene->units.force : "force");
+  UnitsStress(scene, text);
+  cJSON_AddStringToObject(map, "stress", text);
+  cJSON_AddBoolToObject(map, "named", scene->units.length && scene->units.force);
+  UnitsForces(scene, text);
+  cJSON_AddStringToObject(map, "forces", text);
+  probes = cJSON_AddObjectToObject(map, "probes");
+  for (int i = 0; i < scene->n_probes; i++) {
+    UnitsProbe(scene, &scene->probes[i], text);
+    cJSON_AddStringToObject(probes, scene->probes[i].name, text);
+  }
 }
 
 /* Adds the estimated errors of the probes, if the scene asks for them. */
@@ -414,6 +435,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddUsage(json, figures);
   AddGuards(json, run->way);
   AddState(json, figures->scene, figures->n_pairs ? PETSC_TRUE : PETSC_FALSE, figures->last, probes);
+  AddUnits(json, figures->scene);
   AddErrors(json, figures);
   AddEnergy(json, figures->scene, figures->last);
   AddPartition(json, mesh);

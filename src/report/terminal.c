@@ -2,6 +2,7 @@
 #include "terminal.h"
 #include "endreport.h"
 #include "runlength.h"
+#include "units.h"
 #include "report/precheck.h"
 #include "scene/commandline.h"
 #include <math.h>
@@ -354,6 +355,7 @@ static PetscErrorCode PrintProbes(Terminal terminal, const PetscReal *values)
   printf("\n");
   for (int i = 0; i < terminal->scene->n_probes; i++) {
     PetscReal spacing;
+    char      unit[UNITS_TEXT];
 
     PetscCall(ProbesGetSpacing(terminal->probes, i, &spacing));
     printf("%-20s ", terminal->scene->probes[i].name);
@@ -361,6 +363,9 @@ static PetscErrorCode PrintProbes(Terminal terminal, const PetscReal *values)
       printf("%.9g", (double)values[i]);
     else
       printf("no value");
+    UnitsProbe(terminal->scene, &terminal->scene->probes[i], unit);
+    if (isfinite((double)values[i]) && terminal->scene->units.length && terminal->scene->units.force && *unit)
+      printf(" %s", unit);
     if (isfinite((double)spacing)) printf(" (node spacing %.3g)", (double)spacing);
     printf("\n");
   }

@@ -279,7 +279,8 @@ static PetscErrorCode SceneReadNames(Scene scene, const char *file)
 static PetscErrorCode SceneReadThickness(Scene scene)
 {
   PetscFunctionBeginUser;
-  scene->thickness = SchemaReal(SceneDocument(scene), "thickness");
+  scene->thickness     = SchemaReal(SceneDocument(scene), "thickness");
+  scene->per_thickness = scene->geometry == GEOMETRY_PLANE_STRAIN && !SchemaHas(SceneDocument(scene), "thickness");
   if (SchemaHas(SceneDocument(scene), "thickness") && scene->geometry != GEOMETRY_PLANE_STRAIN)
     PetscCall(SceneRefuse(scene, "", "thickness",
                           "has no meaning here; allowed: with geometry: plane_strain or "
@@ -308,6 +309,9 @@ static PetscErrorCode SceneReadAll(Scene scene, const char *file)
   scene->kinematics = (Kinematics)SchemaChoice(document, "kinematics");
   scene->dim        = document->dim;
   PetscCall(SceneReadThickness(scene));
+  PetscCall(SceneReadText(scene, "units", "length", &scene->units.length));
+  PetscCall(SceneReadText(scene, "units", "force", &scene->units.force));
+  PetscCall(SceneReadText(scene, "units", "stress", &scene->units.stress));
   PetscCall(SceneReadMesh(scene));
   PetscCall(SceneReadBodies(scene));
   PetscCall(SceneReadSupports(scene));
@@ -362,7 +366,7 @@ PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const
 }
 
 /* The parts of a scene that a restart may change, because the state of the run does not depend on them. */
-static const char *const changeable[] = {"certificate", "output", "solver", "stepping"};
+static const char *const changeable[] = {"certificate", "output", "solver", "stepping", "units"};
 
 /* Tells whether the first component of a path is one of these parts. One of the characters of `end` follows it. */
 static PetscBool IsChangeable(const char *path, const char *end)
@@ -542,6 +546,9 @@ PetscErrorCode SceneDestroy(Scene *scene)
   PetscCall(PetscFree(s->supports));
   PetscCall(PetscFree(s->loads));
   PetscCall(PetscFree(s->probes));
+  PetscCall(PetscFree(s->units.length));
+  PetscCall(PetscFree(s->units.force));
+  PetscCall(PetscFree(s->units.stress));
   PetscCall(PetscFree(s->stepping.at));
   PetscCall(SceneDestroySteps(s));
   PetscCall(PairsDestroy(s->n_parameters, &s->parameters));

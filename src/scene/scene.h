@@ -176,19 +176,23 @@ typedef struct {
 } ScenePair;
 
 typedef struct {
-  char         *file, *directory; /* file as the user gave it; its directory, where relative paths start */
-  char         *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
-  char         *name;
-  char         *mesh_file;    /* path with which the process can open the file */
-  PetscBool     foreign_mesh; /* the mesh file is one of another program, by its ending */
-  int           order;        /* of the elements, 1 or 2; 0 stands for that of the .msh file */
-  int           n_parameters;
-  ScenePair    *parameters; /* of the .geo file */
-  Geometry      geometry;
-  Kinematics    kinematics;
-  int           dim;          /* 3 for solid, else 2 */
-  int           plane_stress; /* 1: geometry is plane strain for everything but the law, which has no stress across */
-  double        thickness; /* of the bodies in the plane (length), by which results multiply forces; else 1 */
+  char      *file, *directory; /* file as the user gave it; its directory, where relative paths start */
+  char      *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
+  char      *name;
+  char      *mesh_file;    /* path with which the process can open the file */
+  PetscBool  foreign_mesh; /* the mesh file is one of another program, by its ending */
+  int        order;        /* of the elements, 1 or 2; 0 stands for that of the .msh file */
+  int        n_parameters;
+  ScenePair *parameters; /* of the .geo file */
+  Geometry   geometry;
+  Kinematics kinematics;
+  int        dim;           /* 3 for solid, else 2 */
+  int        plane_stress;  /* 1: geometry is plane strain for everything but the law, which has no stress across */
+  double     thickness;     /* of the bodies in the plane (length), by which results multiply forces; else 1 */
+  int        per_thickness; /* 1: in the plane without the key, so that forces are those of a unit of thickness */
+  struct {
+    char *length, *force, *stress;
+  } units; /* words for results and pictures, or NULL */
   int           n_bodies;
   SceneBody    *bodies;
   int           n_supports;
@@ -219,11 +223,11 @@ typedef struct {
   int         n_probes;
   SceneProbe *probes;
   struct {
-    int every;                         /* steps between two outputs, or 0 for the last state only */
-    int checkpoint;                    /* steps between two checkpoints, or 0 for one only when the run ends early */
+    int every;      /* steps between two outputs, or 0 for the last state only */
+    int checkpoint; /* steps between two checkpoints, or 0 for one only when the run ends early */
     int displacement, stress, contact, principal, strain; /* which fields are written */
-    int error;                         /* 1 if the errors of the probes are estimated */
-    int certificate;                   /* 1 if each accepted step is judged */
+    int error;                                            /* 1 if the errors of the probes are estimated */
+    int certificate;                                      /* 1 if each accepted step is judged */
   } output;
   struct {
     double penetration; /* largest depth to which faces may cross, in sizes of the smaller face */

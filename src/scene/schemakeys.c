@@ -406,6 +406,12 @@ const SchemaKey SchemaKeys[] = {
   {"certificate.penetration", REAL, .range = "(0, inf)", .unit = "face sizes", .preset = "0.1",
    .help = "largest depth to which faces may cross, in sizes of the smaller face, besides what the shape of faces "
            "explains; at most a quarter of the height of the elements below them"},
+  {"units", MAP,
+   .help = "words for the user's units, which results and pictures then name. Nothing is converted: numbers must be in "
+           "consistent units"},
+  {"units.length", TEXT, .help = "such as mm"},
+  {"units.force", TEXT, .help = "such as N"},
+  {"units.stress", TEXT, .help = "such as MPa; the default is force over length squared"},
   {"petsc", FREE, .help = "PETSc options without the dash, such as snes_monitor"},
 };
 // clang-format on
