@@ -70,7 +70,8 @@ def read(directory):
     columns = list(steps)
     summary = read_summary(path) if (path / "summary.json").exists() else {"name": path.name}
     named = summary.get("units", {}) if summary.get("units", {}).get("named") else {}
-    return {"steps": steps, "probes": [c for c in columns[columns.index("wall_s") + 1 :] if c != "during"], "name": path.name, "title": summary["name"], "units": named}
+    probes = [column for column in columns[columns.index("wall_s") + 1 :] if column != "during"]
+    return {"steps": steps, "probes": probes, "name": path.name, "title": summary["name"], "units": named}
 
 
 def main():

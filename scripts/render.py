@@ -229,7 +229,7 @@ def options():
     parser.add_argument("--mirror", default="", metavar="AXES",
                         help="adds the mirror images across these axes, such as xz")
     parser.add_argument("--units", type=lambda text: text.split(","), metavar="LENGTH,STRESS",
-                        help="units to be written into the picture, such as mm,MPa; default: those of the scene's key units")
+                        help="units to be written into the picture, such as mm,MPa; default: those of the scene")
     parser.add_argument("--animate", action="store_true", help="all written steps as a GIF")
     parser.add_argument("--width", type=int, default=900, help="of the picture, in pixels")
     parser.add_argument("-o", dest="file", type=pathlib.Path,

@@ -39,11 +39,13 @@ def stretched(geometry, formulation):
     stretch = 1.5
     solid = geometry == "solid"
     axis = "y"
-    supports = [f"{{surface: {s}_min, u{s}: 0}}" for s in ("xyz" if solid else "xy" if geometry == "plane_stress" else "y")]
+    sides = "xyz" if solid else "xy" if geometry == "plane_stress" else "y"
+    supports = [f"{{surface: {s}_min, u{s}: 0}}" for s in sides]
     finished = run(args, SCENES / ("patch.yaml" if solid else "patch_plane.yaml"), out="stretched", overrides=[
         f"geometry={geometry}", "bodies.0.material={law: mooney_rivlin, c10: 1, c01: 0.2, K: 20}",
         f"bodies.0.formulation={formulation}", FIELDS, f"supports=[{', '.join(supports)}]",
-        f"loads=[{{surface: {axis}_max, uy: {stretch - 1}}}]", "stepping={control: fixed, initial: 0.02}", "solver.tolerance=1e-9",
+        f"loads=[{{surface: {axis}_max, uy: {stretch - 1}}}]", "stepping={control: fixed, initial: 0.02}",
+        "solver.tolerance=1e-9",
         f"probes=[{{name: force, reaction: {axis}_max, component: y}}]"
     ])
     fields, steps = finished.fields(), finished.steps()
@@ -69,7 +71,8 @@ def contact():
         supports = "supports=[{surface: z_min, uz: 0}" + (", {surface: x_min, ux: 0}]" if not push else "]")
         finished = run(args, SCENES / "patch.yaml", out="contact", overrides=[
             *base, supports, f"loads=[{{surface: y_max, traction: [{push}, -5, 0]}}]",
-            f"contact=[{{name: pair, slave: y_min, smoother: facet, penalty: {{initial: 1e5, scale: 1}}, {plane}{friction}}}]"
+            "contact=[{name: pair, slave: y_min, smoother: facet, penalty: {initial: 1e5, scale: 1}, "
+            f"{plane}{friction}}}]"
         ])
         fields = finished.fields()
         bottom = fields["nodes"][:, 1] < 1e-9
@@ -77,8 +80,9 @@ def contact():
         near(f"{name}: status on the slave", fields["status"][bottom], status)
         near(f"{name}: status elsewhere", fields["status"][~bottom], 0)
         traction = fields["contact_traction"]
+        along = fields["pressure"][bottom, None] * fields["normal"][bottom]
         near(f"{name}: traction is pressure along the normal and friction", traction[bottom],
-             fields["pressure"][bottom, None] * fields["normal"][bottom] + (fields["traction"][bottom] if friction else 0))
+             along + (fields["traction"][bottom] if friction else 0))
         if not friction:
             near(f"{name}: traction", traction[bottom], [0, 5, 0], 1e-5)
         near(f"{name}: none elsewhere", traction[~bottom], 0)

@@ -94,7 +94,7 @@ def restart():
     if args.ranks > 1:
         command = ["mpirun", "-n", str(args.ranks), *command]
     finished = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    check.holds("a restart reads no table", finished.returncode == 0, "" if not finished.returncode else finished.stdout)
+    check.holds("a restart reads no table", finished.returncode == 0, finished.stdout if finished.returncode else "")
     last = Run(0, "", directory).steps()[-1]
     check.near("its last force", last["force"], -0.75 * 6 * 3, 1e-8)
 
@@ -105,7 +105,8 @@ def hardening():
     forces = []
     for table in ("[[0, 10], [0.01, 12], [0.1, 20]]", f"{{csv: {folder}/yield.csv}}"):
         finished = run(args, SCENES / "patch.yaml", out="hardening", overrides=[
-            "kinematics=small", f"bodies.0.material={{law: von_mises, E: 1000, nu: 0.3, hardening: {{table: {table}}}}}",
+            "kinematics=small",
+            f"bodies.0.material={{law: von_mises, E: 1000, nu: 0.3, hardening: {{table: {table}}}}}",
             "supports=[{surface: y_min, ux: 0, uy: 0, uz: 0}]", "loads=[{surface: y_max, uy: 0.05}]",
             "probes=[{name: force, reaction: y_min, component: y}]", "stepping={control: fixed, initial: 0.25}"
         ])
@@ -141,7 +142,8 @@ def refusals():
             "supports=[{surface: y_min, ux: 0, uy: 0, uz: 0}]",
             f"loads=[{{surface: y_max, uy: 0.01, history: {{csv: {bad}{more}}}}}]"
         ])
-        check.holds(f"refused: {name}", finished.status == 1 and re.search(message, finished.text), finished.text.strip())
+        refused = finished.status == 1 and re.search(message, finished.text)
+        check.holds(f"refused: {name}", refused, finished.text.strip())
 
 
 args = arguments()
