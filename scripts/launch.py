@@ -58,11 +58,23 @@ def read_summary(directory):
     return json.loads((pathlib.Path(directory) / "summary.json").read_text())
 
 
+def read_units(directory):
+    """[length, stress] as the scene's key units names them, None without it or before the run has ended."""
+    path = pathlib.Path(directory) / "summary.json"
+    units = read_summary(directory).get("units", {}) if path.exists() else {}
+    return [units["length"], units["stress"]] if units.get("named") else None
+
+
 def read_steps(directory):
-    """Columns of steps.csv, NaN where empty; {} without an accepted step."""
+    """Columns of steps.csv, NaN where empty, and texts of the column `during`; {} without an accepted step."""
     with open(pathlib.Path(directory) / "steps.csv", newline="") as file:
         rows = list(csv.DictReader(file, skipinitialspace=True))
-    return {key: numpy.array([float(row[key] or "nan") for row in rows]) for key in rows[0]} if rows else {}
+    if not rows:
+        return {}
+    return {
+        key: numpy.array([row[key] if key == "during" else float(row[key] or "nan") for row in rows])
+        for key in rows[0]
+    }
 
 
 def table_parser(description, name, record=None):

@@ -30,7 +30,7 @@ def curve(axes, run, column, label=None, place=0, **style):
                   or column.replace("_", " "), **style)
 
 
-def finish(axes, title, log=False, x="t"):
+def finish(axes, title, log=False, x="t", unit=""):
     """An empty panel says so instead of showing axes without meaning."""
     if not axes.lines:
         axes.text(0.5, 0.5, "no values", ha="center", va="center", transform=axes.transAxes, color="0.5")
@@ -42,6 +42,7 @@ def finish(axes, title, log=False, x="t"):
             each(LogFormatterSciNotation(minor_thresholds=(1, 0.5), labelOnlyBase=False))
     axes.set_title(title, fontsize=10)
     axes.set_xlabel("load parameter t" if x == "t" else x, fontsize=8)
+    axes.set_ylabel(unit, fontsize=8)
     axes.tick_params(labelsize=8)
     axes.grid(alpha=0.3)
 
@@ -67,8 +68,10 @@ def read(directory):
     if not steps:
         sys.exit(f"plot.py: {path}/steps.csv has no accepted step")
     columns = list(steps)
-    title = read_summary(path)["name"] if (path / "summary.json").exists() else path.name
-    return {"steps": steps, "probes": columns[columns.index("wall_s") + 1 :], "name": path.name, "title": title}
+    summary = read_summary(path) if (path / "summary.json").exists() else {"name": path.name}
+    named = summary.get("units", {}) if summary.get("units", {}).get("named") else {}
+    probes = [column for column in columns[columns.index("wall_s") + 1 :] if column != "during"]
+    return {"steps": steps, "probes": probes, "name": path.name, "title": summary["name"], "units": named}
 
 
 def main():
@@ -96,12 +99,18 @@ def main():
         curve(newton, run, "newton", name("iterations"), place)
         curve(step, run, "dt", name("step"), place)
         contact_panels(contact, run, name, place)
+    units = runs[0]["units"]
+    names = units.get("probes", {})
+    x = options.x + (f" ({names[options.x]})" if names.get(options.x) else "")
     titles = [(probe, False) for probe in probes]
+    labels = [names.get(probe, "") for probe in probes] + ["", "", ""]
+    per = f"/{units['length']}" if units.get("forces", "").startswith("per ") else ""
+    labels += [units["force"] + per if units else "", units.get("length", ""), ""]
     titles += [("Newton iterations of the step", False), ("load step", True), ("nodes in contact", False),
                ("contact force", False)]
     titles += [("penetration", True), ("penalty", True)]
-    for axes, (title, log) in zip(panels, titles):
-        finish(axes, title, log, options.x)
+    for axes, (title, log), label in zip(panels, titles, labels):
+        finish(axes, title, log, x, label)
     for axes in panels[len(titles) :]:
         axes.remove()
     figure.suptitle(", ".join(dict.fromkeys(run["title"] for run in runs)))

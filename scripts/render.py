@@ -18,13 +18,14 @@ import numpy
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.collections import LineCollection, PolyCollection
 
+from launch import read_units
 from meshview import read_skin, read_tools
 from raster import Canvas, View
 
 DISPLACEMENT = {"ux": 0, "uy": 1, "uz": 2}
 STRESS = {"stress_" + name: i for i, name in enumerate(("xx", "yy", "zz", "xy", "yz", "xz"))}
-CONTACT = ("gap", "penetration", "penalty", "pressure")  # on the slave surfaces only
-FIELDS = ("von_mises", "plastic_strain", *STRESS, "displacement", *DISPLACEMENT, *CONTACT)
+CONTACT = ("gap", "penetration", "penalty", "pressure", "status")  # on the slave surfaces only
+FIELDS = ("von_mises", "plastic_strain", "energy_density", *STRESS, "displacement", *DISPLACEMENT, *CONTACT)
 GREY = numpy.array([0.80, 0.82, 0.85])
 TOOL = numpy.array([0.62, 0.64, 0.68])
 ISOMETRIC = (-35, 22)  # azimuth, elevation in degrees
@@ -133,7 +134,7 @@ class Picture:
     def unit(self, field=None):
         """The unit of a field in brackets, where --units names it: of a length or a stress."""
         field = field or self.field
-        if not self.options.units or field in ("plastic_strain", "penalty"):
+        if not self.options.units or field in ("plastic_strain", "penalty", "status", "friction", "strain"):
             return ""
         return f" ({self.options.units[field not in ('displacement', *DISPLACEMENT, 'gap', 'penetration')]})"
 
@@ -228,7 +229,7 @@ def options():
     parser.add_argument("--mirror", default="", metavar="AXES",
                         help="adds the mirror images across these axes, such as xz")
     parser.add_argument("--units", type=lambda text: text.split(","), metavar="LENGTH,STRESS",
-                        help="units to be written into the picture, such as mm,MPa; a run does not know its own")
+                        help="units to be written into the picture, such as mm,MPa; default: those of the scene")
     parser.add_argument("--animate", action="store_true", help="all written steps as a GIF")
     parser.add_argument("--width", type=int, default=900, help="of the picture, in pixels")
     parser.add_argument("-o", dest="file", type=pathlib.Path,
@@ -246,6 +247,7 @@ def options():
 def main():
     chosen = options()
     run = Run(chosen.directory)
+    chosen.units = chosen.units or read_units(chosen.directory)
     fields = [chosen.field] if chosen.field else [field for field in ("von_mises", "pressure") if run.has(field)]
     for field in fields or ["displacement"]:
         if not run.has(field):

@@ -97,9 +97,11 @@ def page(directory, options):
 
     section("Effects", "<p>" + html.escape(", ".join(summary["effects"])) + "</p>\n")
     if summary["probes"]:
-        first = {key: float(column[0]) for key, column in steps.items()}
-        section("Probes", table([[key, first.get(key), value] for key, value in summary["probes"].items()],
-                                ("probe", "after the first step", "at the end")))
+        first = {key: float(column[0]) for key, column in steps.items() if key != "during"}
+        units = summary.get("units", {"probes": {}, "forces": "as the scene says"})
+        rows = [[key, first.get(key), value, units["probes"].get(key, "")] for key, value in summary["probes"].items()]
+        section("Probes", table(rows, ("probe", "after the first step", "at the end", "unit"))
+                + f"<p>Forces are {html.escape(units['forces'])}.</p>\n")
     for name, picture in pictures(directory, options):
         section(name, f'<img alt="{name}" src="data:image/png;base64,{picture}">\n')
     if summary["contact"]:

@@ -35,7 +35,8 @@ static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
                              .kinematics  = scene->kinematics,
                              .law         = material.law,
                              .formulation = scene->bodies[body].formulation,
-                             .n_constants = material.n_constants};
+                             .n_constants = material.n_constants,
+                             .thin        = scene->plane_stress};
 
   if (scene->bodies[body].chosen && !ElementKernelExists(&kernel)) kernel.formulation = FORMULATION_FULL;
   return kernel;

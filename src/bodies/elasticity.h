@@ -20,6 +20,9 @@
 #include "kernels/stressreference.h"
 #include "mesh/mesh.h"
 
+/* Values of ElasticityNodalStrain() at a node */
+enum { STRAIN_FIELDS = 7 };
+
 typedef struct _n_Elasticity *Elasticity;
 
 PetscErrorCode ElasticityCreate(Mesh, Scene, Elasticity *);
@@ -36,6 +39,7 @@ PetscErrorCode ElasticitySetSymmetric(Elasticity, PetscBool);
 PetscErrorCode ElasticityMatrix(Elasticity, Mat C, Vec diagonal, Mat *);
 PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat C);
 PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *stress, PetscReal *weight);
+PetscErrorCode ElasticityNodalStrain(Elasticity, const PetscReal *u, PetscReal *strain, PetscReal *weight);
 /* Columns of the plastic strain at the nodes: equivalent, tensor */
 enum { PLASTIC_FIELDS = 7 };
 

@@ -5,7 +5,8 @@
 /* A surface with springs */
 typedef struct {
   const MeshGroup *group;
-  const PetscReal *spring; /* 3: force per length and area */
+  const PetscReal *spring;  /* 3: force per length and area */
+  const History   *history; /* factor over the load parameter; NULL: 1 */
 } SpringSurface;
 
 struct _n_Foundation {
@@ -20,6 +21,12 @@ struct _n_Foundation {
 static PetscBool HasSpring(const SceneSupport *support)
 {
   return (PetscBool)(support->spring[0] > 0 || support->spring[1] > 0 || support->spring[2] > 0);
+}
+
+/* Factor on the stiffness of the springs of a surface. */
+static PetscReal SpringFactor(const SpringSurface *surface, PetscReal t)
+{
+  return surface->history ? HistoryValue(surface->history, t) : 1;
 }
 
 /* Marks the dofs of a surface that its springs hold. */
@@ -66,7 +73,9 @@ PetscErrorCode FoundationCreate(Mesh mesh, Scene scene, Foundation *out)
 
     if (!HasSpring(support)) continue;
     PetscCall(MeshGetGroup(mesh, scene, support->path, "surface", support->surface, mesh->dim - 1, &group));
-    *surface = (SpringSurface){.group = group, .spring = support->spring};
+    *surface = (SpringSurface){.group   = group,
+                               .spring  = support->spring,
+                               .history = support->history.n ? &support->history : NULL};
     MarkHeld(foundation, surface);
     foundation->n++;
   }
@@ -104,8 +113,8 @@ static int FaceMatrix(Foundation foundation, const SpringSurface *surface, Petsc
 }
 
 /* Adds the forces of the springs of one face to the foundation's, their energy and their squares. */
-static void FaceForces(Foundation foundation, const SpringSurface *surface, PetscInt f, const PetscReal *u,
-                       PetscReal *energy, PetscReal *force2)
+static void FaceForces(Foundation foundation, const SpringSurface *surface, PetscReal factor, PetscInt f,
+                       const PetscReal *u, PetscReal *energy, PetscReal *force2)
 {
   const int dim = foundation->mesh->dim;
   PetscInt  nodes[FACE_MAX_NODES];
@@ -116,7 +125,7 @@ static void FaceForces(Foundation foundation, const SpringSurface *surface, Pets
     for (int d = 0; d < dim; d++) {
       PetscReal force = 0;
 
-      for (int b = 0; b < n; b++) force -= surface->spring[d] * matrix[a * n + b] * u[nodes[b] * dim + d];
+      for (int b = 0; b < n; b++) force -= factor * surface->spring[d] * matrix[a * n + b] * u[nodes[b] * dim + d];
       foundation->force[nodes[a] * dim + d] += force;
       if (energy) *energy -= force * u[nodes[a] * dim + d] / 2;
       if (force2) *force2 += PetscSqr(force);
@@ -131,6 +140,7 @@ static void FaceForces(Foundation foundation, const SpringSurface *surface, Pets
 
   Input Parameters:
 + foundation - the springs
+. t          - load parameter
 - u          - local displacements (length) [n_nodes*dim]
 
   Output Parameters:
@@ -141,15 +151,16 @@ static void FaceForces(Foundation foundation, const SpringSurface *surface, Pets
   Note:
   f, energy and force2 may be NULL; each is this rank's part.
 @*/
-PetscErrorCode FoundationResidual(Foundation foundation, const PetscReal *u, PetscReal *f, PetscReal *energy,
-                                  PetscReal *force2)
+PetscErrorCode FoundationResidual(Foundation foundation, PetscReal t, const PetscReal *u, PetscReal *f,
+                                  PetscReal *energy, PetscReal *force2)
 {
   PetscFunctionBeginUser;
   if (!foundation) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(foundation->force, foundation->mesh->n_nodes * foundation->mesh->dim));
   for (int s = 0; s < foundation->n; s++)
     for (PetscInt face = 0; face < foundation->surfaces[s].group->n_faces; face++)
-      FaceForces(foundation, &foundation->surfaces[s], face, u, energy, force2);
+      FaceForces(foundation, &foundation->surfaces[s], SpringFactor(&foundation->surfaces[s], t), face, u, energy,
+                 force2);
   for (PetscInt i = 0; f && i < foundation->mesh->n_nodes * foundation->mesh->dim; i++) f[i] -= foundation->force[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -161,9 +172,10 @@ PetscErrorCode FoundationResidual(Foundation foundation, const PetscReal *u, Pet
 
   Input Parameters:
 + foundation - the springs
+. t          - load parameter
 - elasticity - after ElasticityTangent()
 @*/
-PetscErrorCode FoundationTangent(Foundation foundation, Elasticity elasticity)
+PetscErrorCode FoundationTangent(Foundation foundation, PetscReal t, Elasticity elasticity)
 {
   PetscInt nodes[FACE_MAX_NODES];
   double   matrix[FACE_MAX_NODES * FACE_MAX_NODES], ke[FACE_MAX_NODES * 3 * FACE_MAX_NODES * 3];
@@ -171,6 +183,7 @@ PetscErrorCode FoundationTangent(Foundation foundation, Elasticity elasticity)
   PetscFunctionBeginUser;
   for (int s = 0; foundation && s < foundation->n; s++) {
     const SpringSurface *surface = &foundation->surfaces[s];
+    const PetscReal      factor  = SpringFactor(surface, t);
     const int            dim     = foundation->mesh->dim;
 
     for (PetscInt f = 0; f < surface->group->n_faces; f++) {
@@ -178,7 +191,7 @@ PetscErrorCode FoundationTangent(Foundation foundation, Elasticity elasticity)
 
       for (int i = 0; i < dofs; i++)
         for (int j = 0; j < dofs; j++)
-          ke[i * dofs + j] = i % dim == j % dim ? surface->spring[i % dim] * matrix[i / dim * n + j / dim] : 0;
+          ke[i * dofs + j] = i % dim == j % dim ? factor * surface->spring[i % dim] * matrix[i / dim * n + j / dim] : 0;
       PetscCall(ElasticityAddBlock(elasticity, n, nodes, ke));
     }
   }

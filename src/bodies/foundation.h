@@ -1,7 +1,8 @@
 /* Springs on surfaces: an elastic foundation that ties a body to the ground. A reference area dA whose displacement is
-   u feels the force -k_i u_i dA along each axis i, in every kinematics; in an axisymmetric scene x is the radius.
+   u feels the force -k_i u_i dA along each axis i, in every kinematics; in an axisymmetric scene x is the radius. A
+   history may change k_i over the load parameter.
 
-   FoundationResidual() adds force and energy, FoundationTangent() the constant tangent. FoundationHolds() tells which
+   FoundationResidual() adds force and energy, FoundationTangent() the tangent. FoundationHolds() tells which
    dofs have a spring. FoundationForce() gives the forces of the last residual. */
 #pragma once
 #include "bodies/elasticity.h"
@@ -10,7 +11,8 @@ typedef struct _n_Foundation *Foundation;
 
 PetscErrorCode   FoundationCreate(Mesh, Scene, Foundation *);
 PetscErrorCode   FoundationDestroy(Foundation *);
-PetscErrorCode   FoundationResidual(Foundation, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2);
-PetscErrorCode   FoundationTangent(Foundation, Elasticity);
+PetscErrorCode   FoundationResidual(Foundation, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy,
+                                    PetscReal *force2);
+PetscErrorCode   FoundationTangent(Foundation, PetscReal t, Elasticity);
 PetscBool        FoundationHolds(Foundation, PetscInt local_dof);
 const PetscReal *FoundationForce(Foundation);

@@ -313,7 +313,7 @@ static PetscErrorCode DeadLoadNodes(Loads loads, PetscReal t, DeadLoad *dead)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   for (int c = 0; c < mesh->dim; c++) {
-    PetscReal value = load->expression[c] ? SceneLoadValue(load, c, X, t) : load->value[c];
+    PetscReal value = (load->expression[c] ? SceneLoadValue(load, c, X, t) : load->value[c]) / loads->scene->thickness;
 
     if (LoadVaries(load) && !SceneLoadVaries(load, c)) value *= HistoryValue(&load->history, t);
     for (PetscInt i = 0; i < dead->group->n_nodes; i++) {
@@ -330,7 +330,8 @@ static PetscErrorCode DeadLoadNodes(Loads loads, PetscReal t, DeadLoad *dead)
 /* Spreads a force evenly over the faces of its group, or over its nodes where it has no faces. */
 static PetscErrorCode DeadLoadForce(Loads loads, PetscReal t, DeadLoad *dead)
 {
-  const PetscInt n = loads->mesh->n_nodes * loads->mesh->dim;
+  const PetscInt  n         = loads->mesh->n_nodes * loads->mesh->dim;
+  const PetscReal thickness = loads->scene->thickness;
 
   PetscFunctionBeginUser;
   if (dead->area == 0) {
@@ -338,8 +339,8 @@ static PetscErrorCode DeadLoadForce(Loads loads, PetscReal t, DeadLoad *dead)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(DeadLoadSurface(loads, t, dead));
-  for (PetscInt i = 0; i < n; i++) loads->dense[i] /= dead->area;
-  dead->force2 /= PetscSqr(dead->area);
+  for (PetscInt i = 0; i < n; i++) loads->dense[i] /= dead->area * thickness;
+  dead->force2 /= PetscSqr(dead->area * thickness);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -627,7 +628,7 @@ PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, Petsc
     }
     if (force2) *force2 += PetscSqr(factor) * dead->force2;
   }
-  PetscCall(FoundationResidual(loads->foundation, u, f, energy, force2));
+  PetscCall(FoundationResidual(loads->foundation, t, u, f, energy, force2));
   if (!loads->n_follower || !(f || force2)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(loads->event_follower, 0, 0, 0, 0));
   for (PetscInt l = 0; l < loads->n_follower; l++) {
@@ -662,7 +663,7 @@ PetscErrorCode LoadsTangent(Loads loads, PetscReal t, const PetscReal *u, Elasti
   int      n;
 
   PetscFunctionBeginUser;
-  PetscCall(FoundationTangent(loads->foundation, elasticity));
+  PetscCall(FoundationTangent(loads->foundation, t, elasticity));
   if (!loads->n_follower) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LoadsMove(loads, t));
   PetscCall(PetscLogEventBegin(loads->event_follower, 0, 0, 0, 0));

@@ -1,5 +1,6 @@
 /* Tables in HDF5 files by rows that do not depend on the ranks, see hdf5table.h. */
 #include "files/hdf5table.h"
+#include <string.h>
 
 /*@
   Hdf5TableCreate - describes the rows of a table and which of them are items of this rank.
@@ -327,6 +328,32 @@ PetscErrorCode Hdf5TableOpenFile(MPI_Comm comm, const char *name, unsigned mode,
   *file = H5Fopen(name, mode, access);
   PetscCheck(*file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "HDF5 could not open %s", name);
   CallHDF5(H5Pclose(access));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  Hdf5WriteText - writes a text as an attribute of a group or a dataset, in the place of one of the same name.
+
+  Collective on the file
+
+  Input Parameters:
++ object - the group or the dataset
+. name   - of the attribute
+- text   - the value, not empty
+
+  Note:
+  Errors: PETSC_ERR_FILE_WRITE.
+@*/
+PetscErrorCode Hdf5WriteText(hid_t object, const char *name, const char *text)
+{
+  hid_t type;
+
+  PetscFunctionBeginUser;
+  CallHDF5(type = H5Tcopy(H5T_C_S1));
+  CallHDF5(H5Tset_size(type, strlen(text)));
+  CallHDF5(H5Tset_strpad(type, H5T_STR_NULLPAD));
+  PetscCall(Hdf5WriteAttribute(object, name, type, 1, text));
+  CallHDF5(H5Tclose(type));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

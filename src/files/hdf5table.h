@@ -34,4 +34,5 @@ PetscErrorCode Hdf5TableWriteIntegers(hid_t file, const char *path, const Hdf5Ta
 PetscErrorCode Hdf5TableCreateFile(MPI_Comm, const char *name, hid_t *file);
 PetscErrorCode Hdf5TableCreateFileBehind(MPI_Comm, const char *name, hsize_t own, hid_t *file);
 PetscErrorCode Hdf5TableOpenFile(MPI_Comm, const char *name, unsigned access, hid_t *file);
+PetscErrorCode Hdf5WriteText(hid_t object, const char *name, const char *text);
 PetscErrorCode Hdf5WriteAttribute(hid_t object, const char *name, hid_t type, hsize_t n, const void *values);

@@ -1,5 +1,6 @@
 /* Batched element kernels: full integration, and the choice of the kernel for every formulation. */
 #include "elementbatch.h"
+#include "planestress.h"
 #include <math.h>
 #include <stddef.h>
 
@@ -46,9 +47,11 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
 
       PointGradients(n, dim, hoop, e->N[first + q], e->dN[first + q], e->weight[first + q], q, call->X, &c, &volume);
       PointDisplacementGradient(n, dim, hoop, q, call->u, &c, H);
+      if (call->thin) PointStretch(call, H);
       MaterialDilatation(H, &dilatation);
       KeepLeastJ(call, &dilatation);
       PointLaw(call, first + q, H, &dilatation, W ? &energy : NULL, P, K ? c.A[q] : NULL);
+      if (call->thin && K) PlaneTangent(c.A[q]);
       if (K && call->u_0) {
         Lanes H_0[9];
 
@@ -170,7 +173,7 @@ int ElementExtrapolates(const KernelCase *kernel)
 {
   const ElasticLaw *law = MaterialGetLaw(kernel->law);
 
-  if (kernel->kinematics == KINEMATICS_SMALL || HasNodalPressure(kernel)) return 0;
+  if (kernel->kinematics == KINEMATICS_SMALL || kernel->thin || HasNodalPressure(kernel)) return 0;
   return law->separable || (law->extrapolate && kernel->formulation != FORMULATION_FBAR);
 }
 
@@ -185,6 +188,7 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
                      .n_constants = kernel->n_constants ? kernel->n_constants : law->constants,
                      .plastic     = kernel->plastic,
                      .length      = kernel->length,
+                     .thin        = kernel->thin,
                      .states      = kernel->plastic ? ElementStates(kernel->plastic) : 0,
                      .constants   = constants};
 }
@@ -234,6 +238,13 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
     for (int lane = 0; lane < LANES; lane++)
       lanes_constants[k][lane] = constants[k * stride + (stride == 1 ? 0 : lane)];
   }
+  if (kernel->thin) {
+    Lanes mu, first;
+
+    call->law->shear(call->n_constants, lanes_constants, &mu);
+    first        = lanes_constants[0] - (call->law->isochoric ? 2 * mu / 3 : (Lanes){0});
+    call->across = first / (first + 2 * mu);
+  }
   if (kernel->formulation != FORMULATION_MIXED) return;
   call->law->shear(call->n_constants, lanes_constants, &call->mu);
   for (int lane = 0; lane < LANES; lane++) {
@@ -266,12 +277,12 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
 - J - smallest determinant of F over the quadrature points [lanes]; 1 for small kinematics
 
   Note:
-  Solids in plane strain have unit thickness. Axisymmetric quantities are over 360 degrees. A state with J <= 0 or NaN
-  is not admissible, but all arrays hold finite numbers if X and u do. f and K are derivatives of the energy, but for
-  elements whose nodes have pressures; there W is what is stored where the pressure is in equilibrium. K is full. It is
-  symmetric, unless a routine of the user's has an unsymmetric tangent or nodes have pressures. With a reference K is
-  no derivative, but it differs from it only by the square
-  of the way from there (rate 1) or by that way (rate 0). A reference is ignored unless ElementExtrapolates().
+  Solids in the plane have unit thickness; where they are thin, their stress across the plane is 0. Axisymmetric
+quantities are over 360 degrees. A state with J <= 0 or NaN is not admissible, but all arrays hold finite numbers if X
+and u do. f and K are derivatives of the energy, but for elements whose nodes have pressures; there W is what is stored
+where the pressure is in equilibrium. K is full. It is symmetric, unless a routine of the user's has an unsymmetric
+tangent or nodes have pressures. With a reference K is no derivative, but it differs from it only by the square of the
+way from there (rate 1) or by that way (rate 0). A reference is ignored unless ElementExtrapolates().
 
   Source:
   Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", sections 8.4 and 8.5

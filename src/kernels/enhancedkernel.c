@@ -15,6 +15,7 @@
    are at a minimum of the element's energy. A step of Newton's method lowers it even where the tangent of the modes is
    not positive definite, and is shortened where it goes beyond a minimum: plastic flow makes both happen. */
 #include "elementbatch.h"
+#include "planestress.h"
 #include <math.h>
 #include <stddef.h>
 
@@ -247,10 +248,12 @@ LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int 
     Lanes H[9], P[9], T[MAX_ROWS][MAX_MODES], dilatation, energy;
 
     PointGradient(dim, hoop, x, q, H);
+    if (call->thin) PointStretch(call, H);
     MaterialDilatation(H, &dilatation);
     for (int lane = 0; lane < LANES; lane++)
       if (dilatation[lane] < (*least)[lane]) (*least)[lane] = dilatation[lane];
     PointLaw(call, q, H, &dilatation, &energy, P, renew ? x->c.A[q] : NULL);
+    if (call->thin && renew) PlaneTangent(x->c.A[q]);
     *W += energy * x->volume[q];
     for (int r = 0; r < 9; r++) P[r] *= x->volume[q];
     AddModeForce(dim, hoop, x, q, P, f);
@@ -304,7 +307,7 @@ LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const 
     const double before = m->W[lane], now = (*W)[lane], scale = m->scale[lane], at = m->at[lane];
     const double round_off =
       energy_round_off * fabs(before) + strain_round_off * sqrt(scale / converged_strain2 * fabs(before));
-    double       slope = 0, work = 0; /* work: twice the energy that the correction releases */
+    double slope = 0, work = 0; /* work: twice the energy that the correction releases */
 
     if (m->active[lane] == 0) continue;
     for (int k = 0; k < modes; k++) slope += f[k][lane] * m->step[k][lane];
@@ -460,9 +463,11 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
     Lanes H[9], P[9], T[MAX_ROWS][MAX_MODES], dilatation, energy;
 
     PointGradient(dim, hoop, &x, q, H);
+    if (call->thin) PointStretch(call, H);
     MaterialDilatation(H, &dilatation);
     KeepLeastJ(call, &dilatation);
     PointLaw(call, q, H, &dilatation, W ? &energy : NULL, P, K ? x.c.A[q] : NULL);
+    if (call->thin && K) PlaneTangent(x.c.A[q]);
     if (K && call->u_0) PointExtrapolate(call, H, &dilatation, H_0[q], x.c.A[q]);
     if (W) LANE(W, 0) += energy * x.volume[q];
     if (call->H) StorePoint(call, q, H);

@@ -103,7 +103,7 @@ static PetscErrorCode FindLocking(Mesh mesh, Scene scene)
 
     if ((body->formulation == FORMULATION_FULL || !HasFormulation(mesh, scene, c)) &&
         ElementGet(mesh->cell_type[c])->order == 1 &&
-        (MaterialGetLaw(body->material.law)->plastic || body->material.nu >= LOCKING_NU))
+        (MaterialGetLaw(body->material.law)->plastic || (body->material.nu >= LOCKING_NU && !scene->plane_stress)))
       body->locks = 1;
   }
   for (int b = 0; b < scene->n_bodies; b++)

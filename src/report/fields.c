@@ -2,6 +2,8 @@
 #include "fields.h"
 #include "files/fileimage.h"
 #include "files/hdf5table.h"
+#include "kernels/pointstrain.h"
+#include "scene/stepcolumns.h"
 #include "toolshapes.h"
 #include "vtkhdf.h"
 #include "xdmf.h"
@@ -31,7 +33,17 @@ struct _n_Fields {
 };
 
 /* What output.fields may ask for, and what ParaView sees of it */
-enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT, SHOW_SOLID_PRESSURE, SHOW_PLASTIC, SHOW_FRICTION, SHOW_KINDS };
+enum {
+  SHOW_DISPLACEMENT,
+  SHOW_STRESS,
+  SHOW_CONTACT,
+  SHOW_SOLID_PRESSURE,
+  SHOW_PLASTIC,
+  SHOW_FRICTION,
+  SHOW_PRINCIPAL,
+  SHOW_STRAIN,
+  SHOW_KINDS
+};
 static const FieldsArray shown[] = {
   {"displacement", 3, SHOW_DISPLACEMENT},
   {"von_mises", 1, SHOW_STRESS},
@@ -47,6 +59,14 @@ static const FieldsArray shown[] = {
   {"slip", 1, SHOW_FRICTION},
   {"friction", 1, SHOW_FRICTION},
   {"solid_pressure", 1, SHOW_SOLID_PRESSURE},
+  {"contact_traction", 3, SHOW_CONTACT},
+  {"status", 1, SHOW_CONTACT},
+  {"principal_stress", 3, SHOW_PRINCIPAL},
+  {"principal_direction_1", 3, SHOW_PRINCIPAL},
+  {"principal_direction_2", 3, SHOW_PRINCIPAL},
+  {"principal_direction_3", 3, SHOW_PRINCIPAL},
+  {"strain", 6, SHOW_STRAIN},
+  {"energy_density", 1, SHOW_STRAIN},
 };
 
 /* Contact values of one node: columns of the nodal array that FieldsWriteContact() forms */
@@ -56,8 +76,10 @@ enum {
   COLUMN_PENALTY,
   COLUMN_PRESSURE,
   COLUMN_NORMAL,
-  COLUMN_TRACTION = COLUMN_NORMAL + 3,
-  COLUMN_SLIP     = COLUMN_TRACTION + 3,
+  COLUMN_WHOLE  = COLUMN_NORMAL + 3,
+  COLUMN_STATUS = COLUMN_WHOLE + 3,
+  COLUMN_TRACTION,
+  COLUMN_SLIP = COLUMN_TRACTION + 3,
   COLUMN_FRICTION,
   COLUMN_PRESENT,
   COLUMNS
@@ -69,7 +91,8 @@ static const struct {
 } contact_fields[] = {
   {"gap", COLUMN_GAP, 1, NAN},         {"penetration", COLUMN_PENETRATION, 1, 0.0},
   {"penalty", COLUMN_PENALTY, 1, NAN}, {"pressure", COLUMN_PRESSURE, 1, 0.0},
-  {"normal", COLUMN_NORMAL, 3, 0.0},   {"traction", COLUMN_TRACTION, 3, 0.0},
+  {"normal", COLUMN_NORMAL, 3, 0.0},   {"contact_traction", COLUMN_WHOLE, 3, 0.0},
+  {"status", COLUMN_STATUS, 1, 0.0},   {"traction", COLUMN_TRACTION, 3, 0.0},
   {"slip", COLUMN_SLIP, 1, 0.0},       {"friction", COLUMN_FRICTION, 1, 0.0},
 };
 /* The last ones of these, which only scenes with friction have */
@@ -82,6 +105,8 @@ static PetscBool FieldsShows(Fields fields, int kind)
   case SHOW_DISPLACEMENT: return fields->scene->output.displacement ? PETSC_TRUE : PETSC_FALSE;
   case SHOW_STRESS: return fields->scene->output.stress ? PETSC_TRUE : PETSC_FALSE;
   case SHOW_PLASTIC: return fields->scene->output.stress && SceneIsPlastic(fields->scene) ? PETSC_TRUE : PETSC_FALSE;
+  case SHOW_PRINCIPAL: return (PetscBool)fields->scene->output.principal;
+  case SHOW_STRAIN: return (PetscBool)fields->scene->output.strain;
   case SHOW_FRICTION: return (PetscBool)(fields->scene->output.contact && ContactHasFriction(fields->model->contact));
   case SHOW_SOLID_PRESSURE:
     return (PetscBool)(fields->scene->output.stress &&
@@ -373,10 +398,52 @@ static PetscReal VonMises(const PetscReal s[6])
                        3.0 * (PetscSqr(s[3]) + PetscSqr(s[4]) + PetscSqr(s[5])));
 }
 
-static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
+/* Writes principal values and directions of the stresses at the nodes. */
+static PetscErrorCode FieldsWritePrincipal(Fields fields, hid_t file, const PetscReal *stress)
 {
   const Mesh mesh = fields->model->mesh;
-  PetscReal *stress, *weight, *equivalent, *pressure;
+  enum { WIDTH = 12 };
+  PetscReal *values;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes * WIDTH, &values));
+  for (PetscInt n = 0; n < mesh->n_body_nodes; n++) {
+    PetscReal axis[3][3];
+
+    PrincipalValues(&stress[n * 6], &values[n * WIDTH], axis);
+    for (int k = 0; k < 9; k++) values[n * WIDTH + 3 + k] = axis[k / 3][k % 3];
+  }
+  PetscCall(FieldsWriteNodal(fields, file, "principal_stress", values, WIDTH, 0, 3));
+  PetscCall(FieldsWriteNodal(fields, file, "principal_direction_1", values, WIDTH, 3, 3));
+  PetscCall(FieldsWriteNodal(fields, file, "principal_direction_2", values, WIDTH, 6, 3));
+  PetscCall(FieldsWriteNodal(fields, file, "principal_direction_3", values, WIDTH, 9, 3));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FieldsWriteStrain(Fields fields, hid_t file)
+{
+  const Mesh mesh = fields->model->mesh;
+  PetscReal *strain, *weight;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(mesh->n_nodes * STRAIN_FIELDS, &strain, mesh->n_nodes, &weight));
+  PetscCall(ElasticityNodalStrain(fields->model->problem->elasticity, fields->model->u, strain, weight));
+  PetscCall(MeshSumNodes(mesh, STRAIN_FIELDS, strain));
+  PetscCall(MeshSumNodes(mesh, 1, weight));
+  for (PetscInt k = 0; k < mesh->n_body_nodes * STRAIN_FIELDS; k++) strain[k] /= weight[k / STRAIN_FIELDS];
+  PetscCall(FieldsWriteNodal(fields, file, "strain", strain, STRAIN_FIELDS, 0, 6));
+  PetscCall(FieldsWriteNodal(fields, file, "energy_density", strain, STRAIN_FIELDS, 6, 1));
+  PetscCall(PetscFree2(strain, weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Writes stresses and what follows from them, as far as they are asked for. */
+static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
+{
+  const Mesh      mesh  = fields->model->mesh;
+  const PetscBool plain = FieldsShows(fields, SHOW_STRESS);
+  PetscReal      *stress, *weight, *equivalent, *pressure;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc4(mesh->n_nodes * 6, &stress, mesh->n_nodes, &weight, mesh->n_nodes, &equivalent, mesh->n_nodes,
@@ -389,8 +456,9 @@ static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
     equivalent[n] = VonMises(&stress[n * 6]);
     pressure[n]   = -(stress[n * 6] + stress[n * 6 + 1] + stress[n * 6 + 2]) / 3;
   }
-  PetscCall(FieldsWriteNodal(fields, file, "stress", stress, 6, 0, 6));
-  PetscCall(FieldsWriteNodal(fields, file, "von_mises", equivalent, 1, 0, 1));
+  if (plain) PetscCall(FieldsWriteNodal(fields, file, "stress", stress, 6, 0, 6));
+  if (plain) PetscCall(FieldsWriteNodal(fields, file, "von_mises", equivalent, 1, 0, 1));
+  if (FieldsShows(fields, SHOW_PRINCIPAL)) PetscCall(FieldsWritePrincipal(fields, file, stress));
   if (FieldsShows(fields, SHOW_SOLID_PRESSURE))
     PetscCall(FieldsWriteNodal(fields, file, "solid_pressure", pressure, 1, 0, 1));
   PetscCall(PetscFree4(stress, weight, equivalent, pressure));
@@ -471,6 +539,9 @@ static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, Petsc
     value[COLUMN_SLIP]     = slaves.slid ? slaves.slid[k] : 0.0;
     value[COLUMN_FRICTION] = slaves.friction ? slaves.friction[k] : 0.0;
     value[COLUMN_PRESENT]  = 1.0;
+    for (int i = 0; i < 3; i++)
+      value[COLUMN_WHOLE + i] = slaves.pressure[k] * slaves.normal[k * 3 + i] + value[COLUMN_TRACTION + i];
+    value[COLUMN_STATUS] = slaves.friction ? slaves.friction[k] : slaves.pressure[k] > 0.0 ? 2.0 : 0.0;
     if (node[COLUMN_PRESENT] == 0.0 || value[COLUMN_PRESSURE] > node[COLUMN_PRESSURE])
       PetscCall(PetscArraycpy(node, value, COLUMNS));
   }
@@ -718,9 +789,12 @@ PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
   CallHDF5(group = H5Gcreate2(file, path, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   PetscCall(Hdf5WriteAttribute(group, "t", H5T_NATIVE_DOUBLE, 1, &t));
   PetscCall(Hdf5WriteAttribute(group, "step", H5T_NATIVE_INT64, 1, &number));
+  if (SceneStepAt(fields->scene, t)) PetscCall(Hdf5WriteText(group, STEP_COLUMN_DURING, SceneStepAt(fields->scene, t)));
   CallHDF5(H5Gclose(group));
   if (FieldsShows(fields, SHOW_DISPLACEMENT)) PetscCall(FieldsWriteDisplacement(fields, file));
-  if (FieldsShows(fields, SHOW_STRESS)) PetscCall(FieldsWriteStress(fields, file));
+  if (FieldsShows(fields, SHOW_STRESS) || FieldsShows(fields, SHOW_PRINCIPAL))
+    PetscCall(FieldsWriteStress(fields, file));
+  if (FieldsShows(fields, SHOW_STRAIN)) PetscCall(FieldsWriteStrain(fields, file));
   if (FieldsShows(fields, SHOW_PLASTIC)) PetscCall(FieldsWritePlasticStrain(fields, file));
   if (FieldsShows(fields, SHOW_CONTACT)) PetscCall(FieldsWriteContact(fields, file));
   PetscCall(FieldsWriteToolPlaces(fields, file, t));

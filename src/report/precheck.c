@@ -3,6 +3,7 @@
 #include "contactreport.h"
 #include "estimate.h"
 #include "lawreport.h"
+#include "units.h"
 #include "bodies/freemodes.h"
 #include "kernels/elementkernel.h"
 #include "bodies/hinges.h"
@@ -60,6 +61,36 @@ PetscErrorCode PrecheckPlasticity(Model model, FILE *stream)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Prints the units that the scene names, and what forces are meant of. */
+static void PrintUnits(Scene scene, FILE *stream)
+{
+  char stress[UNITS_TEXT], forces[UNITS_TEXT];
+
+  if (!scene->units.length || !scene->units.force) return;
+  UnitsStress(scene, stress);
+  UnitsForces(scene, forces);
+  fprintf(stream, "units    length %s, force %s, stress %s; forces %s\n", scene->units.length, scene->units.force,
+          stress, forces);
+}
+
+/* Prints what is special about a scene in the plane. */
+static void PrintPlane(Scene scene, FILE *stream)
+{
+  if (!scene->plane_stress && scene->thickness == 1) return;
+  fprintf(stream, "plane    %s, thickness %g\n", scene->plane_stress ? "stress" : "strain", scene->thickness);
+}
+
+/* Prints the steps with names, and what acts during each of them. */
+static void PrintSteps(Scene scene, FILE *stream)
+{
+  for (int i = 0; i < scene->stepping.n_steps; i++) {
+    const SceneStep *step = &scene->stepping.steps[i];
+
+    fprintf(stream, "%-8s '%s' from t = %g to %g%s%s\n", i ? "" : "steps", step->name, step->begin, step->until,
+            step->acts ? ": " : "", step->acts ? step->acts : "");
+  }
+}
+
 /* Largest factor of a history, whatever its sign. */
 static double LargestFactor(const History *history)
 {
@@ -114,6 +145,9 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
   if (!rank) WarnOfLengths(model);
   if (report) {
     PetscCall(PrintEffects(model, stream));
+    if (!rank) PrintUnits(model->scene, stream);
+    if (!rank) PrintPlane(model->scene, stream);
+    if (!rank) PrintSteps(model->scene, stream);
     PetscCall(PrecheckPlasticity(model, stream));
     if (!rank) LawReport(model->scene, stream);
     PetscCall(FreeModesReport(model->problem->modes, PETSC_TRUE, stream));

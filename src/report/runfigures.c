@@ -30,6 +30,19 @@ PetscErrorCode RunUsageCollect(MPI_Comm comm, RunUsage *usage)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Multiplies forces, areas and energies by the thickness of the plane. */
+static void ScaleFriction(PetscReal thickness, ContactFriction *friction)
+{
+  for (int d = 0; d < 3; d++) {
+    friction->force[d] *= thickness;
+    friction->moment[d] *= thickness;
+  }
+  friction->sticking_area *= thickness;
+  friction->slipped_area *= thickness;
+  friction->dissipated *= thickness;
+  friction->turned *= thickness;
+}
+
 static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
 {
   const Contact contact = model->contact;
@@ -46,6 +59,7 @@ static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
   pair->stick_stiffened = ContactPairStick(contact, p);
   PetscCall(ContactPairWindow(contact, p, &pair->window));
   PetscCall(ContactPairFriction(contact, p, &pair->friction));
+  ScaleFriction(model->scene->thickness, &pair->friction);
   PetscCall(ContactPairScatter(contact, p, model->u, &pair->scatter));
   PetscCall(ContactPairMasterDepth(contact, p, model->u, model->t, &pair->master));
   pair->master_deepest = pair->master.depth;

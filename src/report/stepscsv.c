@@ -100,7 +100,7 @@ PetscErrorCode StepsCsvBegin(StepsCsv csv)
     fputc(',', csv->file);
     PrintText(csv->file, csv->scene->probes[i].name);
   }
-  fputc('\n', csv->file);
+  fprintf(csv->file, "%s\n", csv->scene->stepping.n_steps ? "," STEP_COLUMN_DURING : "");
   PetscCheck(!fflush(csv->file), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", csv->path,
              strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -195,7 +195,8 @@ static void FillRow(Scene scene, const StepRecord *step, PetscReal wall_s, Petsc
 @*/
 PetscErrorCode StepsCsvWrite(StepsCsv csv, const StepRecord *step, PetscReal wall_s, const PetscReal *probes)
 {
-  PetscReal row[STEP_COLUMNS];
+  const char *during = SceneStepAt(csv->scene, step->t);
+  PetscReal   row[STEP_COLUMNS];
 
   PetscFunctionBeginUser;
   FillRow(csv->scene, step, wall_s, row);
@@ -207,6 +208,8 @@ PetscErrorCode StepsCsvWrite(StepsCsv csv, const StepRecord *step, PetscReal wal
     fputc(',', csv->file);
     PrintReal(csv->file, probes[i]);
   }
+  if (during) fputc(',', csv->file);
+  if (during) PrintText(csv->file, during);
   fputc('\n', csv->file);
   PetscCheck(!fflush(csv->file), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", csv->path,
              strerror(errno));

@@ -1,8 +1,10 @@
 /* The run in one JSON file, see summary.h. */
 #include "summary.h"
 #include "advice.h"
+#include "units.h"
 #include "files/textfile.h"
 #include "scene/commandline.h"
+#include "scene/stepcolumns.h"
 #include <cJSON.h>
 #include <math.h>
 #include <stdlib.h>
@@ -140,8 +142,8 @@ static void AddDamping(cJSON *json, const RunFigures *figures)
   cJSON               *map = cJSON_AddObjectToObject(json, "damping");
 
   cJSON_AddNumberToObject(map, "steps", (double)way->damped);
-  AddReal(map, "energy_taken", way->damping);
-  AddReal(map, "stored_energy", figures->stored);
+  AddReal(map, "energy_taken", way->damping * figures->scene->thickness);
+  AddReal(map, "stored_energy", figures->stored * figures->scene->thickness);
 }
 
 /* Adds what was done for bodies that only contact holds, if there are any. */
@@ -157,7 +159,7 @@ static void AddSprings(cJSON *json, const RunFigures *figures)
   AddReal(map, "force_share", way->share);
   AddReal(map, "held_force_share", way->tied);
   cJSON_AddNumberToObject(map, "relaxed", (double)way->relaxed);
-  AddReal(map, "energy_taken", way->taken);
+  AddReal(map, "energy_taken", way->taken * figures->scene->thickness);
   AddReal(map, "largest_energy_share", way->left);
 }
 
@@ -185,11 +187,33 @@ static void AddState(cJSON *json, Scene scene, PetscBool has_contact, const Step
   cJSON          *map;
 
   AddReal(json, "t", last ? last->t : 0.0);
+  if (scene->stepping.n_steps)
+    cJSON_AddStringToObject(json, STEP_COLUMN_DURING, SceneStepAt(scene, last ? last->t : 0.0));
   AddReal(json, "max_penetration", touches ? last->contact.max_penetration : NAN);
   AddReal(json, "max_penetration_over_h", touches ? last->contact.max_penetration_over_h : NAN);
   cJSON_AddNumberToObject(json, "contact_nodes", touches ? (double)last->contact.nodes : 0.0);
   map = cJSON_AddObjectToObject(json, "probes");
   for (int i = 0; i < scene->n_probes; i++) AddReal(map, scene->probes[i].name, last ? probes[i] : NAN);
+}
+
+/* Adds the units of the values, what forces are meant of, and the units of the probes. */
+static void AddUnits(cJSON *json, Scene scene)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "units"), *probes;
+  char   text[UNITS_TEXT];
+
+  cJSON_AddStringToObject(map, "length", scene->units.length ? scene->units.length : "length");
+  cJSON_AddStringToObject(map, "force", scene->units.force ? scene->units.force : "force");
+  UnitsStress(scene, text);
+  cJSON_AddStringToObject(map, "stress", text);
+  cJSON_AddBoolToObject(map, "named", scene->units.length && scene->units.force);
+  UnitsForces(scene, text);
+  cJSON_AddStringToObject(map, "forces", text);
+  probes = cJSON_AddObjectToObject(map, "probes");
+  for (int i = 0; i < scene->n_probes; i++) {
+    UnitsProbe(scene, &scene->probes[i], text);
+    cJSON_AddStringToObject(probes, scene->probes[i].name, text);
+  }
 }
 
 /* Adds the estimated errors of the probes, if the scene asks for them. */
@@ -346,8 +370,7 @@ static void AddCertificate(cJSON *json, const RunFigures *figures)
   AddReal(map, "largest_over_allowed", figures->certificate.ratio);
   AddReal(map, "residual", figures->last ? figures->last->residual : NAN);
   AddReal(map, "force_balance", figures->certificate.force);
-  AddReal(map, "moment_balance",
-          figures->scene->geometry == GEOMETRY_AXISYMMETRIC ? NAN : figures->certificate.moment);
+  AddReal(map, "moment_balance", figures->scene->geometry == GEOMETRY_AXISYMMETRIC ? NAN : figures->certificate.moment);
   AddReal(map, "dissipated_by_friction", figures->last ? figures->last->contact.dissipated : NAN);
   AddReal(map, "dissipated_by_flow",
           figures->last && SceneIsPlastic(figures->scene) ? figures->last->energy.plastic : NAN);
@@ -412,6 +435,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddUsage(json, figures);
   AddGuards(json, run->way);
   AddState(json, figures->scene, figures->n_pairs ? PETSC_TRUE : PETSC_FALSE, figures->last, probes);
+  AddUnits(json, figures->scene);
   AddErrors(json, figures);
   AddEnergy(json, figures->scene, figures->last);
   AddPartition(json, mesh);

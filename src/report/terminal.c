@@ -2,6 +2,7 @@
 #include "terminal.h"
 #include "endreport.h"
 #include "runlength.h"
+#include "units.h"
 #include "report/precheck.h"
 #include "scene/commandline.h"
 #include <math.h>
@@ -184,11 +185,11 @@ static void WarnLocking(Terminal terminal)
         "(too stiff); mesh.order: 2 and formulation: fbar do not [B503]\n",
         SceneWhere(terminal->scene, body->path, "material.law"));
     else
-      fprintf(
-        stderr,
-        "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); %s [B503]\n",
-        SceneWhere(terminal->scene, body->path, "material.nu"), body->material.nu,
-        body->chosen ? "mesh.order: 2 does not" : "mesh.order: 2 or formulation: mixed does not");
+      fprintf(stderr,
+              "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); "
+              "%s [B503]\n",
+              SceneWhere(terminal->scene, body->path, "material.nu"), body->material.nu,
+              body->chosen ? "mesh.order: 2 does not" : "mesh.order: 2 or formulation: mixed does not");
   }
 }
 
@@ -208,7 +209,8 @@ static PetscErrorCode WarnJoined(Terminal terminal)
     if (terminal->rank || !nodes) continue;
     fprintf(stderr,
             "burnish: warning: contact '%s': '%s' and '%s' have %" PetscInt_FMT
-            " node%s in common, as node %" PetscInt_FMT " (%.6g, %.6g, %.6g): there they are one body and never part [B504]\n",
+            " node%s in common, as node %" PetscInt_FMT
+            " (%.6g, %.6g, %.6g): there they are one body and never part [B504]\n",
             contact->name, contact->slave, contact->master, nodes, nodes > 1 ? "s" : "", place.tag, (double)place.X[0],
             (double)place.X[1], (double)place.X[2]);
   }
@@ -300,6 +302,19 @@ static void PrintLength(Terminal terminal, const StepRecord *step)
   }
 }
 
+/* Names the step that has ended, where the scene has steps with names. */
+static void PrintNamedStep(Terminal terminal, const StepRecord *step)
+{
+  const Scene scene = terminal->scene;
+
+  for (int i = 0; i < scene->stepping.n_steps; i++)
+    if (scene->stepping.steps[i].until == step->t)
+      printf("      step '%s' has ended%s%s%s\n", scene->stepping.steps[i].name,
+             i + 1 < scene->stepping.n_steps ? ", '" : "",
+             i + 1 < scene->stepping.n_steps ? scene->stepping.steps[i + 1].name : "",
+             i + 1 < scene->stepping.n_steps ? "' begins" : "");
+}
+
 /*@
   TerminalStep - prints the line of an accepted step, and once why a run gets long.
 
@@ -326,6 +341,7 @@ void TerminalStep(Terminal terminal, const StepRecord *step, PetscReal spent)
     printf(" %10s %5s %5s %8s %12s", "-", "-", "-", "-", "-");
   printf(" %8s %8s\n", DurationText(seconds, spent_text),
          covered > 0.0 ? DurationText(seconds * (1.0 - (double)step->t) / covered, left_text) : "-");
+  PrintNamedStep(terminal, step);
   if (step->tied)
     printf("      %lld nodes come into contact together: no step above dt_min separates them\n", (long long)step->tied);
   PrintLength(terminal, step);
@@ -339,6 +355,7 @@ static PetscErrorCode PrintProbes(Terminal terminal, const PetscReal *values)
   printf("\n");
   for (int i = 0; i < terminal->scene->n_probes; i++) {
     PetscReal spacing;
+    char      unit[UNITS_TEXT];
 
     PetscCall(ProbesGetSpacing(terminal->probes, i, &spacing));
     printf("%-20s ", terminal->scene->probes[i].name);
@@ -346,6 +363,9 @@ static PetscErrorCode PrintProbes(Terminal terminal, const PetscReal *values)
       printf("%.9g", (double)values[i]);
     else
       printf("no value");
+    UnitsProbe(terminal->scene, &terminal->scene->probes[i], unit);
+    if (isfinite((double)values[i]) && terminal->scene->units.length && terminal->scene->units.force && *unit)
+      printf(" %s", unit);
     if (isfinite((double)spacing)) printf(" (node spacing %.3g)", (double)spacing);
     printf("\n");
   }
@@ -460,7 +480,7 @@ static void PrintDamping(const RunFigures *figures)
   if (!report->damped) return;
   printf("damping of steps that failed without it: %lld steps, took an energy of %.4g, %.2g of what is stored; all "
          "steps end in static equilibrium\n",
-         (long long)report->damped, (double)report->damping, (double)share);
+         (long long)report->damped, (double)report->damping * figures->scene->thickness, (double)share);
   if (share > TERMINAL_DAMPED)
     fprintf(stderr,
             "burnish: warning: damping took %.3g of the energy that is stored at the end: the bodies went through "

@@ -273,16 +273,12 @@ static PetscErrorCode CreatePart(Part *part)
 {
   static const char kind[]     = "UnstructuredGrid";
   const int64_t     version[2] = {2, 0}, counts[3] = {(int64_t)part->points, (int64_t)part->cells, (int64_t)part->ids};
-  hid_t             text, steps;
+  hid_t             steps;
 
   PetscFunctionBeginUser;
   CallHDF5(part->vtk = H5Gcreate2(part->file, "/VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   PetscCall(Hdf5WriteAttribute(part->vtk, "Version", H5T_NATIVE_INT64, 2, version));
-  CallHDF5(text = H5Tcopy(H5T_C_S1));
-  CallHDF5(H5Tset_size(text, sizeof(kind) - 1));
-  CallHDF5(H5Tset_strpad(text, H5T_STR_NULLPAD));
-  PetscCall(Hdf5WriteAttribute(part->vtk, "Type", text, 1, kind));
-  CallHDF5(H5Tclose(text));
+  PetscCall(Hdf5WriteText(part->vtk, "Type", kind));
   PetscCall(WriteValues(part->vtk, "NumberOfPoints", H5T_NATIVE_INT64, 1, &counts[0]));
   PetscCall(WriteValues(part->vtk, "NumberOfCells", H5T_NATIVE_INT64, 1, &counts[1]));
   PetscCall(WriteValues(part->vtk, "NumberOfConnectivityIds", H5T_NATIVE_INT64, 1, &counts[2]));

@@ -528,9 +528,24 @@ static PetscErrorCode DocumentParse(Document *document, const char *text, size_t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads a file on rank 0 and gives its text to all ranks, so that every rank parses and refuses the same text. The
-   caller frees the text, also after a refusal. */
-static PetscErrorCode FileBroadcast(MPI_Comm comm, const char *name, char **text, size_t *length)
+/*@
+  DocumentReadFile - reads a file on rank 0 and gives its text to all ranks.
+
+  Collective
+
+  Input Parameters:
++ comm - communicator of all ranks
+. name - path with which rank 0 can open the file
+- what - what the file should be, for messages: "a scene file"
+
+  Output Parameters:
++ text   - the text, which ends with a zero; the caller frees it with PetscFree(), also after a refusal
+- length - its length without that zero
+
+  Note:
+  Every rank parses and refuses the same text.
+@*/
+PetscErrorCode DocumentReadFile(MPI_Comm comm, const char *name, const char *what, char **text, size_t *length)
 {
   PetscMPIInt rank;
   int         size[2] = {0, 0}; /* number of bytes, errno */
@@ -555,15 +570,16 @@ static PetscErrorCode FileBroadcast(MPI_Comm comm, const char *name, char **text
       size[1] = errno ? errno : EIO;
   }
   PetscCallMPI(MPI_Bcast(size, 2, MPI_INT, 0, comm));
-  if (size[1]) PetscCall(RefuseInput(comm, "%s: cannot be read (%s); allowed: a scene file", name, strerror(size[1])));
+  if (size[1]) PetscCall(RefuseInput(comm, "%s: cannot be read (%s); allowed: %s", name, strerror(size[1]), what));
   if (size[0] > SCENE_MAX_BYTES)
-    PetscCall(RefuseInput(comm, "%s: is too large for a scene; allowed: %d bytes", name, SCENE_MAX_BYTES));
+    PetscCall(RefuseInput(comm, "%s: is too large; allowed: %s of %d bytes at most", name, what, SCENE_MAX_BYTES));
   if (rank) {
     PetscCall(PetscFree(*text));
     PetscCall(PetscMalloc1(size[0] + 1, text));
   }
   PetscCallMPI(MPI_Bcast(*text, size[0], MPI_CHAR, 0, comm));
-  *length = (size_t)size[0];
+  (*text)[size[0]] = 0;
+  *length          = (size_t)size[0];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -731,6 +747,44 @@ PetscErrorCode DocumentText(Document *document, char **text)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gives a node and all nodes below it the place of another one, for messages. */
+static void NodeTakePlace(Node node, const struct _n_Node *place)
+{
+  node->line = place->line;
+  node->set  = place->set;
+  for (int i = 0; i < node->n; i++) NodeTakePlace(node->child[i], place);
+}
+
+/*@
+  DocumentReplace - replaces a value by another one, which keeps its place in messages.
+
+  Collective
+
+  Input Parameters:
++ document - the document
+. node     - the value, a node of the tree
+. path     - its path
+- text     - the new value as YAML
+@*/
+PetscErrorCode DocumentReplace(Document *document, Node node, const char *path, const char *text)
+{
+  struct _n_Node place = *node, before;
+  Node           value = NULL;
+  PetscErrorCode code;
+
+  PetscFunctionBeginUser;
+  code = DocumentParse(document, text, strlen(text), path, place.set, &value);
+  if (!code) {
+    NodeTakePlace(value, &place);
+    before = *node;
+    *node  = *value;
+    *value = before;
+  }
+  PetscCall(NodeDestroy(&value));
+  PetscCall(code);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Whole documents */
 
 /* Applies the edits in order and keeps their keys for messages. */
@@ -818,7 +872,7 @@ PetscErrorCode DocumentRead(MPI_Comm comm, const char *file, int n_set, char *co
 
   PetscFunctionBeginUser;
   PetscCall(DocumentCreate(comm, file, document));
-  code = FileBroadcast(comm, file, &text, &length);
+  code = DocumentReadFile(comm, file, "a scene file", &text, &length);
   if (!code) code = DocumentParse(*document, text, length, "", NULL, &(*document)->root);
   PetscCall(PetscFree(text));
   if (!code) code = DocumentEdit(*document, n_set, set);

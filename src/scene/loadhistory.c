@@ -5,10 +5,17 @@
 /* Returns the interval i with t[i] <= t < t[i + 1]: -1 before the first breakpoint, n - 1 from the last one on. */
 static int HistoryInterval(const History *history, double t)
 {
-  int i = -1;
+  int below = -1, above = history->n; /* t[below] <= t < t[above] */
 
-  while (i + 1 < history->n && t >= history->t[i + 1]) i++;
-  return i;
+  while (above - below > 1) {
+    const int middle = below + (above - below) / 2;
+
+    if (t >= history->t[middle])
+      below = middle;
+    else
+      above = middle;
+  }
+  return below;
 }
 
 /*@
@@ -147,7 +154,8 @@ void MotionAccept(Motion *motion, double t, const double q[MOTION_COMPONENTS])
 }
 
 /*@
-  MotionForce - returns the force (or moment) on a rigid body along a component of its motion at the load parameter t.
+  MotionForce - returns the force (or moment) on a rigid body along a component of its motion at the load parameter t; in
+  the plane per thickness.
 
   Not collective
 
@@ -161,8 +169,10 @@ double MotionForce(const Motion *motion, double t, int component)
   const double     origin[3] = {0, 0, 0};
   const Expression formula   = motion->force_expression[component];
 
-  if (formula) return ExpressionValue(formula, origin, t);
-  return motion->force[component] * (motion->history.n ? HistoryValue(&motion->history, t) : 0);
+  const double     part   = motion->thickness > 0 ? 1 / motion->thickness : 1;
+
+  if (formula) return part * ExpressionValue(formula, origin, t);
+  return part * motion->force[component] * (motion->history.n ? HistoryValue(&motion->history, t) : 0);
 }
 
 /* Computes v = R(turn) V by Rodrigues' formula. */

@@ -37,6 +37,7 @@ typedef struct {
   int              n_free, free[MOTION_COMPONENTS]; /* whether a component is an unknown */
   FreeComponents   now, accepted;                   /* of the free components */
   /* Force and moment on the body along its free components: numbers times the history, or expressions of t. */
+  double     thickness; /* of the plane, by which forces are divided; 0: 1 */
   double     force[MOTION_COMPONENTS];
   Expression force_expression[MOTION_COMPONENTS];
   History    history;

@@ -6,6 +6,8 @@
 #include "scenematerial.h"
 #include "sceneplasticity.h"
 #include "sceneread.h"
+#include "scenesteps.h"
+#include "scenetable.h"
 #include "base/refusal.h"
 #include <string.h>
 
@@ -92,7 +94,19 @@ static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
 
   PetscFunctionBeginUser;
   body->chosen = choice == FORMULATIONS;
-  if (body->chosen && plastic)
+  if (scene->plane_stress && plastic)
+    PetscCall(SceneRefuse(scene, body->path, "material.law",
+                          "has a state at its points, which has no plane stress; allowed with geometry: plane_stress: "
+                          "laws without plasticity and routines",
+                          NULL));
+  if (scene->plane_stress && !body->chosen && choice != FORMULATION_FULL && choice != FORMULATION_ENHANCED)
+    PetscCall(SceneRefuse(scene, body->path, "formulation",
+                          "has no plane stress, in which no element locks by its volume; allowed with geometry: "
+                          "plane_stress: full | enhanced | auto",
+                          Formulations[choice]));
+  if (body->chosen && scene->plane_stress)
+    body->formulation = FORMULATION_FULL;
+  else if (body->chosen && plastic)
     body->formulation = scene->order == 1                          ? FORMULATION_FBAR
                         : body->material.law == MATERIAL_VON_MISES ? FORMULATION_MIXED
                                                                    : FORMULATION_FULL;
@@ -222,8 +236,10 @@ static PetscErrorCode SceneReadStepping(Scene scene)
 
 static PetscErrorCode SceneReadOutput(Scene scene)
 {
-  const char *const names[] = {"displacement", "stress", "contact"};
-  int *const        flags[] = {&scene->output.displacement, &scene->output.stress, &scene->output.contact};
+  /* The first three are written without the key */
+  const char *const names[] = {"displacement", "stress", "contact", "principal", "strain"};
+  int *const        flags[] = {&scene->output.displacement, &scene->output.stress, &scene->output.contact,
+                               &scene->output.principal, &scene->output.strain};
   Node              fields  = NodeFind(SceneDocument(scene)->root, "output.fields");
 
   PetscFunctionBeginUser;
@@ -232,8 +248,8 @@ static PetscErrorCode SceneReadOutput(Scene scene)
   scene->output.error            = SchemaBoolean(SceneDocument(scene), "output.error");
   scene->output.certificate      = SchemaBoolean(SceneDocument(scene), "output.certificate");
   scene->certificate.penetration = SchemaReal(SceneDocument(scene), "certificate.penetration");
-  for (int k = 0; k < 3; k++) {
-    *flags[k] = !fields;
+  for (int k = 0; k < (int)PETSC_STATIC_ARRAY_LENGTH(names); k++) {
+    *flags[k] = !fields && k < 3;
     for (int i = 0; fields && i < fields->n; i++) *flags[k] |= !strcmp(fields->child[i]->text, names[k]);
   }
   PetscCall(SceneReadPairs(scene, "petsc", &scene->n_petsc, &scene->petsc));
@@ -259,18 +275,43 @@ static PetscErrorCode SceneReadNames(Scene scene, const char *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads the thickness of a scene in the plane. The solution does not depend on it, as all forces are per thickness. */
+static PetscErrorCode SceneReadThickness(Scene scene)
+{
+  PetscFunctionBeginUser;
+  scene->thickness     = SchemaReal(SceneDocument(scene), "thickness");
+  scene->per_thickness = scene->geometry == GEOMETRY_PLANE_STRAIN && !SchemaHas(SceneDocument(scene), "thickness");
+  if (SchemaHas(SceneDocument(scene), "thickness") && scene->geometry != GEOMETRY_PLANE_STRAIN)
+    PetscCall(SceneRefuse(scene, "", "thickness",
+                          "has no meaning here; allowed: with geometry: plane_strain or "
+                          "plane_stress",
+                          NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Place of plane_stress among the words of the key geometry, behind those of Geometry */
+enum { SCENE_PLANE_STRESS = GEOMETRY_AXISYMMETRIC + 1 };
+
 /* Reads all parts of the document, in the order in which mistakes are refused. */
 static PetscErrorCode SceneReadAll(Scene scene, const char *file)
 {
   Document *document = SceneDocument(scene);
 
   PetscFunctionBeginUser;
+  PetscCall(SceneReadTables(document, file));
   PetscCall(SchemaCheck(document));
   PetscCall(SceneReadNames(scene, file));
+  PetscCall(SceneReadSteps(scene));
   PetscCall(DocumentText(document, &scene->text));
-  scene->geometry   = (Geometry)SchemaChoice(document, "geometry");
+  scene->geometry     = (Geometry)SchemaChoice(document, "geometry");
+  scene->plane_stress = (int)scene->geometry == SCENE_PLANE_STRESS;
+  if (scene->plane_stress) scene->geometry = GEOMETRY_PLANE_STRAIN;
   scene->kinematics = (Kinematics)SchemaChoice(document, "kinematics");
   scene->dim        = document->dim;
+  PetscCall(SceneReadThickness(scene));
+  PetscCall(SceneReadText(scene, "units", "length", &scene->units.length));
+  PetscCall(SceneReadText(scene, "units", "force", &scene->units.force));
+  PetscCall(SceneReadText(scene, "units", "stress", &scene->units.stress));
   PetscCall(SceneReadMesh(scene));
   PetscCall(SceneReadBodies(scene));
   PetscCall(SceneReadSupports(scene));
@@ -325,7 +366,7 @@ PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const
 }
 
 /* The parts of a scene that a restart may change, because the state of the run does not depend on them. */
-static const char *const changeable[] = {"certificate", "output", "solver", "stepping"};
+static const char *const changeable[] = {"certificate", "output", "solver", "stepping", "units"};
 
 /* Tells whether the first component of a path is one of these parts. One of the characters of `end` follows it. */
 static PetscBool IsChangeable(const char *path, const char *end)
@@ -382,12 +423,20 @@ PetscBool SceneSameProblem(const char *a, const char *b)
 static PetscErrorCode CheckEdits(Document *document, const char *text, int n_set, char *const *set)
 {
   char     *edited;
-  PetscBool same;
+  PetscBool same, unchanged;
 
   PetscFunctionBeginUser;
   PetscCall(DocumentText(document, &edited));
-  same = SceneSameProblem(text, edited);
+  same      = SceneSameProblem(text, edited);
+  unchanged = (PetscBool)!strcmp(text, edited);
   PetscCall(PetscFree(edited));
+  for (int i = 0; i < n_set; i++) {
+    if (!strncmp(set[i], "stepping.steps", strlen("stepping.steps")) && !unchanged)
+      PetscCall(RefuseInput(document->comm,
+                            "-set %s: histories of loads follow from steps with names; allowed in a restart: other "
+                            "keys of stepping, keys of output and solver",
+                            set[i]));
+  }
   for (int i = 0; i < n_set && !same; i++) {
     if (!IsChangeable(set[i], ".="))
       PetscCall(RefuseInput(
@@ -478,6 +527,7 @@ PetscErrorCode SceneDestroy(Scene *scene)
   for (int i = 0; i < s->n_supports; i++) {
     PetscCall(PetscFree(s->supports[i].path));
     PetscCall(PetscFree(s->supports[i].surface));
+    PetscCall(PetscFree2(s->supports[i].history.t, s->supports[i].history.v));
   }
   for (int i = 0; i < s->n_loads; i++) {
     for (int k = 0; k < 3; k++) PetscCall(ExpressionDestroy(&s->loads[i].expression[k]));
@@ -496,7 +546,11 @@ PetscErrorCode SceneDestroy(Scene *scene)
   PetscCall(PetscFree(s->supports));
   PetscCall(PetscFree(s->loads));
   PetscCall(PetscFree(s->probes));
+  PetscCall(PetscFree(s->units.length));
+  PetscCall(PetscFree(s->units.force));
+  PetscCall(PetscFree(s->units.stress));
   PetscCall(PetscFree(s->stepping.at));
+  PetscCall(SceneDestroySteps(s));
   PetscCall(PairsDestroy(s->n_parameters, &s->parameters));
   PetscCall(PairsDestroy(s->n_petsc, &s->petsc));
   PetscCall(PetscFree(s->file));

@@ -6,7 +6,8 @@
    reads the scene of a checkpoint, and SceneSameProblem() tells whether a restart may continue results of another text.
    Reading loads and runs nothing: SceneLoadRoutines() loads the libraries of users that the scene names.
    Checks that need the mesh are made later by the part that owns them. Their messages start with SceneWhere().
-   SceneBreaks() tells the step control where loads change their rate. SceneReference() prints the scene reference. */
+   SceneBreaks() tells the step control where loads change their rate, SceneStepAt() the name of the step at t.
+   SceneReference() prints the scene reference. */
 #pragma once
 #include <petscsys.h>
 #include "smooth/analyticsurface.h"
@@ -37,10 +38,17 @@ typedef struct {
 } SceneBody;
 
 typedef struct {
-  char  *path, *surface;
-  int    fixed[3];  /* whether a component of the displacement is held at 0 */
-  double spring[3]; /* stiffness of springs to the ground (force per length and area); 0: there are none */
+  char   *path, *surface;
+  int     fixed[3];  /* whether a component of the displacement is held at 0 */
+  double  spring[3]; /* stiffness of springs to the ground (force per length and area); 0: there are none */
+  History history;   /* factor on springs over the load parameter; with n = 0 it is 1 */
 } SceneSupport;
+
+/* A step with a name: a part of the load parameter's way, which may have many load steps. */
+typedef struct {
+  char  *name, *acts; /* acts: paths of what names it in `during`, or NULL */
+  double begin, until;
+} SceneStep;
 
 /* An end of a surface: another surface that has nodes in common with it, or a point; neither: the scene does not say.
  */
@@ -168,17 +176,23 @@ typedef struct {
 } ScenePair;
 
 typedef struct {
-  char         *file, *directory; /* file as the user gave it; its directory, where relative paths start */
-  char         *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
-  char         *name;
-  char         *mesh_file;    /* path with which the process can open the file */
-  PetscBool     foreign_mesh; /* the mesh file is one of another program, by its ending */
-  int           order;        /* of the elements, 1 or 2; 0 stands for that of the .msh file */
-  int           n_parameters;
-  ScenePair    *parameters; /* of the .geo file */
-  Geometry      geometry;
-  Kinematics    kinematics;
-  int           dim; /* 3 for solid, else 2 */
+  char      *file, *directory; /* file as the user gave it; its directory, where relative paths start */
+  char      *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
+  char      *name;
+  char      *mesh_file;    /* path with which the process can open the file */
+  PetscBool  foreign_mesh; /* the mesh file is one of another program, by its ending */
+  int        order;        /* of the elements, 1 or 2; 0 stands for that of the .msh file */
+  int        n_parameters;
+  ScenePair *parameters; /* of the .geo file */
+  Geometry   geometry;
+  Kinematics kinematics;
+  int        dim;           /* 3 for solid, else 2 */
+  int        plane_stress;  /* 1: geometry is plane strain for everything but the law, which has no stress across */
+  double     thickness;     /* of the bodies in the plane (length), by which results multiply forces; else 1 */
+  int        per_thickness; /* 1: in the plane without the key, so that forces are those of a unit of thickness */
+  struct {
+    char *length, *force, *stress;
+  } units; /* words for results and pictures, or NULL */
   int           n_bodies;
   SceneBody    *bodies;
   int           n_supports;
@@ -198,6 +212,8 @@ typedef struct {
     int             damped;           /* 1 if steps that fail are tried with a viscous restraint */
     int             n_at;
     double         *at; /* load parameters at which a step must end [n_at] */
+    int             n_steps;
+    SceneStep      *steps; /* steps with names [n_steps]; they follow each other from 0 to 1 */
   } stepping;
   struct {
     SolverType type;
@@ -207,11 +223,11 @@ typedef struct {
   int         n_probes;
   SceneProbe *probes;
   struct {
-    int every;                         /* steps between two outputs, or 0 for the last state only */
-    int checkpoint;                    /* steps between two checkpoints, or 0 for one only when the run ends early */
-    int displacement, stress, contact; /* which fields are written */
-    int error;                         /* 1 if the errors of the probes are estimated */
-    int certificate;                   /* 1 if each accepted step is judged */
+    int every;      /* steps between two outputs, or 0 for the last state only */
+    int checkpoint; /* steps between two checkpoints, or 0 for one only when the run ends early */
+    int displacement, stress, contact, principal, strain; /* which fields are written */
+    int error;                                            /* 1 if the errors of the probes are estimated */
+    int certificate;                                      /* 1 if each accepted step is judged */
   } output;
   struct {
     double penetration; /* largest depth to which faces may cross, in sizes of the smaller face */
@@ -232,6 +248,7 @@ void           SceneBodySkin(const SceneBody *, char *name, size_t size);
 PetscBool      SceneIsPlastic(Scene);
 PetscBool      SceneHasRoutine(Scene);
 PetscBool      SceneBreaks(Scene, PetscReal t);
+const char    *SceneStepAt(Scene, PetscReal t);
 PetscBool      SceneLoadVaries(const SceneLoad *, int component);
 PetscReal      SceneLoadValue(const SceneLoad *, int component, const PetscReal X[3], PetscReal t);
 PetscErrorCode SceneReference(FILE *);

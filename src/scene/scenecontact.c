@@ -172,7 +172,7 @@ static PetscErrorCode SceneReadFriction(Scene scene, SceneContact *contact)
   contact->stick_may_stiffen = contact->friction && contact->penalty_may_stiffen && !(contact->stick_penalty > 0);
   if (!SceneHas(scene, contact->path, "friction.stick.slip")) PetscFunctionReturn(PETSC_SUCCESS);
   contact->stick_may_stiffen = 0;
-  contact->stick_slip = SchemaReal(document, "%s.friction.stick.slip", contact->path);
+  contact->stick_slip        = SchemaReal(document, "%s.friction.stick.slip", contact->path);
   if (contact->stick_penalty > 0)
     PetscCall(SceneRefuse(scene, contact->path, "friction.stick.slip",
                           "stands beside a stick.penalty, which says how surfaces stick as well; allowed: one of them",

@@ -34,6 +34,24 @@ static PetscErrorCode SceneReadSupportValue(Scene scene, SceneSupport *support, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads the factor on the springs of a support. */
+static PetscErrorCode SceneReadSpringHistory(Scene scene, SceneSupport *support)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SceneReadFactors(scene, support->path, "history", &support->history));
+  if (!support->history.n) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 3; k++)
+    if (SceneHas(scene, support->path, Displacements[k]))
+      PetscCall(SceneRefuse(scene, support->path, Displacements[k],
+                            "holds all the time, but the entry has a history or `during`, which only springs take; "
+                            "allowed: an entry for each of the two, or a stiff spring",
+                            NULL));
+  for (int i = 0; i < support->history.n; i++)
+    if (support->history.v[i] < 0)
+      PetscCall(SceneRefuse(scene, support->path, "history", "has a negative factor; allowed: 0 or more", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Reads the springs of a support. Returns in *any whether there are some. */
 static PetscErrorCode SceneReadSprings(Scene scene, SceneSupport *support, int *any)
 {
@@ -79,6 +97,7 @@ PetscErrorCode SceneReadSupports(Scene scene)
     PetscCall(ScenePath(&support->path, "supports", i));
     PetscCall(SceneReadText(scene, support->path, "surface", &support->surface));
     PetscCall(SceneRefuseRigid(scene, support->path, "surface", support->surface));
+    PetscCall(SceneReadSpringHistory(scene, support));
     PetscCall(SceneReadSprings(scene, support, &held));
     for (int k = 0; k < 3; k++) {
       if (!SceneHas(scene, support->path, Displacements[k])) continue;

@@ -187,6 +187,11 @@ PetscErrorCode SceneCheckIncompressible(Scene scene, const SceneBody *body)
     PetscCall(SceneRefuse(scene, path, volume,
                           "is incompressible, which this law cannot be; allowed: nu below 0.5, K, or another law",
                           NULL));
+  if (scene->plane_stress)
+    PetscCall(SceneRefuse(scene, path, volume,
+                          "is incompressible, which needs pressures that plane stress has not; allowed with geometry: "
+                          "plane_stress: nu below 0.5, such as 0.4999, or K",
+                          NULL));
   if (strcmp(Formulations[body->formulation], "mixed"))
     PetscCall(SceneRefuse(scene, path, volume,
                           "is incompressible, which needs formulation: mixed; allowed with other formulations: nu "

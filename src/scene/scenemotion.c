@@ -150,6 +150,7 @@ PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *motion)
   char      path[KEY_PATH_LENGTH];
 
   PetscFunctionBeginUser;
+  motion->thickness = scene->thickness;
   PetscCall(PetscCalloc1(MOTION_COMPONENTS * n, &motion->components));
   for (int i = 0; i < n; i++) {
     const int before = motion->n;

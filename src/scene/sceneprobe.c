@@ -192,8 +192,10 @@ static PetscErrorCode SceneReadProbeAt(Scene scene, SceneProbe *probe)
 static PetscErrorCode SceneCheckProbeName(Scene scene, const SceneProbe *probe)
 {
   PetscFunctionBeginUser;
-  for (int k = 0; k < STEP_COLUMNS; k++) {
-    if (!strcmp(probe->name, StepColumnNames[k]))
+  for (int k = 0; k <= STEP_COLUMNS; k++) {
+    const char *column = k < STEP_COLUMNS ? StepColumnNames[k] : STEP_COLUMN_DURING;
+
+    if (!strcmp(probe->name, column))
       PetscCall(SceneRefuse(scene, probe->path, "name", "is a column of steps.csv already; allowed: another name",
                             probe->name));
   }
@@ -203,6 +205,13 @@ static PetscErrorCode SceneCheckProbeName(Scene scene, const SceneProbe *probe)
         SceneRefuse(scene, probe->path, "name", "names another probe already; allowed: names used once", probe->name));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells whether a probe's value is one per thickness of the plane. */
+static int ProbePerThickness(ProbeKind kind)
+{
+  return kind == PROBE_REACTION || kind == PROBE_CONTACT_FORCE || kind == PROBE_FRICTION_FORCE ||
+         kind == PROBE_FRICTION_TORQUE || kind == PROBE_SLIPPED_AREA;
 }
 
 static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
@@ -257,6 +266,7 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
     PetscCall(SceneRefuse(scene, path, "only", "stands beside excluding; allowed: one of them", NULL));
   probe->absolute = SchemaBoolean(document, "%s.absolute", path);
   probe->factor   = SchemaReal(document, "%s.factor", path);
+  if (ProbePerThickness(probe->kind)) probe->factor *= scene->thickness;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -55,6 +55,8 @@ PetscBool SceneBreaks(Scene scene, PetscReal t)
 {
   for (int l = 0; l < scene->n_loads; l++)
     if (HistoryBreaks(&scene->loads[l].history, t)) return PETSC_TRUE;
+  for (int s = 0; s < scene->n_supports; s++)
+    if (HistoryBreaks(&scene->supports[s].history, t)) return PETSC_TRUE;
   for (int b = 0; b < scene->n_bodies; b++)
     if (MotionBreaks(&scene->bodies[b].motion, t)) return PETSC_TRUE;
   for (int c = 0; c < scene->n_contacts; c++)

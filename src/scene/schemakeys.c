@@ -23,11 +23,14 @@
    .help = "rotation component, multiplied by the history"}, \
   {tool ".motion.*.rz", REAL | FORMULA, .unit = "degrees", .help = "rotation component, multiplied by the history"}, \
   {tool ".motion.*.history", HISTORY, .preset = "[[0, 0], [1, 1]]", .help = "factor over the load parameter t"}, \
+  {tool ".motion.*.during", NAME | TEXTS, \
+   .help = "step, or list of steps one after the other, in which it moves, from 0 to the whole way; it stays there. In " \
+           "the place of history"}, \
   {tool ".free", CHOICES, .values = "ux | uy | uz | rx | ry | rz", \
    .help = "components of the motion that are unknowns: the tool moves along them until its contact balances force " \
            "and moment. In the plane ux, uy and rz, axisymmetric uy alone"}, \
   {tool ".force", POINT | FORMULA, .unit = "force", \
-   .help = "force on the tool at its point, in the plane per thickness, axisymmetric on the whole tool; it acts along " \
+   .help = "force on the tool at its point, in the plane over thickness, axisymmetric on the whole tool; it acts along " \
            "the free displacements. Numbers are multiplied by the history, expressions are of t; the default is no " \
            "force"}, \
   {tool ".moment", MAP, .help = "moment on the tool along its free rotations; the default is none"}, \
@@ -36,7 +39,9 @@
   {tool ".moment.z", REAL | FORMULA, .unit = "force times length", \
    .help = "moment on the tool, which does its work along the rotation vector (rx, ry, rz), as force"}, \
   {tool ".history", HISTORY, .preset = "[[0, 0], [1, 1]]", \
-   .help = "factor on force and moment over the load parameter t"}
+   .help = "factor on force and moment over the load parameter t"}, \
+  {tool ".during", NAME | TEXTS, \
+   .help = "steps in which force and moment act, in the place of history, as loads.N.during"}
 
 const SchemaKey SchemaKeys[] = {
   {"name", NAME, .help = "name of the run and of its results; the default is the name of the scene file"},
@@ -47,8 +52,12 @@ const SchemaKey SchemaKeys[] = {
   {"mesh.order", INTEGER, .range = "[1, 2]",
    .help = "order of the elements; the default is 1 for a .geo file, and that of the file for the others"},
   {"mesh.parameters", FREE, .help = "numbers and texts that are passed to the .geo file"},
-  {"geometry", CHOICE, .values = "solid | plane_strain | axisymmetric", .preset = "solid",
-   .help = "geometry of the model; for axisymmetric, x is the radius and y is the axial coordinate"},
+  {"geometry", CHOICE, .values = "solid | plane_strain | axisymmetric | plane_stress", .preset = "solid",
+   .help = "geometry of the model; for axisymmetric, x is the radius and y is the axial coordinate; plane_stress is for "
+           "thin parts, free to become thinner or thicker"},
+  {"thickness", REAL, .range = "(0, inf)", .unit = "length", .preset = "1",
+   .help = "of geometry plane_strain and plane_stress: thickness of all bodies. Forces in the scene and in the results are "
+           "those on the whole thickness; without the key they are per unit of it"},
   {"kinematics", CHOICE, .values = "small | finite", .preset = "finite",
    .help = "whether strains and displacements are small or finite"},
   {"bodies", LIST, REQUIRED, .range = "[1, inf)", .help = "the bodies of the scene"},
@@ -138,6 +147,10 @@ const SchemaKey SchemaKeys[] = {
   {"supports.*.spring", POINT, .range = "[0, inf)", .unit = "force per length and area",
    .help = "stiffness of springs from the surface to the ground, along each axis; an axisymmetric scene has the radius "
            "as x. They act on the reference area along the axes, however the body moves"},
+  {"supports.*.history", HISTORY, .help = "factor on spring over the load parameter t; without the key it is 1"},
+  {"supports.*.during", NAME | TEXTS,
+   .help = "steps in which springs hold, in the place of history, as loads.N.during; in the first step of all they are "
+           "there from the start"},
   {"loads", LIST,
    .help = "loads, each of one kind and equal to its value multiplied by its history. A value may be an expression "
            "such as \"1e7 + 1e6*cos(2*theta)\", in x, y, z (reference coordinates), r = sqrt(x^2 + y^2), theta = "
@@ -166,12 +179,16 @@ const SchemaKey SchemaKeys[] = {
   {"loads.*.traction", POINT | FORMULA, .unit = "force per reference area", .help = "traction of fixed direction"},
   {"loads.*.force", POINT | FORMULA, .unit = "force",
    .help = "force of fixed direction in all: spread evenly over the faces of a surface, or in equal parts over the nodes "
-           "of a curve or of points; in the plane per thickness, axisymmetric over 360 degrees; an expression may have t "
+           "of a curve or of points; in the plane over thickness, axisymmetric over 360 degrees; an expression may have t "
            "only"},
   {"loads.*.body_force", POINT | FORMULA, .unit = "force per reference volume",
    .help = "body force, such as the weight"},
   {"loads.*.history", HISTORY, .preset = "[[0, 0], [1, 1]]",
    .help = "factor on the value over the load parameter t; not allowed beside an expression with t"},
+  {"loads.*.during", NAME | TEXTS,
+   .help = "step, or list of steps one after the other, in which the load acts, in the place of history: it grows in the "
+           "first one, stays until the last one ends, and goes to 0 in the step that follows. A displacement grows over "
+           "all of them and stays"},
   {"contact", LIST, .help = "contact pairs of a slave and a master surface, and lists of surfaces that meet each other"},
   {"contact.*", MAP, .help = "one contact pair, with slave and master, or a list of surfaces"},
   {"contact.*.name", NAME, REQUIRED, .help = "name of the pair in probes and results"},
@@ -306,6 +323,13 @@ const SchemaKey SchemaKeys[] = {
    .help = "auto: where static steps fail, the bodies are followed in pseudo-time, slowed down by a viscous restraint "
            "that is taken away before the step ends; the last screen says how much energy it took"},
   {"stepping.at", REALS, .range = "(0, 1]", .help = "load parameters at which a step must end"},
+  {"stepping.steps", LIST, .range = "[1, inf)",
+   .help = "parts of the way from t = 0 to 1, with names that `during` uses. Each may have many load steps, and one ends "
+           "at each of their ends"},
+  {"stepping.steps.*", MAP, .help = "a step with a name"},
+  {"stepping.steps.*.name", NAME, REQUIRED, .help = "its name"},
+  {"stepping.steps.*.until", REAL, REQUIRED, .range = "(0, 1]",
+   .help = "load parameter at which it ends; increasing from one step to the next, the last one 1"},
   {"solver", MAP, .help = "nonlinear and linear solver"},
   {"solver.type", CHOICE, .values = "direct | iterative | auto", .preset = "auto",
    .help = "linear solver; auto chooses it by the number of unknowns. Mixed triangles and tetrahedra of first order "
@@ -369,8 +393,9 @@ const SchemaKey SchemaKeys[] = {
   {"output", MAP, .help = "results that are written"},
   {"output.every", INTEGER, .range = "[0, inf)", .unit = "steps", .preset = "1",
    .help = "steps between two outputs of the fields; 0: only the last state is written"},
-  {"output.fields", CHOICES, .values = "displacement | stress | contact",
-   .help = "fields that are written; the default is all of them"},
+  {"output.fields", CHOICES, .values = "displacement | stress | contact | principal | strain",
+   .help = "fields that are written; the default is displacement, stress and contact. principal: principal stresses and "
+           "their directions; strain: strain and energy density"},
   {"output.checkpoint", INTEGER, .range = "[0, inf)", .unit = "steps", .preset = "0",
    .help = "steps between two checkpoints; 0: only when the run ends early"},
   {"output.certificate", BOOLEAN, .preset = "true",
@@ -381,6 +406,12 @@ const SchemaKey SchemaKeys[] = {
   {"certificate.penetration", REAL, .range = "(0, inf)", .unit = "face sizes", .preset = "0.1",
    .help = "largest depth to which faces may cross, in sizes of the smaller face, besides what the shape of faces "
            "explains; at most a quarter of the height of the elements below them"},
+  {"units", MAP,
+   .help = "words for the user's units, which results and pictures then name. Nothing is converted: numbers must be in "
+           "consistent units"},
+  {"units.length", TEXT, .help = "such as mm"},
+  {"units.force", TEXT, .help = "such as N"},
+  {"units.stress", TEXT, .help = "such as MPa; the default is force over length squared"},
   {"petsc", FREE, .help = "PETSc options without the dash, such as snes_monitor"},
 };
 // clang-format on

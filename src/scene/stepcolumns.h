@@ -34,4 +34,7 @@ typedef enum {
   STEP_COLUMNS
 } StepColumn;
 
+/* The last column of all, behind the probes: the name of the step, where the scene has steps with names */
+#define STEP_COLUMN_DURING "during"
+
 extern const char *const StepColumnNames[STEP_COLUMNS];

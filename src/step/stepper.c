@@ -38,7 +38,7 @@ struct _n_LoadStepper {
   StepperReport        report;
   PetscInt             n_landings, next_landing;
   PetscReal           *landings; /* load parameters that steps must end on, ascending; the last one is 1 */
-  LoadStepperLastFn    last; /* NULL: nobody wants the last solution */
+  LoadStepperLastFn    last;     /* NULL: nobody wants the last solution */
   void                *last_context;
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
@@ -129,16 +129,19 @@ static PetscInt MotionBreakpoints(const Motion *motion)
 /* Collects every load parameter that a step must end on: `at` of the scene, the breakpoints of all histories, and 1. */
 static PetscErrorCode LoadStepperSetLandings(LoadStepper stepper, Scene scene)
 {
-  PetscInt n = scene->stepping.n_at + 1, kept = 0;
+  PetscInt n = scene->stepping.n_at + scene->stepping.n_steps + 1, kept = 0;
 
   PetscFunctionBeginUser;
   for (int l = 0; l < scene->n_loads; l++) n += scene->loads[l].history.n;
+  for (int s = 0; s < scene->n_supports; s++) n += scene->supports[s].history.n;
   for (int b = 0; b < scene->n_bodies; b++) n += MotionBreakpoints(&scene->bodies[b].motion);
   for (int c = 0; c < scene->n_contacts; c++) n += MotionBreakpoints(&scene->contacts[c].motion);
   PetscCall(PetscFree(stepper->landings));
   PetscCall(PetscMalloc1(n, &stepper->landings));
   n = 0;
   for (int i = 0; i < scene->stepping.n_at; i++) stepper->landings[n++] = scene->stepping.at[i];
+  for (int i = 0; i < scene->stepping.n_steps; i++) stepper->landings[n++] = scene->stepping.steps[i].until;
+  for (int s = 0; s < scene->n_supports; s++) PetscCall(AddHistory(&scene->supports[s].history, &n, stepper->landings));
   for (int l = 0; l < scene->n_loads; l++) PetscCall(AddHistory(&scene->loads[l].history, &n, stepper->landings));
   for (int b = 0; b < scene->n_bodies; b++) PetscCall(AddMotion(&scene->bodies[b].motion, &n, stepper->landings));
   for (int c = 0; c < scene->n_contacts; c++) PetscCall(AddMotion(&scene->contacts[c].motion, &n, stepper->landings));
@@ -350,6 +353,18 @@ static PetscInt StepIterations(const SolveReport *solve)
   return solve->first && !solve->damped ? solve->first : solve->newton;
 }
 
+/* Multiplies force and energies of a record by the thickness of the plane. */
+static void ScaleRecord(Scene scene, StepRecord *record)
+{
+  PetscReal *per_thickness[] = {&record->contact.force,      &record->contact.dissipated,
+                                &record->energy.elastic,     &record->energy.plastic,
+                                &record->energy.work,        &record->energy.lag,
+                                &record->energy.outer.work,  &record->energy.outer.stored,
+                                &record->energy.outer.given, &record->energy.outer.friction};
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(per_thickness); i++) *per_thickness[i] *= scene->thickness;
+}
+
 /* Accepts a converged step of dt: fills its record, lets the control choose the next dt, which is at most `most` and
    which it must not shrink below dt_min, and accepts the state. */
 static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscReal most, PetscBool clipped,
@@ -372,6 +387,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   if (stepper->last && model->t >= 1 - STEPPER_SAME_T) PetscCall(stepper->last(stepper->last_context));
   PetscCall(ModelAccept(model));
   record->energy = EnergyBalanceGet(model->balance);
+  ScaleRecord(model->scene, record);
   if (solve->jump[0]) {
     report->jumps++;
     PetscCall(PetscSNPrintf(report->jump, sizeof(report->jump), "from t = %.6g to %.6g: %s", (double)report->t,

@@ -41,6 +41,9 @@ INPUT = {
     "B115": (STACK, (), ["probes=[{name: u, displacement: [0.123, 9], component: y}]"]),
     "B117": (STACK, (), ["probes=[{name: u, reaction: upper_top}]"]),
     "B119": (STACK, (), ["loads.0.uy=\"3*q\""]),
+    "B121": (STACK, (), ["loads.0.history={csv: \"{}/wrong.csv\"}"]),
+    "B122": (STACK, (), ["loads.0.during=press"]),
+    "B123": (STACK, (), ["geometry=plane_stress", "bodies.0.formulation=fbar"]),
 }
 UNSOLVED = {
     "B201": (STACK, (), ["solver.max_iterations=1", "solver.tolerance=1e-14", "stepping.dt_min=0.2"]),
@@ -58,7 +61,7 @@ WARNINGS = {
     "B507": (STACK, (), ["contact.0.penalty.scale=1e-4", "loads.0.uy=-3.5", "stepping.initial=0.1", UNJUDGED]),
 }
 SQUARE_GEO = (ROOT / "meshes/square.geo").read_text()
-FILES = {"broken.geo": "Point(1) = {0, 0, 0;\n", "hostile.geo": SQUARE_GEO + 'SystemCall "true";\n'}
+FILES = {"wrong.csv": "0,0\n0.5,much\n", "broken.geo": "Point(1) = {0, 0, 0;\n", "hostile.geo": SQUARE_GEO + 'SystemCall "true";\n'}
 
 
 def explained(code):

@@ -24,10 +24,10 @@ class Run:
         return json.loads((self.directory / "summary.json").read_text())
 
     def steps(self):
-        """steps.csv as a list of rows: column -> float, None where empty."""
+        """steps.csv as a list of rows: column -> float, None where empty, the name of the step as a text."""
         with open(self.directory / "steps.csv", newline="") as file:
             return [{
-                key: float(value) if value.strip() else None
+                key: (value if key == "during" else float(value)) if value.strip() else None
                 for key, value in row.items()
             }
                     for row in csv.DictReader(file, skipinitialspace=True)]

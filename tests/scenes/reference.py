@@ -41,7 +41,9 @@ check.holds("summary.json", not untold, f"not told: {sorted(untold)}")
 with open(finished.directory / "steps.csv", newline="") as file:
     columns = set(next(csv.reader(file))) - set(finished.summary()["probes"])
 extra = told[1] - columns
-known = columns <= told[1] and extra <= {"control: contact", "law: von_mises", "g_min", "g_max"}
+known = columns <= told[1] and extra <= {
+    "control: contact", "law: von_mises", "g_min", "g_max", "during", "stepping.steps"
+}
 check.holds("steps.csv", known, f"{sorted(columns ^ told[1])}")
 datasets = set()
 with h5py.File(finished.directory / "results.h5", "r") as file:

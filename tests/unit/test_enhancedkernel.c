@@ -70,6 +70,7 @@ static void BendingEnergyIsABeams(void **state)
                                  0,
                                  NULL,
                                  0,
+                                 0,
                                  0};
       const int    dim    = solid ? 3 : 2;
       const double moment = 2 * height * height * height / 3 * (solid ? 2 : 1 / (1 - poisson * poisson));
@@ -152,9 +153,17 @@ static void CompressedElementsDoNotHourglass(void **state)
   for (int law = MATERIAL_SVK; law <= MATERIAL_NEO_HOOKEAN; law++) {
     for (int i = 0; i < 6; i++) {
       for (double stretch = 0.95; stretch > (law == MATERIAL_SVK ? 0.6 : 0.45); stretch -= 0.05) {
-        KernelCase kernel = {
-          ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, (MaterialLaw)law, FORMULATION_ENHANCED, 0, NULL, 0, 0};
-        const double plane = LeastHourglass(&kernel, ratios[i % 2], heights[i / 2], stretch);
+        KernelCase   kernel = {ELEMENT_QUAD4,
+                               GEOMETRY_PLANE_STRAIN,
+                               KINEMATICS_FINITE,
+                               (MaterialLaw)law,
+                               FORMULATION_ENHANCED,
+                               0,
+                               NULL,
+                               0,
+                               0,
+                               0};
+        const double plane  = LeastHourglass(&kernel, ratios[i % 2], heights[i / 2], stretch);
         double       solid, plain;
 
         kernel.type        = ELEMENT_HEX8;
@@ -172,7 +181,7 @@ static void CompressedElementsDoNotHourglass(void **state)
 static void ModesWithoutRestAreReported(void **state)
 {
   const KernelCase kernel = {
-    ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_ENHANCED, 0, NULL, 0, 0};
+    ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_ENHANCED, 0, NULL, 0, 0, 0};
   double X[MAX_DOFS], u[MAX_DOFS] = {0};
   Result result;
 
@@ -197,7 +206,7 @@ static void ForceIsSmoothWhereTheElementTurns(void **state)
 
   (void)state;
   for (int c = 0; c < 6; c++) {
-    const int        solid  = c / 3, dim = solid ? 3 : 2;
+    const int        solid = c / 3, dim = solid ? 3 : 2;
     const KernelCase kernel = {.type        = solid ? ELEMENT_HEX8 : ELEMENT_QUAD4,
                                .geometry    = solid ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN,
                                .kinematics  = KINEMATICS_FINITE,

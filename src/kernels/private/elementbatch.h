@@ -39,6 +39,8 @@ typedef struct {
   const Element      *e;
   const ElasticLaw   *law;
   int                 finite, n_constants;
+  int                 thin;   /* of KernelCase */
+  Lanes               across; /* where it is thin: nu/(1 - nu) of the undeformed state */
   const Lanes        *constants;
   const PlasticBatch *plastic;
   const double       *state;        /* of a plastic law [points][states], or NULL; its first lane */

@@ -42,6 +42,8 @@ typedef struct {
 
 PetscErrorCode DocumentRead(MPI_Comm, const char *file, int n_set, char *const *set, Document **);
 PetscErrorCode DocumentReadText(MPI_Comm, const char *name, const char *text, int n_set, char *const *set, Document **);
+PetscErrorCode DocumentReadFile(MPI_Comm, const char *name, const char *what, char **text, size_t *length);
+PetscErrorCode DocumentReplace(Document *, Node, const char *path, const char *text);
 PetscErrorCode DocumentDestroy(Document *);
 PetscErrorCode DocumentText(Document *, char **text);
 const char    *DocumentWhere(Document *, const char *path);

@@ -1,0 +1,12 @@
+/* Units of what a run writes, in the words of the scene's key units, or as length, force and stress without it.
+
+   UnitsProbe() gives the unit of a probe's value, UnitsForces() what forces of the results are meant of: the whole
+   model, a unit of thickness, 360 degrees. */
+#pragma once
+#include "scene/scene.h"
+
+enum { UNITS_TEXT = 200 };
+
+void UnitsStress(Scene, char text[UNITS_TEXT]);
+void UnitsProbe(Scene, const SceneProbe *, char text[UNITS_TEXT]);
+void UnitsForces(Scene, char text[UNITS_TEXT]);

@@ -1,0 +1,96 @@
+/* Units of what a run writes, see units.h. */
+#include "units.h"
+#include <stdio.h>
+
+static const char *Length(Scene scene)
+{
+  return scene->units.length ? scene->units.length : "length";
+}
+
+static const char *Force(Scene scene)
+{
+  return scene->units.force ? scene->units.force : "force";
+}
+
+/* What forces are divided by in the plane without a thickness. */
+static const char *PerThickness(Scene scene, char text[UNITS_TEXT])
+{
+  snprintf(text, UNITS_TEXT, "%s%.60s", scene->per_thickness ? "/" : "", scene->per_thickness ? Length(scene) : "");
+  return text;
+}
+
+/*@
+  UnitsStress - gives the unit of stresses.
+
+  Not collective
+
+  Input Parameter:
+. scene - the scene
+
+  Output Parameter:
+. text - the unit
+@*/
+void UnitsStress(Scene scene, char text[UNITS_TEXT])
+{
+  if (scene->units.stress || !scene->units.force || !scene->units.length)
+    snprintf(text, UNITS_TEXT, "%.60s", scene->units.stress ? scene->units.stress : "stress");
+  else
+    snprintf(text, UNITS_TEXT, "%.60s/%.60s^2", Force(scene), Length(scene));
+}
+
+/*@
+  UnitsProbe - gives the unit of a probe, without its factor.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+- probe - of the scene
+
+  Output Parameter:
+. text - the unit; empty of parts
+@*/
+void UnitsProbe(Scene scene, const SceneProbe *probe, char text[UNITS_TEXT])
+{
+  char per[UNITS_TEXT];
+
+  PerThickness(scene, per);
+  switch (probe->kind) {
+  case PROBE_REACTION:
+  case PROBE_CONTACT_FORCE:
+  case PROBE_FRICTION_FORCE: snprintf(text, UNITS_TEXT, "%.60s%.70s", Force(scene), per); break;
+  case PROBE_FRICTION_TORQUE: snprintf(text, UNITS_TEXT, "%.60s %.60s%.70s", Force(scene), Length(scene), per); break;
+  case PROBE_SLIPPED_AREA: snprintf(text, UNITS_TEXT, "%.60s%s", Length(scene), *per ? "" : "^2"); break;
+  case PROBE_PRESSURE_MAX:
+  case PROBE_PRESSURE_MEAN:
+  case PROBE_SEAL_PRESSURE: UnitsStress(scene, text); break;
+  case PROBE_PRESSURE_DEVIATION: snprintf(text, UNITS_TEXT, "per cent"); break;
+  case PROBE_TOOL_ROTATION: snprintf(text, UNITS_TEXT, "degrees"); break;
+  case PROBE_FLUID_AREA: *text = 0; break;
+  default: snprintf(text, UNITS_TEXT, "%.60s", Length(scene));
+  }
+}
+
+/*@
+  UnitsForces - says what the forces, areas and energies of the results are meant of.
+
+  Not collective
+
+  Input Parameter:
+. scene - the scene
+
+  Output Parameter:
+. text - such as "per mm of thickness"
+@*/
+void UnitsForces(Scene scene, char text[UNITS_TEXT])
+{
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC)
+    snprintf(text, UNITS_TEXT, "over 360 degrees");
+  else if (scene->geometry == GEOMETRY_SOLID)
+    snprintf(text, UNITS_TEXT, "of the model");
+  else if (scene->per_thickness)
+    snprintf(text, UNITS_TEXT, "per %.60s of thickness", Length(scene));
+  else
+    snprintf(text, UNITS_TEXT, "on a thickness of %g%s%.60s", scene->thickness, scene->units.length ? " " : "",
+             scene->units.length ? scene->units.length : "");
+}
