@@ -24,7 +24,7 @@ typedef enum { OFFSETS_NONE, OFFSETS_HELD, OFFSETS_LIVE } OffsetsKind;
 PetscErrorCode   OffsetsCreate(Mesh, Scene, Loads, ContactSurface, int n_images, const SurfaceImage *,
                                PetscReal feature_angle, int finer, OffsetsKind, Offsets *);
 PetscErrorCode   OffsetsDestroy(Offsets *);
-PetscErrorCode   OffsetsExtrapolate(Offsets, const PetscReal *u, PetscReal t, PetscReal t_next, PetscBool *changed);
+PetscErrorCode   OffsetsExtrapolate(Offsets, const PetscReal *u, PetscReal t, PetscReal t_next);
 PetscErrorCode   OffsetsTake(Offsets, const PetscReal *u, PetscReal t);
 PetscErrorCode   OffsetsDamp(Offsets, PetscBool *changed);
 PetscErrorCode   OffsetsArchive(Offsets, Archive, const char *name);
