@@ -9,8 +9,8 @@
    and are always held ones.
 
    OffsetsCreate() makes offsets of 0. OffsetsExtrapolate() is called at the beginning of a step and OffsetsTake()
-   when lists are made anew, and OffsetsDamp() where these replace those of the solve. OffsetsGet() and OffsetsMaps() give the result to the search, and OffsetsArchive()
-   writes or reads the state of the extrapolation. */
+   when lists are made anew, and OffsetsDamp() where these replace those of the solve. OffsetsGet() and OffsetsMaps()
+   give the result to the search, and OffsetsArchive() writes or reads the state of the extrapolation. */
 #pragma once
 #include "files/archive.h"
 #include "search/facemap.h"
