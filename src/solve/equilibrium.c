@@ -293,6 +293,12 @@ static PetscErrorCode ModelLag(Model model, PetscInt times, PetscReal *lag)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether the offsets of contact lag and solutions without friction may be found loosely. */
+static PetscBool ModelLags(Model model)
+{
+  return (PetscBool)(model->contact && ContactOffsetsLag(model->contact) && !ContactHasFriction(model->contact));
+}
+
 /* Says whether solutions are found loosely at first, because lists will most likely change at the first one: offsets
    lag, and they did not hold at the first solution of the step before, or are not extrapolated, or are to lag less than
    usual. Not so with friction, as what sticks and what slips is not known before. */
@@ -303,8 +309,7 @@ static PetscErrorCode ModelSolvesLoosely(Model model, PetscBool *loosely)
 
   PetscFunctionBeginUser;
   *loosely = PETSC_FALSE;
-  if (!model->contact || !ContactOffsetsLag(model->contact) || ContactHasFriction(model->contact))
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ModelLags(model)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelLag(model, 0, &lag));
   *loosely = (PetscBool)(!work->accepted_held || SceneBreaks(model->scene, work->accepted_t) || lag < 1);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -324,13 +329,14 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
   work->renewed = 0;
   PetscCall(ModelSolvesLoosely(model, &work->loosely));
   while (!hold && report->result == SOLVE_CONVERGED) {
-    work->left = PETSC_FALSE;
-    before     = report->newton;
+    work->left   = PETSC_FALSE;
+    work->nearly = -1;
+    before       = report->newton;
     PetscCall(ModelNewton(model, report));
     work->begun = 0;
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     work->renewed += work->left;
-    if (!first && !work->left) first = report->newton;
+    if (!first && !work->left) first = ModelLags(model) && work->nearly >= 0 ? before + work->nearly : report->newton;
     PetscCall(ModelLag(model, times, &lag));
     PetscCall(ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left, lag, &hold));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));

@@ -104,6 +104,7 @@ typedef struct _n_ModelWork {
   PetscBool   stalled;            /* with friction: the last LINE_MEMORY iterations have hardly lowered the residual */
   PetscBool   soft;               /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
   PetscBool   loosely;            /* contact lists are checked after the solve, before it goes on to the tolerance */
+  PetscInt    nearly;             /* iterations to the first iterate that was solved for loosely; -1: none was yet */
   PetscInt    begun;              /* iterations before, of a solve that goes on */
   PetscBool   balanced;           /* the residual of the iterate is within the tolerance */
   PetscBool   left;               /* the solve ended because a slave point slid out of its lists */
