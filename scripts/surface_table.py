@@ -1,7 +1,7 @@
 """What surface to surface costs beside node to surface, both with the diffuse smoother: same meshes, same steps. Raw
 records of every run go to a CSV file, the table (iterations, CPU seconds, ratio) is printed from there:
-    surface_table.py --burnish BINARY [BINARY ...] [--names NAME ...] [--repeats N] [--out DIR]    runs and prints
-    --table FILE                                                                                   prints only
+    surface_table.py [--burnish BINARY ...] [--names NAME ...] [--scenes SCENE ...] [--repeats N] [--out DIR]
+    surface_table.py --table FILE     prints only
 With several binaries, such as one before a change and one after it, each has its rows. Runs of formulations and
 binaries alternate, so that whatever else the machine does meets all of them; CPU seconds are medians."""
 import argparse
@@ -61,7 +61,7 @@ def measure(args):
     with open(path, "w", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS)
         writer.writeheader()
-        for scene in SCENES:
+        for scene in args.scenes:
             for repeat in range(args.repeats):
                 for binary in range(len(args.burnish)):
                     for formulation in FORMULATIONS:
@@ -89,6 +89,7 @@ def table(path):
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("--burnish", type=pathlib.Path, nargs="+", default=[pathlib.Path("build/burnish")])
 parser.add_argument("--names", nargs="+", help="of the binaries, in the table")
+parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
 parser.add_argument("--repeats", type=int, default=3)
 parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/surface"))
 parser.add_argument("--table", type=pathlib.Path, help="raw records to print, nothing is run")
