@@ -57,15 +57,23 @@ static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gives the slave points their offsets. */
+static PetscErrorCode PairSetOffsets(ContactPair *pair)
+{
+  PetscFunctionBeginUser;
+  if (pair->slave_offsets && OffsetsMaps(pair->slave_offsets))
+    PetscCall(SlavePointsSetMaps(pair->slaves, OffsetsMaps(pair->slave_offsets)));
+  else if (pair->slave_offsets)
+    PetscCall(SlavePointsSetOffsets(pair->slaves, OffsetsGet(pair->slave_offsets)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Makes fresh lists and area factors, which become the pair's next ones. */
 static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   PetscFunctionBeginUser;
   PetscCall(NeighbourListsDestroy(&pair->next));
-  if (pair->slave_offsets && OffsetsMaps(pair->slave_offsets))
-    PetscCall(SlavePointsSetMaps(pair->slaves, OffsetsMaps(pair->slave_offsets)));
-  else if (pair->slave_offsets)
-    PetscCall(SlavePointsSetOffsets(pair->slaves, OffsetsGet(pair->slave_offsets)));
+  PetscCall(PairSetOffsets(pair));
   PetscCall(SearchLists(pair->search, u, t, motion, &pair->next));
   PetscCall(PairFactors(pair, pair->next, pair->next_factor));
   pair->next_motion = motion;
@@ -212,6 +220,31 @@ static PetscErrorCode PairListsMotion(Contact contact, const ContactPair *pair, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The lists in force take the offsets that are extrapolated to the end of the step. They were made with those of the
+   accepted state. A second search for a change that is far less than the motion of a step would double its cost. */
+static PetscErrorCode PairExtrapolateOffsets(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal t_next)
+{
+  PetscBool changed = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (!pair->slave_offsets) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next));
+  if (pair->master_offsets) PetscCall(OffsetsExtrapolate(pair->master_offsets, u, t, t_next));
+  PetscCall(PairSetOffsets(pair));
+  PetscCall(NeighbourListsTakeOffsets(pair->search, pair->lists, &changed));
+  if (changed) pair->projected = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Offsets of both sides at a state. */
+static PetscErrorCode PairTakeOffsets(ContactPair *pair, const PetscReal *u, PetscReal t)
+{
+  PetscFunctionBeginUser;
+  if (pair->slave_offsets) PetscCall(OffsetsTake(pair->slave_offsets, u, t));
+  if (pair->master_offsets) PetscCall(OffsetsTake(pair->master_offsets, u, t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactGather - makes new lists, with new offsets and area factors, for all pairs.
 
@@ -239,8 +272,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
 
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(PetscLogEventBegin(contact->event_offset, 0, 0, 0, 0));
-    if (pair->slave_offsets) PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next, &changed));
-    if (pair->master_offsets) PetscCall(OffsetsExtrapolate(pair->master_offsets, u, t, t_next, &changed));
+    PetscCall(PairTakeOffsets(pair, u, t));
     if (pair->slave_offsets) PetscCall(PetscLogEventEnd(contact->event_offset, 0, 0, 0, 0));
     for (PetscInt q = 0; q < pair->slaves->n; q++) changed = (PetscBool)(changed || pair->first_rung[q]);
     PetscCall(PetscArrayzero(pair->first_rung, pair->slaves->n));
@@ -248,6 +280,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscCall(PairListsServe(pair, u, t, needed, changed, &serve));
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
     if (pair->next) PetscCall(PairTakeNext(pair));
+    PetscCall(PairExtrapolateOffsets(pair, u, t, t_next));
     PetscCall(PetscArrayzero(pair->factor_change, pair->lists->n_slaves));
     for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
       pair->factor_low[q]  = -1;
@@ -460,8 +493,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
 
     if (pair->friction) PetscCall(FrictionAnchorLate(pair, t, &late));
     PetscCall(PairListsMotion(contact, pair, t, &needed));
-    if (pair->slave_offsets) PetscCall(OffsetsTake(pair->slave_offsets, u, t));
-    if (pair->master_offsets) PetscCall(OffsetsTake(pair->master_offsets, u, t));
+    PetscCall(PairTakeOffsets(pair, u, t));
     PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(ContactNoteLost(pair, t));
     ContactNoteTunnelled(pair, t);

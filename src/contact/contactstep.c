@@ -17,6 +17,7 @@ struct _n_ContactStep {
   PetscInt      *ptr, *node;  /* gap's first variation, over contact nodes of the pair */
   PetscReal     *N;           /* dim for each of these */
   PetscReal (*tangent)[2][3]; /* of mine, where there is friction */
+  FrictionSlide *slide;       /* of mine; NULL: nobody has asked yet */
 };
 
 /* How the contact nodes of a pair move with du, tools and an analytic master included: values[contact nodes*dim], to
@@ -213,6 +214,8 @@ PetscErrorCode ContactStepDestroy(ContactStep *step)
   PetscCall(PetscFree(s->terms));
   PetscCall(PetscFree4(s->pair, s->term, s->area, s->ptr));
   PetscCall(PetscFree(s->tangent));
+  for (PetscInt i = 0; s->slide && i < s->mine; i++) PetscCall(FrictionSlideFree(&s->slide[i]));
+  PetscCall(PetscFree(s->slide));
   PetscCall(PetscFree2(s->count, s->first));
   PetscCall(PetscFree(s->node));
   PetscCall(PetscFree(s->N));
@@ -257,6 +260,19 @@ static inline PetscReal TermTravel(const int dim, const PetscReal *N, PetscInt n
   return sum[0] + sum[1] + sum[2];
 }
 
+/* Finds how contact nodes slide my terms, once for all displacements that are asked for. */
+static PetscErrorCode FindSlides(ContactStep step)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(step->mine, &step->slide));
+  for (PetscInt i = 0; i < step->mine; i++) {
+    const ContactPair *pair = &step->contact->pairs[step->pair[i]];
+
+    if (pair->friction) PetscCall(FrictionTermSlide(pair, step->term[i], &step->slide[i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What local displacements do to my terms: travel of their gaps, and motion of their sides along each other, slide[3]
    of each, 0 without friction; slide may be NULL. Each pair is moved once. */
 static PetscErrorCode OwnMotion(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *travel,
@@ -268,6 +284,7 @@ static PetscErrorCode OwnMotion(ContactStep step, const PetscReal *du, PetscReal
 
   PetscFunctionBeginUser;
   if (slide) PetscCall(PetscArrayzero(slide, 3 * step->mine));
+  if (slide && !step->slide) PetscCall(FindSlides(step));
   for (int p = 0; p < step->contact->n_pairs; p++) {
     ContactPair *pair = &step->contact->pairs[p];
 
@@ -280,7 +297,7 @@ static PetscErrorCode OwnMotion(ContactStep step, const PetscReal *du, PetscReal
     }
     if (slide && pair->friction && pair->tool) PetscCall(ContactToolRelative(pair, values));
     for (; k < i; k++)
-      if (slide && pair->friction) PetscCall(FrictionTermMotion(pair, step->term[k], values, &slide[3 * k]));
+      if (slide && pair->friction) FrictionSlideMotion(&step->slide[k], dim, values, &slide[3 * k]);
     PetscCall(PetscFree(values));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,47 +2,132 @@
    are to obey at the end. */
 #include "contactimpl.h"
 
-/* Mean motion of the slave points of a term against their anchors in the tangent plane, where the contact nodes move by
-   values; 0 where the term has no anchors. */
-PetscErrorCode FrictionTermMotion(const ContactPair *pair, PetscInt c, const PetscReal *values, PetscReal motion[3])
+/* Adds the nodes that slide slave point q against its anchor to the list of nodes. */
+static void AddSlideNodes(const ContactPair *pair, PetscInt q)
 {
-  const NeighbourLists lists = pair->lists;
-  const int            dim   = lists->dim;
-  PetscReal            area = 0, across = 0, square = 0, normal[3] = {0, 0, 0};
+  const PetscInt  *node, at = pair->friction->at[q];
+  const PetscReal *S;
+  const PetscInt   n    = FrictionOwnNodes(pair, q, &node, &S);
+  const Facet     *face = pair->master && at >= 0 ? &pair->lists->face[at] : NULL;
+
+  ContactWorkNodesAdd(pair->work, n, node);
+  for (int a = 0; face && a < ElementGet(face->type)->nodes; a++) {
+    PetscReal sign[3];
+    PetscInt  anchor;
+
+    FrictionNodeSign(pair, face->nodes[a], &anchor, sign);
+    ContactWorkNodesAdd(pair->work, 1, &anchor);
+  }
+}
+
+/* Adds the shares of these nodes, times weight. */
+static void AddSlideShares(const ContactPair *pair, PetscInt q, PetscReal weight, PetscReal *share)
+{
+  const PetscInt  *node, at = pair->friction->at[q];
+  const PetscReal *S;
+  const PetscInt   n    = FrictionOwnNodes(pair, q, &node, &S);
+  const Facet     *face = pair->master && at >= 0 ? &pair->lists->face[at] : NULL;
+  PetscReal        N[FACE_MAX_NODES];
+
+  for (PetscInt a = 0; a < n; a++)
+    for (int d = 0; d < 3; d++) share[3 * pair->work->slot[node[a]] + d] += weight * S[a];
+  if (face) ElementShape(face->type, &pair->friction->xi[2 * q], N, NULL, NULL);
+  for (int a = 0; face && a < ElementGet(face->type)->nodes; a++) {
+    PetscReal sign[3];
+    PetscInt  anchor;
+
+    FrictionNodeSign(pair, face->nodes[a], &anchor, sign);
+    for (int d = 0; d < 3; d++) share[3 * pair->work->slot[anchor] + d] -= weight * N[a] * sign[d];
+  }
+}
+
+/*@
+  FrictionTermSlide - finds how contact nodes slide a term: the mean motion of its slave points against their anchors.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair, projected
+- c    - the term
+
+  Output Parameter:
+. slide - to be freed with FrictionSlideFree(); of no nodes where the term has no anchors
+@*/
+PetscErrorCode FrictionTermSlide(const ContactPair *pair, PetscInt c, FrictionSlide *slide)
+{
+  const PetscInt first = pair->term_ptr[c], end = pair->friction->anchored[c] ? pair->term_ptr[c + 1] : first;
+  PetscReal      area = 0, square = 0;
 
   PetscFunctionBeginUser;
-  for (int d = 0; d < 3; d++) motion[d] = 0;
-  for (PetscInt k = pair->term_ptr[c]; pair->friction->anchored[c] && k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt  q      = pair->term_point[k], *node;
-    const PetscReal weight = pair->term_weight[k] * pair->factor[q], *S;
-    const Facet    *face;
-    const PetscInt  n = FrictionOwnNodes(pair, q, &node, &S);
-    PetscReal       N[FACE_MAX_NODES];
+  *slide = (FrictionSlide){.n = 0};
+  for (PetscInt k = first; k < end; k++) {
+    const PetscInt q = pair->term_point[k];
 
     if (!FrictionTermTakes(pair, k)) continue;
-    area += weight;
     PetscCall(ContactVariationsNeed(pair, q));
-    for (int d = 0; d < dim; d++) normal[d] += weight * pair->variations->own[q * dim + d];
-    if (pair->friction->face[q] < 0) continue;
-    for (PetscInt a = 0; a < n; a++)
-      for (int d = 0; d < dim; d++) motion[d] += weight * S[a] * values[node[a] * dim + d];
-    if (!pair->master || pair->friction->at[q] < 0) continue;
-    face = &lists->face[pair->friction->at[q]];
-    ElementShape(face->type, &pair->friction->xi[2 * q], N, NULL, NULL);
-    for (int a = 0; a < ElementGet(face->type)->nodes; a++) {
-      PetscReal sign[3];
-      PetscInt  at;
+    area += pair->term_weight[k] * pair->factor[q];
+    for (int d = 0; d < pair->mesh->dim; d++)
+      slide->normal[d] += pair->term_weight[k] * pair->factor[q] * pair->variations->own[q * pair->mesh->dim + d];
+  }
+  if (area == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int d = 0; d < 3; d++) square += PetscSqr(slide->normal[d]);
+  for (int d = 0; d < 3; d++) slide->normal[d] /= PetscSqrtReal(square);
+  PetscCall(ContactWorkNodesBegin(pair->work, pair->lists->n_nodes, 2 * FACE_MAX_NODES * (end - first)));
+  for (PetscInt k = first; k < end; k++)
+    if (FrictionTermTakes(pair, k) && pair->friction->face[pair->term_point[k]] >= 0)
+      AddSlideNodes(pair, pair->term_point[k]);
+  slide->n = pair->work->count;
+  PetscCall(PetscMalloc1(slide->n, &slide->node));
+  PetscCall(PetscCalloc1(3 * slide->n, &slide->share));
+  PetscCall(PetscArraycpy(slide->node, pair->work->number, slide->n));
+  for (PetscInt k = first; k < end; k++) {
+    const PetscInt q = pair->term_point[k];
 
-      FrictionNodeSign(pair, face->nodes[a], &at, sign);
-      for (int d = 0; d < dim; d++) motion[d] -= weight * N[a] * sign[d] * values[at * dim + d];
-    }
+    if (FrictionTermTakes(pair, k) && pair->friction->face[q] >= 0)
+      AddSlideShares(pair, q, pair->term_weight[k] * pair->factor[q] / area, slide->share);
   }
-  for (int d = 0; d < 3; d++) {
-    across += normal[d] * motion[d];
-    square += PetscSqr(normal[d]);
-  }
-  for (int d = 0; d < 3 && area > 0; d++) motion[d] = (motion[d] - across / square * normal[d]) / area;
+  ContactWorkNodesEnd(pair->work);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionSlideFree - frees what FrictionTermSlide() has found.
+
+  Not collective
+
+  Input Parameter:
+. slide - its arrays are freed
+@*/
+PetscErrorCode FrictionSlideFree(FrictionSlide *slide)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(slide->node));
+  PetscCall(PetscFree(slide->share));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionSlideMotion - computes how a term slides in its tangent plane where contact nodes move.
+
+  Not collective
+
+  Input Parameters:
++ slide  - of FrictionTermSlide()
+. dim    - dimension
+- values - values[contact nodes*dim] (length)
+
+  Output Parameter:
+. motion - mean motion (length)
+@*/
+void FrictionSlideMotion(const FrictionSlide *slide, int dim, const PetscReal *values, PetscReal motion[3])
+{
+  PetscReal across = 0;
+
+  for (int d = 0; d < 3; d++) motion[d] = 0;
+  for (PetscInt i = 0; i < slide->n; i++)
+    for (int d = 0; d < dim; d++) motion[d] += slide->share[3 * i + d] * values[slide->node[i] * dim + d];
+  for (int d = 0; d < 3; d++) across += slide->normal[d] * motion[d];
+  for (int d = 0; d < 3; d++) motion[d] -= across * slide->normal[d];
 }
 
 /* Adds the forces of a traction on a term to the values of the contact nodes. */

@@ -13,6 +13,7 @@ typedef struct {
   int               *row_of;   /* of each node of the block, its number among them; -1: none */
   PetscReal         *share;    /* of each of them dim*dim: force over the traction of the term */
   PetscReal         *value;    /* n_rows*dim rows */
+  PetscReal         *turns;    /* dim rows: derivative of the own N of the slave point at hand */
 } TermBlock;
 
 /* Derivatives of the own N of slave point q over the nodes of its first variation: dim*dim for each, kept until the
@@ -198,6 +199,36 @@ static PetscErrorCode AddVariations(const TermBlock *b, PetscReal *rows, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Spreads the derivative of the own N of slave point q over the columns of the block. */
+static PetscErrorCode SpreadTurns(const TermBlock *b, PetscInt q)
+{
+  const ContactVariations *v   = b->pair->variations;
+  const int                dim = b->dim;
+  const PetscReal         *turns;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointTurns(b->pair, q, &turns));
+  PetscCall(PetscArrayzero(b->turns, dim * b->columns));
+  for (PetscInt i = 0; i < ContactVariationsOwn(b->pair, q); i++) {
+    const int place = b->pair->work->slot[v->number[v->first[q] + i]];
+
+    for (int d = 0; place >= 0 && d < dim; d++)
+      for (int j = 0; j < dim; j++) b->turns[d * b->columns + place * dim + j] += turns[(i * dim + d) * dim + j];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds m times the spread derivative of the own N to dim rows. */
+static void AddTurns(const TermBlock *b, PetscReal *restrict rows, const PetscReal m[3][3])
+{
+  const PetscReal *const restrict turns = b->turns;
+  const PetscInt columns                = b->columns;
+
+  for (int r = 0; r < b->dim; r++)
+    for (int d = 0; d < b->dim; d++)
+      for (PetscInt j = 0; j < columns; j++) rows[r * columns + j] += m[r][d] * turns[d * columns + j];
+}
+
 /* The derivatives of the traction by the tangents of the face on which slave point q is anchored: what is off the face
    turns with it. */
 static void TurnOff(const ContactPair *pair, PetscInt q, const FrictionTraction *by, PetscReal turn[2][3][3])
@@ -339,7 +370,7 @@ static PetscErrorCode AddNodeMotion(TermBlock *b, PetscInt q, const FrictionFoot
   n = FrictionLeverNodes(pair, q, &node, &slope);
   for (PetscInt l = 0; l < n; l++)
     for (int a = 0; a < b->dim - 1; a++) AddColumns(b, rows, node[l], slope[2 * l + a], by->by_tangent[a], NULL);
-  PetscCall(AddVariations(b, rows, q, 1, by->by_normal, NULL));
+  AddTurns(b, rows, by->by_normal);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -358,6 +389,7 @@ static PetscErrorCode AddFootMotion(TermBlock *b, PetscInt q, const PetscReal F[
   PetscFunctionBeginUser;
   PetscCall(FrictionPointFoot(pair, q, &foot, &found));
   if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SpreadTurns(b, q));
   for (int k = 0; k < foot->nodes; k++) {
     PetscReal sign[3];
     PetscInt  at;
@@ -410,6 +442,7 @@ static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction
     if (FrictionTermTakes(pair, k)) PetscCall(AddShares(b, q, pair->term_weight[k] * pair->factor[q]));
   }
   PetscCall(PetscCalloc1(b->n_rows * dim * b->columns, &b->value));
+  PetscCall(PetscMalloc1(dim * b->columns, &b->turns));
   for (PetscInt r = 0; r < b->n_rows * dim; r++)
     for (int d = 0; d < dim; d++)
       for (PetscInt j = 0; j < b->columns; j++)
@@ -491,6 +524,7 @@ PetscErrorCode FrictionTermBlock(const ContactPair *pair, BlockMatrix blocks, in
   PetscCall(PetscFree2(b.by_node, b.share));
   PetscCall(PetscFree2(b.row_node, b.row_of));
   PetscCall(PetscFree(b.value));
+  PetscCall(PetscFree(b.turns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -59,6 +59,7 @@ struct _n_BlockMatrix {
   PetscInt        *seen, *at;
   SumRow          *sum;     /* [pairs not below the diagonal][size] */
   PetscReal       *whole;   /* [pairs][size*size]: of blocks that are not symmetric; NULL: there are none */
+  PetscInt        *column;  /* of each node of the matrix: pair of its column in the last row of theirs that has it */
   PetscBool        uneven;  /* such a block was added */
   PetscInt        *coupled; /* room for the result of BlockMatrixGetCoupled() */
   PetscBool        transposed; /* the blocks are multiplied transposed */
@@ -138,6 +139,7 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscCall(PetscFree2((*blocks)->seen, (*blocks)->at));
   PetscCall(PetscFree((*blocks)->sum));
   PetscCall(PetscFree((*blocks)->whole));
+  PetscCall(PetscFree((*blocks)->column));
   PetscCall(PetscFree((*blocks)->coupled));
   PetscCall(NodeMatrixDestroy(&(*blocks)->matrix));
   PetscCall(PetscFree(*blocks));
@@ -521,6 +523,7 @@ static PetscErrorCode BlockMatrixCreateMat(BlockMatrix blocks, PetscInt rows)
   PetscCall(NodeMatrixJoin(blocks->matrix, NULL));
   PetscCall(PetscFree(blocks->sum));
   PetscCall(PetscFree(blocks->whole));
+  PetscCall(PetscFree(blocks->column));
   PetscCall(PetscFree(blocks->coupled));
   PetscCall(PetscMalloc1(blocks->above[blocks->own.n_nodes] * blocks->size, &blocks->sum));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -763,8 +766,12 @@ static PetscErrorCode TakeUneven(BlockMatrix blocks)
   const PetscInt n = blocks->own.pair_ptr[blocks->own.n_nodes] * blocks->size * blocks->size;
 
   PetscFunctionBeginUser;
-  if (!blocks->whole) PetscCall(PetscMalloc1(n, &blocks->whole));
+  if (!blocks->whole) {
+    PetscCall(PetscMalloc1(n, &blocks->whole));
+    PetscCall(PetscMalloc1(blocks->own.n_nodes, &blocks->column));
+  }
   if (!blocks->uneven) PetscCall(PetscArrayzero(blocks->whole, n));
+  for (PetscInt r = 0; r < blocks->own.n_nodes && !blocks->uneven; r++) blocks->column[r] = -1;
   blocks->uneven = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -798,15 +805,15 @@ PetscErrorCode BlockMatrixAddRows(BlockMatrix blocks, int list, PetscInt n_rows,
     const PetscInt r = number[row[i]];
 
     if (r < 0) continue;
+    for (PetscInt k = ptr[r]; k < ptr[r + 1]; k++) blocks->column[blocks->own.pair[k]] = k;
     for (PetscInt j = 0; j < n; j++) {
-      const PetscInt c = number[node[j]];
+      const PetscInt c = number[node[j]], k = c < 0 ? -1 : blocks->column[c];
       PetscReal     *to;
-      PetscInt       k;
 
       if (c < 0) continue;
-      PetscCall(PetscFindInt(c, ptr[r + 1] - ptr[r], &blocks->own.pair[ptr[r]], &k));
-      PetscCheck(k >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "a block couples nodes that no named one does");
-      to = &blocks->whole[(ptr[r] + k) * size * size];
+      PetscCheck(k >= ptr[r] && k < ptr[r + 1], PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+                 "a block couples nodes that no named one does");
+      to = &blocks->whole[k * size * size];
       for (int d = 0; d < size; d++)
         for (int e = 0; e < size; e++) to[d * size + e] += value[(i * size + d) * n * size + j * size + e];
     }

@@ -492,6 +492,35 @@ static PetscErrorCode NeighbourListsAddQuadraturePoints(ContactSearch s, Neighbo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds the reference position of fit point p. */
+static void PlacePoint(ContactSearch s, NeighbourLists lists, PetscInt p)
+{
+  const SurfaceImage *image = &s->images[lists->point_image[p]];
+  const int           dim   = lists->dim;
+
+  PointMap(s, lists, p, lists->X, &lists->point_X[p * dim]);
+  for (int d = 0; d < dim; d++)
+    lists->point_X[p * dim + d] += image->shift[d] * (d == 0 && lists->point_cosine ? lists->point_cosine[p] : 1) +
+                                   lists->point_offset[p * dim + d];
+}
+
+/* Notes where the faces live whose quadrature points have held offsets. Those of a rigid tool never change. */
+static PetscErrorCode NoteHeld(ContactSearch s, NeighbourLists lists, const SearchField *field)
+{
+  PetscFunctionBeginUser;
+  if (!s->offset || !s->fit->integral || s->master->rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  lists->n_held = field->n_candidates;
+  PetscCall(PetscMalloc2(lists->n_held + 1, &lists->first_held, lists->n_held, &lists->home_held));
+  for (PetscInt c = 0; c < lists->n_held; c++) {
+    const FaceRecord *record = &field->records[field->candidates[c].record];
+
+    lists->first_held[c] = field->candidates[c].first;
+    lists->home_held[c]  = (PetscSFNode){record->home, record->home_face};
+  }
+  lists->first_held[lists->n_held] = lists->n_points; /* quadrature points are the last ones */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   NeighbourListsCreatePoints - numbers the points that the candidates use and writes their maps.
 
@@ -525,6 +554,7 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
   PetscCall(NeighbourListsAllocatePoints(lists, points, entries, s->fit->revolved));
   NeighbourListsAddNodePoints(s, lists, field, number);
   if (s->fit->integral) PetscCall(NeighbourListsAddQuadraturePoints(s, lists, field));
+  PetscCall(NoteHeld(s, lists, field));
   for (PetscInt c = 0; c < field->n_candidates; c++) {
     Candidate *candidate = &field->candidates[c];
 
@@ -538,13 +568,8 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
   }
   PetscCall(PetscMalloc2(lists->n_points * dim, &lists->point_X, lists->n_points * dim, &lists->point_u));
   for (PetscInt p = 0; p < lists->n_points; p++) {
-    const SurfaceImage *image = &s->images[lists->point_image[p]];
-
-    PointMap(s, lists, p, lists->X, &lists->point_X[p * dim]);
+    PlacePoint(s, lists, p);
     PointMap(s, lists, p, lists->u, &lists->point_u[p * dim]);
-    for (int d = 0; d < dim; d++)
-      lists->point_X[p * dim + d] += image->shift[d] * (d == 0 && lists->point_cosine ? lists->point_cosine[p] : 1) +
-                                     lists->point_offset[p * dim + d];
     if (lists->point_hoop) lists->point_hoop[p] *= lists->point_X[p * dim] + lists->point_u[p * dim];
   }
   PetscCall(PetscFree(number));
@@ -652,6 +677,15 @@ static PetscErrorCode TakeSlaveMaps(ContactSearch s, NeighbourLists lists)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds the reference position of slave point q. */
+static void PlaceSlave(ContactSearch s, NeighbourLists lists, PetscInt q)
+{
+  const int dim = lists->dim;
+
+  SlaveMap(s, lists, q, lists->X, &lists->slave_X[q * dim]);
+  for (int d = 0; d < dim; d++) lists->slave_X[q * dim + d] += lists->slave_offset[q * dim + d];
+}
+
 /*@
   NeighbourListsCreateSlaves - makes the slave points of the lists and allocates what the lists hold for each of them.
 
@@ -687,10 +721,81 @@ PetscErrorCode NeighbourListsCreateSlaves(ContactSearch s, NeighbourLists lists)
   else
     PetscCall(TakeSlaveShapes(lists, slaves));
   for (PetscInt q = 0; q < n; q++) {
-    SlaveMap(s, lists, q, lists->X, &lists->slave_X[q * dim]);
+    PlaceSlave(s, lists, q);
     SlaveMap(s, lists, q, lists->u, &lists->slave_u[q * dim]);
-    for (int d = 0; d < dim; d++) lists->slave_X[q * dim + d] += lists->slave_offset[q * dim + d];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fetches the offsets of the listed faces from where these live, and gives them to fit points. */
+static PetscErrorCode TakePointOffsets(ContactSearch s, NeighbourLists lists, PetscBool *changed)
+{
+  const int    dim = lists->dim;
+  PetscSF      faces;
+  MPI_Datatype block;
+  PetscReal   *arrived;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(lists->n_held * FACE_RULE_POINTS * dim, &arrived));
+  PetscCallMPI(MPI_Type_contiguous(FACE_RULE_POINTS * dim, MPIU_REAL, &block));
+  PetscCallMPI(MPI_Type_commit(&block));
+  PetscCall(PetscSFCreate(s->mesh->comm, &faces));
+  PetscCall(PetscSFSetGraph(faces, s->master->n_faces, lists->n_held, NULL, PETSC_OWN_POINTER, lists->home_held,
+                            PETSC_COPY_VALUES));
+  PetscCall(PetscSFBcastBegin(faces, block, s->offset, arrived, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(faces, block, s->offset, arrived, MPI_REPLACE));
+  PetscCall(PetscSFDestroy(&faces));
+  PetscCallMPI(MPI_Type_free(&block));
+  for (PetscInt f = 0; f < lists->n_held; f++) {
+    for (PetscInt p = lists->first_held[f]; p < lists->first_held[f + 1]; p++) {
+      const int        q      = (int)(lists->point_key[p] / RING_KEYS % FACE_RULE_POINTS);
+      const PetscReal *sign   = s->images[lists->point_image[p]].sign;
+      PetscReal       *offset = &lists->point_offset[p * dim], before[3];
+
+      PetscCall(PetscArraycpy(before, offset, dim));
+      for (int d = 0; d < dim; d++) offset[d] = sign[d] * arrived[(f * FACE_RULE_POINTS + q) * dim + d];
+      if (lists->point_cosine) offset[0] *= lists->point_cosine[p];
+      for (int d = 0; d < dim; d++) *changed = (PetscBool)(*changed || offset[d] != before[d]);
+      PlacePoint(s, lists, p);
+    }
+  }
+  PetscCall(PetscFree(arrived));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  NeighbourListsTakeOffsets - gives slave points and fit points the held offsets of now, while the lists stay as they
+  are.
+
+  Collective
+
+  Input Parameters:
++ s     - the search; its slave points have their offsets
+- lists - the lists
+
+  Output Parameter:
+. changed - the same on all ranks: some offset is another one, so that every gap is to be found anew
+
+  Note:
+  Frames, supports and listed points do not follow, as they do not follow the nodes either.
+@*/
+PetscErrorCode NeighbourListsTakeOffsets(ContactSearch s, NeighbourLists lists, PetscBool *changed)
+{
+  const PetscInt n = lists->n_slaves * lists->dim;
+  int            any;
+
+  PetscFunctionBeginUser;
+  *changed = PETSC_FALSE;
+  if (s->offset && s->fit->integral && !s->master->rigid) PetscCall(TakePointOffsets(s, lists, changed));
+  for (PetscInt i = 0; i < n && !s->slaves->maps.ptr; i++) {
+    *changed               = (PetscBool)(*changed || lists->slave_offset[i] != s->slaves->offset[i]);
+    lists->slave_offset[i] = s->slaves->offset[i];
+  }
+  for (PetscInt q = 0; q < lists->n_slaves; q++) PlaceSlave(s, lists, q);
+  any = *changed;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, s->mesh->comm));
+  *changed = any ? PETSC_TRUE : PETSC_FALSE;
+  if (any) lists->made = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -964,6 +1069,7 @@ PetscErrorCode NeighbourListsDestroy(NeighbourLists *lists)
   PetscCall(PetscFree(l->point_side));
   if (l->point_cosine) PetscCall(PetscFree2(l->point_cosine, l->point_hoop));
   PetscCall(PetscFree2(l->point_X, l->point_u));
+  PetscCall(PetscFree2(l->first_held, l->home_held));
   PetscCall(PetscFree5(l->slave_ptr, l->slave_node, l->slave_side, l->slave_S, l->slave_offset));
   PetscCall(PetscFree3(l->slave_X, l->slave_u, l->slave_normal));
   PetscCall(PetscFree6(l->list_ptr, l->facet_ptr, l->kappa, l->nearest, l->share, l->averse));

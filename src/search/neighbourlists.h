@@ -3,7 +3,8 @@
    which it is measured.
 
    SearchLists() (search.h) makes lists, and NeighbourListsDestroy() frees them. NeighbourListsUpdate() moves the
-   positions while the lists stay. NeighbourListsRelative() gives a point as a slave point sees it.
+   positions while the lists stay, and NeighbourListsTakeOffsets() gives the points other offsets.
+   NeighbourListsRelative() gives a point as a slave point sees it.
    NeighbourListsBroadcast() and NeighbourListsReduce() take values from the mesh's nodes to the contact nodes and
    back. NeighbourListsSlip() tells how far a slave point has slid since the lists were made. NeighbourListsOpposed()
    tells how well a slave point's normal opposes another one. */
@@ -50,6 +51,10 @@ typedef struct {
   long      *point_key; /* rank-independent: the node or quadrature point, the image, the place on a ring */
   PetscReal *point_cosine, *point_hoop; /* of its angle; distance along the hoop (length). NULL: there are no rings */
   PetscReal *point_X, *point_u;         /* n_points*dim */
+  /* Faces whose quadrature points have held offsets that may change: the fit points of face i are first_held[i] to
+     first_held[i + 1] - 1, and home_held[i] says where the face lives. */
+  PetscInt     n_held, *first_held;
+  PetscSFNode *home_held;
 
   PetscInt   n_slaves;               /* slave points, in the order in which they were given */
   PetscInt  *slave_ptr, *slave_node; /* the nodes of a slave point's own face come first, as in SlavePoints */
@@ -89,6 +94,7 @@ typedef struct {
 
 PetscErrorCode NeighbourListsDestroy(NeighbourLists *);
 PetscErrorCode NeighbourListsUpdate(ContactSearch, NeighbourLists, const PetscReal *u, PetscReal t, PetscBool *moved);
+PetscErrorCode NeighbourListsTakeOffsets(ContactSearch, NeighbourLists, PetscBool *changed);
 void           NeighbourListsRelative(NeighbourLists, PetscInt q, PetscInt p, PetscReal *x);
 PetscInt       NeighbourListsAlikeEnd(NeighbourLists, PetscInt p);
 PetscReal      NeighbourListsNearestSize(NeighbourLists, PetscInt q);

@@ -355,20 +355,16 @@ static PetscErrorCode OffsetsAt(Offsets o, const PetscReal *u, PetscReal t, Pets
 . t      - its load parameter
 - t_next - load parameter at the end of the step
 
-  Output Parameter:
-. changed - set to PETSC_TRUE if the offsets of this rank were different before, else left as it is
-
   Note:
   A step that is tried again starts from the same t and finds the same offsets. There is no extrapolation past a
   breakpoint of a load history.
 @*/
-PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, PetscReal t_next, PetscBool *changed)
+PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, PetscReal t_next)
 {
   PetscReal ahead = 0;
   PetscBool done;
 
   PetscFunctionBeginUser;
-  if (!o->taken && o->kind != OFFSETS_NONE) *changed = PETSC_TRUE;
   PetscCall(TakeOnce(o, &done));
   if (done) PetscFunctionReturn(PETSC_SUCCESS);
   if (t != o->t_now) {
@@ -382,12 +378,7 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
   PetscCall(OffsetsAt(o, u, t, o->now));
   /* Past a breakpoint the loads take another direction. */
   if (o->t_before >= 0 && !SceneBreaks(o->search->scene, t)) ahead = (t_next - t) / (t - o->t_before);
-  for (PetscInt i = 0; i < o->n; i++) {
-    const PetscReal value = o->now[i] + ahead * (o->now[i] - o->before[i]);
-
-    if (value != o->used[i]) *changed = PETSC_TRUE;
-    o->used[i] = value;
-  }
+  for (PetscInt i = 0; i < o->n; i++) o->used[i] = o->now[i] + ahead * (o->now[i] - o->before[i]);
   PetscCall(PetscArraycpy(o->held, o->used, o->n));
   o->replaced = o->turning = PETSC_FALSE;
   o->turns    = 0;

@@ -241,6 +241,7 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
 {
   PetscFunctionBeginUser;
   model->work->unsettled = PETSC_FALSE;
+  model->work->held      = PETSC_TRUE;
   if (model->work->looked_ahead)
     PetscCall(ModelTakePart(model));
   else
@@ -292,9 +293,31 @@ static PetscErrorCode ModelLag(Model model, PetscInt times, PetscReal *lag)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves with frozen contact lists until the lists hold at the solution. Where offsets lag, lists mostly change after
-   the first solution. Solutions are then found loosely, until lists hold at one of them; from there the solve goes on
-   to the tolerance. Not so with friction, as what sticks and what slips is not known before. */
+/* Says whether the offsets of contact lag and solutions without friction may be found loosely. */
+static PetscBool ModelLags(Model model)
+{
+  return (PetscBool)(model->contact && ContactOffsetsLag(model->contact) && !ContactHasFriction(model->contact));
+}
+
+/* Says whether solutions are found loosely at first, because lists will most likely change at the first one: offsets
+   lag, and they did not hold at the first solution of the step before, or are not extrapolated, or are to lag less than
+   usual. Not so with friction, as what sticks and what slips is not known before. */
+static PetscErrorCode ModelSolvesLoosely(Model model, PetscBool *loosely)
+{
+  const ModelWork *work = model->work;
+  PetscReal        lag;
+
+  PetscFunctionBeginUser;
+  *loosely = PETSC_FALSE;
+  if (!ModelLags(model)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelLag(model, 0, &lag));
+  *loosely = (PetscBool)(!work->accepted_held || SceneBreaks(model->scene, work->accepted_t) || lag < 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves with frozen contact lists until the lists hold at the solution. Where they will most likely change after the
+   first one, solutions are found loosely, until lists hold at one of them; from there the solve goes on to the
+   tolerance. */
 static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
   ModelWork *work = model->work;
@@ -304,16 +327,16 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 
   PetscFunctionBeginUser;
   work->renewed = 0;
-  work->loosely =
-    (PetscBool)(model->contact && ContactOffsetsLag(model->contact) && !ContactHasFriction(model->contact));
+  PetscCall(ModelSolvesLoosely(model, &work->loosely));
   while (!hold && report->result == SOLVE_CONVERGED) {
-    work->left = PETSC_FALSE;
-    before     = report->newton;
+    work->left   = PETSC_FALSE;
+    work->nearly = -1;
+    before       = report->newton;
     PetscCall(ModelNewton(model, report));
     work->begun = 0;
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     work->renewed += work->left;
-    if (!first && !work->left) first = report->newton;
+    if (!first && !work->left) first = ModelLags(model) && work->nearly >= 0 ? before + work->nearly : report->newton;
     PetscCall(ModelLag(model, times, &lag));
     PetscCall(ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left, lag, &hold));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
@@ -325,6 +348,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
       continue;
     }
     report->regathered++;
+    work->held = PETSC_FALSE;
     if (!work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
     if (!work->left && report->result == SOLVE_CONVERGED) PetscCall(ModelFollowLists(model, report));
   }

@@ -254,6 +254,7 @@ PetscErrorCode ModelAccept(Model model)
   work->accepted_t = model->t;
   work->settled = work->searched = PETSC_FALSE;
   if (stepped) work->accepted_start = work->start;
+  if (stepped) work->accepted_held = work->held;
   if (work->extrapolation) PetscCall(ExtrapolationAdd(work->extrapolation, model->u, model->t));
   if (work->extrapolation && SceneBreaks(model->scene, model->t)) PetscCall(ExtrapolationForget(work->extrapolation));
   work->looked_ahead = PETSC_FALSE;
@@ -318,6 +319,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
 {
   const Mesh mesh = model->mesh;
   ModelWork *work = model->work;
+  PetscInt   held = work->accepted_held;
   Hdf5Table  nodes;
   PetscBool  ok;
 
@@ -329,6 +331,8 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscCall(ArchiveReals(archive, "model/t", 1, &work->accepted_t));
   PetscCall(ArchiveReals(archive, "model/rate", 1, &work->rate));
   PetscCall(ArchiveReals(archive, "model/start", 1, &work->accepted_start));
+  PetscCall(ArchiveIntegers(archive, "model/held", 1, &held));
+  work->accepted_held = (PetscBool)held;
   PetscCall(ArchiveReals(archive, "model/force_scale", 1, &model->problem->force_so_far));
   if (ArchiveLoads(archive)) {
     PetscCall(PetscArraycpy(model->u, work->accepted_u, mesh->n_nodes * mesh->dim));

@@ -328,6 +328,9 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   ModelChooseObjective(model, fnorm, NAN);
   tolerance = PetscMax(model->scene->solver.tolerance * scale, round_off);
   allowed   = tolerance;
+  if (model->work->nearly < 0 && !model->work->soft && converged &&
+      fnorm <= PetscMax(NEWTON_LOOSELY * scale, tolerance))
+    model->work->nearly = it;
   if (model->work->loosely) allowed = PetscMax(NEWTON_LOOSELY * scale, tolerance);
   if (model->work->soft) allowed = PetscMax(NEWTON_SOFT_ENOUGH * scale, round_off);
   model->work->balanced = fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;

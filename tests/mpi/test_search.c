@@ -276,6 +276,41 @@ static void Bend(const double X[2], double x[2])
   if (X[1] < 1.05) x[1] -= bend * PetscSqr(X[0] - 4) / (2 * RADIUS);
 }
 
+/* Lists that were made at a state take offsets that are extrapolated from there: they stay, and their points are where
+   those of a new search are. */
+static void test_extrapolated(void **state)
+{
+  NeighbourLists lists;
+  PetscReal     *before, *X, most = 0;
+  PetscInt       n, m;
+
+  (void)state;
+  Create(ToCircle, "", ", smoother: diffuse, formulation: surface_to_surface, offset: held");
+  OK(ContactGather(parts.problem->contact, parts.u, 0, 0, 0));
+  bend = 0.1;
+  PartsMove(&parts, Bend);
+  OK(ContactGather(parts.problem->contact, parts.u, 0.25, 0.25, 0));
+  lists = Pair()->lists;
+  n     = lists->n_points * 2;
+  m     = lists->n_slaves * 2;
+  OK(PetscMalloc2(n, &before, n + m, &X));
+  OK(PetscArraycpy(before, lists->point_X, n));
+  OK(ContactGather(parts.problem->contact, parts.u, 0.25, 0.5, 0));
+  assert_ptr_equal(Pair()->lists, lists);
+  OK(PetscArraycpy(X, lists->point_X, n));
+  OK(PetscArraycpy(X + n, lists->slave_X, m));
+  for (PetscInt i = 0; i < n; i++) most = PetscMax(most, PetscAbsReal(X[i] - before[i]));
+  OK(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
+  assert_true(most > 1e-4 * PetscSqr(Size) / RADIUS);
+  OK(ContactListsRenew(parts.problem->contact, parts.u, 0.25, 0));
+  assert_ptr_not_equal(Pair()->lists, lists);
+  assert_int_equal(Pair()->lists->n_points * 2, n);
+  for (PetscInt i = 0; i < n; i++) assert_near(Pair()->lists->point_X[i], X[i], 1e-14);
+  for (PetscInt i = 0; i < m; i++) assert_near(Pair()->lists->slave_X[i], X[n + i], 1e-14);
+  OK(PetscFree2(before, X));
+  PartsDestroy(&parts);
+}
+
 /* Sum of the master's offsets over all ranks, along y. */
 static double OffsetsSum(void)
 {
@@ -332,7 +367,8 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_lists),    cmocka_unit_test(test_nearest),
                                      cmocka_unit_test(test_distance), cmocka_unit_test(test_hold),
                                      cmocka_unit_test(test_reach),    cmocka_unit_test(test_free_edges),
-                                     cmocka_unit_test(test_offsets),  cmocka_unit_test(test_damped)};
+                                     cmocka_unit_test(test_offsets),  cmocka_unit_test(test_extrapolated),
+                                     cmocka_unit_test(test_damped)};
 
   if (PartsStart(&argc, &argv)) return 1;
   return PartsEnd(cmocka_run_group_tests(tests, NULL, NULL));

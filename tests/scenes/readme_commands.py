@@ -112,6 +112,8 @@ FULL = {
     f"{PYTHON} scripts/thin_wall_table.py --record runs/records/thin_walls.csv": table("thin_wall_table", "cook"),
     f"{PYTHON} scripts/smoother_table.py --burnish build/burnish --repeats 5":
     f"{PYTHON} scripts/smoother_table.py --table runs/records/smoothers.csv",
+    f"{PYTHON} scripts/surface_table.py --burnish build/burnish":
+    f"{PYTHON} scripts/surface_table.py --table runs/records/surface.csv",
     f"{PYTHON} scripts/augment_table.py --record runs/records/augment.csv": table("augment_table", "rings"),
     f"{PYTHON} scripts/paper.py -j 1 --record runs/records/paper":
     f"{PYTHON} scripts/paper.py cup_flattening -j 1 --quick {BURNISH} --out $WORK/out/paper",

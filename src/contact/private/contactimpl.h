@@ -115,6 +115,13 @@ typedef struct {
   ContactWork *work;   /* shared by all pairs */
 } ContactPair;
 
+/* How contact nodes slide a term: the shares of their motion, 3 of each, and the unit normal across which it does not
+   slide. */
+typedef struct {
+  PetscInt   n, *node;
+  PetscReal *share, normal[3];
+} FrictionSlide;
+
 /* First variations of the gaps of some terms over the free dofs. Vector k has the entries ptr[k] to ptr[k + 1] - 1, in
    which a row may occur more than once. */
 typedef struct {
@@ -244,7 +251,9 @@ PetscErrorCode FrictionResidual(ContactPair *, PetscReal t, PetscReal *values);
 PetscErrorCode FrictionNodalForces(const ContactPair *, const PetscReal *force, PetscReal *on_node);
 PetscErrorCode FrictionShow(const ContactPair *, const PetscReal *area, ContactNodes *);
 /* frictionstep.c */
-PetscErrorCode FrictionTermMotion(const ContactPair *, PetscInt term, const PetscReal *values, PetscReal motion[3]);
+PetscErrorCode FrictionTermSlide(const ContactPair *, PetscInt term, FrictionSlide *);
+PetscErrorCode FrictionSlideFree(FrictionSlide *);
+void           FrictionSlideMotion(const FrictionSlide *, int dim, const PetscReal *values, PetscReal motion[3]);
 PetscErrorCode FrictionTermForces(const ContactPair *, PetscInt term, const PetscReal traction[3], PetscReal *values);
 PetscErrorCode FrictionStepTerm(const ContactPair *, PetscInt term, PetscReal t, ActiveSetFriction *,
                                 PetscReal tangent[2][3]);

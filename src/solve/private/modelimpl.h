@@ -64,6 +64,7 @@ typedef struct _n_ModelWork {
   Vec        accepted_x; /* free displacements (length) */
   PetscReal  accepted_t;
   PetscReal  accepted_start; /* residual norm where Newton's method started in that step; 0: unknown */
+  PetscBool  accepted_held;  /* contact lists held at the first solution of that step */
   PetscReal  rate;           /* largest displacement per unit of t in that step */
   PetscBool  settled;        /* bodies were moved into contact there; always at t = 0 */
   PetscBool  searched;       /* it was tried to move them */
@@ -82,6 +83,7 @@ typedef struct _n_ModelWork {
   /* The load step at hand */
   PetscBool adrift;       /* a body that only contact could hold meets none on the way of its load */
   PetscBool extrapolated; /* the prediction started from the extrapolated state */
+  PetscBool held;         /* no contact lists were replaced at a solution */
   PetscBool unsettled;    /* the contact at the end of the last linear step was not found */
   PetscReal start;        /* residual norm where Newton's method started; 0: it has not started */
   PetscReal energy;       /* the last energy that the line search evaluated; 0: none */
@@ -102,6 +104,7 @@ typedef struct _n_ModelWork {
   PetscBool   stalled;            /* with friction: the last LINE_MEMORY iterations have hardly lowered the residual */
   PetscBool   soft;               /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
   PetscBool   loosely;            /* contact lists are checked after the solve, before it goes on to the tolerance */
+  PetscInt    nearly;             /* iterations to the first iterate that was solved for loosely; -1: none was yet */
   PetscInt    begun;              /* iterations before, of a solve that goes on */
   PetscBool   balanced;           /* the residual of the iterate is within the tolerance */
   PetscBool   left;               /* the solve ended because a slave point slid out of its lists */
