@@ -6,7 +6,8 @@
 /* Says whether the nodes of the cells of a type in a body have pressures. */
 static PetscBool HasPressures(Scene scene, int body, ElementType type)
 {
-  const KernelCase kernel = {.type = type, .formulation = scene->bodies[body].formulation};
+  const KernelCase kernel = {
+    .type = type, .law = scene->bodies[body].material.law, .formulation = scene->bodies[body].formulation};
 
   return (PetscBool)(ElementNodes(&kernel) > ElementGet(type)->nodes);
 }
@@ -87,8 +88,8 @@ PetscErrorCode PressureNodesConstrain(Mesh mesh, Scene scene, PetscBool *constra
   if (!mesh->has_pressures) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(mesh->n_nodes, &has));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
-    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
-      if (CellHasPressureNodes(mesh, scene, c)) has[PressureNodeOf(mesh, mesh->cell_nodes[k])] = 1;
+    for (int k = 0; k < ElementGet(mesh->cell_type[c])->corners && CellHasPressureNodes(mesh, scene, c); k++)
+      has[PressureNodeOf(mesh, mesh->cell_nodes[mesh->cell_ptr[c] + k])] = 1;
   PetscCall(MeshSumNodes(mesh, 1, has));
   for (PetscInt i = 0; i < mesh->n_pressure_nodes; i++) {
     const PetscInt node = PressureNodeOf(mesh, i);
