@@ -35,7 +35,8 @@ static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
                              .kinematics  = scene->kinematics,
                              .law         = material.law,
                              .formulation = scene->bodies[body].formulation,
-                             .n_constants = material.n_constants};
+                             .n_constants = material.n_constants,
+                             .condensed   = scene->bodies[body].condensed};
 
   if (scene->bodies[body].chosen && !ElementKernelExists(&kernel)) kernel.formulation = FORMULATION_FULL;
   return kernel;
@@ -45,7 +46,7 @@ static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
 static PetscBool SameKernel(const KernelCase *a, const KernelCase *b)
 {
   return a->type == b->type && a->law == b->law && a->formulation == b->formulation &&
-             a->n_constants == b->n_constants &&
+             a->n_constants == b->n_constants && a->condensed == b->condensed &&
              (a->plastic ? a->plastic->hardening : NULL) == (b->plastic ? b->plastic->hardening : NULL)
            ? PETSC_TRUE
            : PETSC_FALSE;

@@ -96,13 +96,13 @@ static BatchFn *const full_batches[ELEMENT_TYPES][2] = {
   [ELEMENT_HEX27] = {BatchHex27, NULL},
 };
 
-/* The kernels of mixed elements whose nodes have pressures, NULL where there are none. Plastic elements of second order
-   condense their pressures. */
+/* The kernels of mixed elements whose nodes have pressures, NULL where there are none. Elements of second order condense
+   their pressures with plastic laws, and where the case says so. */
 static BatchFn *const *NodalPressureBatches(const KernelCase *kernel)
 {
   if (kernel->formulation != FORMULATION_MIXED) return NULL;
   if (nodal_pressure_batches[kernel->type][0]) return nodal_pressure_batches[kernel->type];
-  if (!taylor_hood_batches[kernel->type][0] || MaterialGetLaw(kernel->law)->plastic) return NULL;
+  if (kernel->condensed || MaterialGetLaw(kernel->law)->plastic || !taylor_hood_batches[kernel->type][0]) return NULL;
   return taylor_hood_batches[kernel->type];
 }
 
@@ -388,8 +388,8 @@ int ElementPressures(const KernelCase *kernel)
 }
 
 /*@
-  ElementNodes - returns the number of nodes that a kernel has: those of the element, and its corners once more where they have
-  pressures.
+  ElementNodes - returns the number of nodes that a kernel has: those of the element, and its corners once more where
+  they have pressures.
 
   Not collective
 
@@ -397,8 +397,8 @@ int ElementPressures(const KernelCase *kernel)
 . kernel - element type and formulation
 
   Note:
-  The nodes of the element come first. Those of the corners' pressures follow in the same order; nodalpressurekernel.c tells what
-  their displacements are.
+  The nodes of the element come first. Those of the corners' pressures follow in the same order; nodalpressurekernel.c
+  tells what their displacements are.
 @*/
 int ElementNodes(const KernelCase *kernel)
 {

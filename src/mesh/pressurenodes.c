@@ -1,4 +1,4 @@
-/* Nodes for the pressures of mixed triangles and tetrahedra of first order, see pressurenodes.h. */
+/* Nodes for the pressures of mixed triangles and tetrahedra, see pressurenodes.h. */
 #include "kernels/elementkernel.h"
 #include "mesh/meshdofs.h"
 #include "pressurenodesimpl.h"
@@ -6,10 +6,25 @@
 /* Says whether the nodes of the cells of a type in a body have pressures. */
 static PetscBool HasPressures(Scene scene, int body, ElementType type)
 {
-  const KernelCase kernel = {
-    .type = type, .law = scene->bodies[body].material.law, .formulation = scene->bodies[body].formulation};
+  const KernelCase kernel = {.type        = type,
+                             .law         = scene->bodies[body].material.law,
+                             .formulation = scene->bodies[body].formulation,
+                             .condensed   = scene->bodies[body].condensed};
 
   return (PetscBool)(ElementNodes(&kernel) > ElementGet(type)->nodes);
+}
+
+/* Condenses pressures where the linear solver iterates, which is not for tangents of a saddle. */
+static PetscErrorCode Condense(Scene scene, const RootMesh *root, Mesh mesh)
+{
+  PetscBool condensed = (PetscBool)(scene->solver.type == SOLVER_ITERATIVE);
+
+  PetscFunctionBeginUser;
+  if (root && scene->solver.type == SOLVER_AUTO && mesh->dim == 3 && mesh->dim * root->n_nodes > SOLVER_DIRECT_DOFS)
+    condensed = PETSC_TRUE;
+  PetscCallMPI(MPI_Bcast(&condensed, 1, MPIU_BOOL, 0, mesh->comm));
+  for (int b = 0; b < scene->n_bodies; b++) scene->bodies[b].condensed = condensed;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -18,13 +33,14 @@ static PetscBool HasPressures(Scene scene, int body, ElementType type)
   Collective
 
   Input Parameters:
-+ scene - its bodies
++ scene - its bodies, of which condensed is set
 . root  - on rank 0, NULL on other ranks
 - mesh  - has_pressures is set
 @*/
 PetscErrorCode PressureNodesExist(Scene scene, const RootMesh *root, Mesh mesh)
 {
   PetscFunctionBeginUser;
+  PetscCall(Condense(scene, root, mesh));
   for (PetscInt c = 0; root && c < root->n_cells && !mesh->has_pressures; c++)
     mesh->has_pressures = HasPressures(scene, root->cell_body[c], root->cell_block[c]->element->type);
   PetscCallMPI(MPI_Bcast(&mesh->has_pressures, 1, MPIU_BOOL, 0, mesh->comm));
@@ -74,7 +90,7 @@ PetscBool CellHasPressureNodes(Mesh mesh, Scene scene, PetscInt cell)
   Collective
 
   Input Parameters:
-+ mesh  - the mesh
++ mesh  - the mesh, of which saddle is set
 - scene - its bodies
 
   Output Parameter:
@@ -95,7 +111,9 @@ PetscErrorCode PressureNodesConstrain(Mesh mesh, Scene scene, PetscBool *constra
     const PetscInt node = PressureNodeOf(mesh, i);
 
     for (int d = 0; d < mesh->dim; d++) constrained[node * mesh->dim + d] = (PetscBool)(d > 0 || has[node] == 0);
+    mesh->saddle = (PetscBool)(mesh->saddle || has[node] > 0);
   }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mesh->saddle, 1, MPIU_BOOL, MPI_LOR, mesh->comm));
   PetscCall(PetscFree(has));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
