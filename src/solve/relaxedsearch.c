@@ -234,10 +234,11 @@ static PetscErrorCode Backtrack(const Search *s)
 
 /* Takes a step over which the energy falls by -rise. One that led uphill and was turned round leads away from a saddle.
    Close to it the step is tiny and the way down is long. Without an energy such a step is doubled as long as the work
-   rises and cells do not turn far. */
+   rises and cells do not turn far. Only the part that leads downhill is: what mends the volume is right as it is. */
 static PetscErrorCode Descend(const Search *s, PetscReal rise)
 {
-  PetscReal turn, next, lambda = 1;
+  const Vec rest = s->model->work->rest;
+  PetscReal turn, next, length = 1;
   PetscBool ok = s->model->work->uphill;
 
   PetscFunctionBeginUser;
@@ -246,15 +247,16 @@ static PetscErrorCode Descend(const Search *s, PetscReal rise)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(Turn(s, &turn));
-  while (ok && 2 * lambda * turn <= MODEL_FARTHEST) {
-    PetscCall(Rise(s, 2 * lambda, &next));
+  while (ok && 2 * length * turn <= MODEL_FARTHEST) {
+    PetscCall(VecAXPY(s->y, length, rest));
+    PetscCall(Rise(s, 1, &next));
     ok = (PetscBool)(next < rise);
-    if (!ok) break;
-    PetscCall(Try(s, 2 * lambda, &ok));
+    if (ok) PetscCall(Try(s, 1, &ok));
+    if (!ok) PetscCall(VecAXPY(s->y, -length, rest));
     rise = next;
-    lambda *= ok ? 2 : 1;
+    length *= 2;
   }
-  PetscCall(Take(s, lambda));
+  PetscCall(Take(s, 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -305,10 +307,17 @@ static PetscErrorCode Keep(const Search *s, PetscReal rise, PetscReal slope, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Lets cells turn farther in the next step that is bounded so, after one that turned them by `turn` has paid. */
+static void LengthenBound(RelaxedStep *step, PetscReal turn)
+{
+  step->farthest = PetscMin(MODEL_FARTHEST, PetscMax(step->farthest, SEARCH_GROW * turn));
+}
+
 /* Takes the step as far as cells may turn in it and lists reach, although the energy rises. *taken: it could be. The
    pressures of stiff volumes change along the step as the step's linear problem says, however far it goes, and whether
    it leads to a minimum or away from a saddle. Where the energy falls over the shortened step, the next one may still
-   be judged from its start; not so where there is no energy, and the work on the way tells less. */
+   be judged from its start; not so where there is no energy, and the work on the way tells less. It has paid then: a
+   bound that an earlier step left grows again, or a solve would crawl along a soft motion. */
 static PetscErrorCode Relax(const Search *s, PetscReal rise, PetscReal slope, PetscBool *taken)
 {
   ModelWork *work = s->model->work;
@@ -325,6 +334,8 @@ static PetscErrorCode Relax(const Search *s, PetscReal rise, PetscReal slope, Pe
   if (!*taken) PetscFunctionReturn(PETSC_SUCCESS);
   if (ProblemConservative(s->model->problem) || rise > -SEARCH_FALL * lambda * slope)
     PetscCall(Keep(s, rise, slope, lambda * turn));
+  else
+    LengthenBound(&work->relaxed, lambda * turn);
   work->relaxed.linear = PETSC_TRUE;
   work->uphill         = PETSC_FALSE;
   PetscCall(Take(s, lambda));
@@ -409,7 +420,7 @@ static PetscErrorCode Judge(const Search *s, PetscReal rise)
   if (paid) {
     if (s->model->contact) PetscCall(ContactCycleStart(s->model->work->watch)); /* a lower energy is no repetition */
     step->waits    = PETSC_FALSE;
-    step->farthest = PetscMin(MODEL_FARTHEST, PetscMax(step->farthest, SEARCH_GROW * step->turn));
+    LengthenBound(step, step->turn);
   }
   step->rise = since;
   PetscCall(Take(s, 1));
