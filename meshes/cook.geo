@@ -1,8 +1,7 @@
 // Cook's membrane: a tapered panel, 48 long, 44 high where it is held and 16 where it is loaded. As a solid it is a slice.
 DefineConstant[
   n = {8, Name "elements along each side"}, simplex = {0, Name "1: triangles or tetrahedra"},
-  layers = {0, Name "elements across the slice; 0: plane"}, thick = {4, Name "thickness of the slice"},
-  grading = {1, Name "length of the longest element along a side over that of the shortest, which is at the upper corner that is held"}
+  layers = {0, Name "elements across the slice; 0: plane"}, thick = {4, Name "thickness of the slice"}
 ];
 Point(1) = {0, 0, 0};
 Point(2) = {48, 44, 0};
@@ -14,9 +13,7 @@ Line(3) = {3, 4};
 Line(4) = {4, 1};
 Curve Loop(1) = {1, 2, 3, 4};
 Plane Surface(1) = {1};
-growth = grading^(1 / (n - 1));
-Transfinite Curve{1, -3} = n + 1 Using Progression growth;
-Transfinite Curve{-2, 4} = n + 1 Using Progression growth;
+Transfinite Curve{1 : 4} = n + 1;
 Transfinite Surface{1};
 If (!simplex)
   Recombine Surface{1};

@@ -2,8 +2,7 @@
 DefineConstant[
   n = {4, Name "elements under the punch"}, simplex = {0, Name "1: triangles or tetrahedra"},
   layers = {0, Name "elements across the slice; 0: plane"}, thick = {0.125, Name "thickness of the slice"},
-  edge = {0.5, Name "half of the punch's width"},
-  grading = {1, Name "length of the longest element along a side over that of the shortest, which is at the punch's edge"}
+  edge = {0.5, Name "half of the punch's width"}
 ];
 Point(1) = {0, 0, 0};
 Point(2) = {edge, 0, 0};
@@ -19,9 +18,8 @@ Curve Loop(1) = {1, 7, 5, 6};
 Curve Loop(2) = {2, 3, 4, -7};
 Plane Surface(1) = {1};
 Plane Surface(2) = {2};
-growth = grading^(1 / (n - 1));
-Transfinite Curve{-1, 2, -4, 5} = n + 1 Using Progression growth;
-Transfinite Curve{-3, 6, -7} = 2 * n + 1 Using Progression growth^0.5;
+Transfinite Curve{1, 2, 4, 5} = n + 1;
+Transfinite Curve{3, 6, 7} = 2 * n + 1;
 Transfinite Surface{1, 2};
 If (!simplex)
   Recombine Surface{1, 2};

@@ -14,16 +14,55 @@ static PetscBool HasPressures(Scene scene, int body, ElementType type)
   return (PetscBool)(ElementNodes(&kernel) > ElementGet(type)->nodes);
 }
 
-/* Condenses pressures where the linear solver iterates, which is not for tangents of a saddle. */
-static PetscErrorCode Condense(Scene scene, const RootMesh *root, Mesh mesh)
+/* Says whether two bodies have the same material but for its plasticity. */
+static PetscBool SameMaterial(const Material *a, const Material *b)
 {
-  PetscBool condensed = (PetscBool)(scene->solver.type == SOLVER_ITERATIVE);
+  PetscBool same = (PetscBool)(a->law == b->law && a->n_constants == b->n_constants);
+
+  for (int k = 0; k < a->n_constants && same; k++) same = (PetscBool)(a->constants[k] == b->constants[k]);
+  return same;
+}
+
+/* Condenses the pressures of bodies of different materials that share nodes: their pressures jump there, and unknowns
+   of the nodes would make them continuous. On rank 0. */
+static PetscErrorCode CondenseBonded(Scene scene, const RootMesh *root, int *condensed)
+{
+  int *first; /* the first body with pressures at each node of gmsh; -1: none */
 
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(root->gmsh.n_nodes, &first));
+  for (PetscInt i = 0; i < root->gmsh.n_nodes; i++) first[i] = -1;
+  for (PetscInt c = 0; c < root->n_cells; c++) {
+    const PetscInt *nodes = RootMeshCellNodes(root, c);
+    const int       body  = root->cell_body[c];
+
+    if (!HasPressures(scene, body, root->cell_block[c]->element->type)) continue;
+    for (int k = 0; k < root->cell_block[c]->nodes; k++) {
+      int *other = &first[nodes[k]];
+
+      if (*other < 0) *other = body;
+      if (!SameMaterial(&scene->bodies[*other].material, &scene->bodies[body].material))
+        condensed[*other] = condensed[body] = 1;
+    }
+  }
+  PetscCall(PetscFree(first));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Condenses pressures where the linear solver iterates, which is not for tangents of a saddle, and of bonded bodies. */
+static PetscErrorCode Condense(Scene scene, const RootMesh *root, Mesh mesh)
+{
+  int *condensed, all = scene->solver.type == SOLVER_ITERATIVE;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(scene->n_bodies, &condensed));
   if (root && scene->solver.type == SOLVER_AUTO && mesh->dim == 3 && mesh->dim * root->n_nodes > SOLVER_DIRECT_DOFS)
-    condensed = PETSC_TRUE;
-  PetscCallMPI(MPI_Bcast(&condensed, 1, MPIU_BOOL, 0, mesh->comm));
-  for (int b = 0; b < scene->n_bodies; b++) scene->bodies[b].condensed = condensed;
+    all = 1;
+  if (root) PetscCall(CondenseBonded(scene, root, condensed));
+  for (int b = 0; b < scene->n_bodies && all; b++) condensed[b] = 1;
+  PetscCallMPI(MPI_Bcast(condensed, scene->n_bodies, MPI_INT, 0, mesh->comm));
+  for (int b = 0; b < scene->n_bodies; b++) scene->bodies[b].condensed = condensed[b];
+  PetscCall(PetscFree(condensed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
