@@ -131,20 +131,18 @@ static PetscErrorCode ModelSplitStep(Model model, SNES snes, Vec F, Vec y, Vec z
    energy of displacements. */
 static PetscErrorCode ModelTurnStep(Model model, SNES snes, Vec F, Vec y, PetscReal slope)
 {
-  Vec rest = model->work->rest, z = NULL;
+  Vec z;
 
   PetscFunctionBeginUser;
   if (slope >= 0 || PetscIsInfOrNanReal(slope)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecCopy(y, rest));
   if (model->mesh->saddle) {
     PetscCall(VecDuplicate(y, &z));
     PetscCall(ModelSplitStep(model, snes, F, y, z, &slope));
-    PetscCall(VecAXPY(rest, -1, z));
+    if (slope < 0) PetscCall(VecAXPY(y, -2, z));
     PetscCall(VecDestroy(&z));
     if (slope >= 0) PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(VecScale(rest, -1));
-  PetscCall(VecAXPY(y, 2, rest));
+  PetscCall(VecScale(y, -1));
   model->work->turned++;
   model->work->uphill = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -57,7 +57,6 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(VecDuplicate(model->x, &model->work->look_ahead));
   PetscCall(VecDuplicate(model->x, &model->work->residual));
   PetscCall(VecDuplicate(model->x, &model->work->step));
-  PetscCall(VecDuplicate(model->x, &model->work->rest));
   if (scene->kinematics != KINEMATICS_SMALL || SceneIsPlastic(scene))
     PetscCall(ExtrapolationCreate(mesh, &model->work->extrapolation));
   if (ProblemIsPlastic(model->problem))
@@ -99,7 +98,6 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(VecDestroy(&m->work->look_ahead));
   PetscCall(VecDestroy(&m->work->residual));
   PetscCall(VecDestroy(&m->work->step));
-  PetscCall(VecDestroy(&m->work->rest));
   PetscCall(ProblemDestroy(&m->problem));
   PetscCall(PetscFree2(m->u, m->work->accepted_u));
   PetscCall(PetscFree2(m->work->solved, m->work->from));

@@ -234,11 +234,10 @@ static PetscErrorCode Backtrack(const Search *s)
 
 /* Takes a step over which the energy falls by -rise. One that led uphill and was turned round leads away from a saddle.
    Close to it the step is tiny and the way down is long. Without an energy such a step is doubled as long as the work
-   rises and cells do not turn far. Only the part that leads downhill is: what mends the volume is right as it is. */
+   rises and cells do not turn far. */
 static PetscErrorCode Descend(const Search *s, PetscReal rise)
 {
-  const Vec rest = s->model->work->rest;
-  PetscReal turn, next, length = 1;
+  PetscReal turn, next, lambda = 1;
   PetscBool ok = s->model->work->uphill;
 
   PetscFunctionBeginUser;
@@ -247,16 +246,15 @@ static PetscErrorCode Descend(const Search *s, PetscReal rise)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(Turn(s, &turn));
-  while (ok && 2 * length * turn <= MODEL_FARTHEST) {
-    PetscCall(VecAXPY(s->y, length, rest));
-    PetscCall(Rise(s, 1, &next));
+  while (ok && 2 * lambda * turn <= MODEL_FARTHEST) {
+    PetscCall(Rise(s, 2 * lambda, &next));
     ok = (PetscBool)(next < rise);
-    if (ok) PetscCall(Try(s, 1, &ok));
-    if (!ok) PetscCall(VecAXPY(s->y, -length, rest));
+    if (!ok) break;
+    PetscCall(Try(s, 2 * lambda, &ok));
     rise = next;
-    length *= 2;
+    lambda *= ok ? 2 : 1;
   }
-  PetscCall(Take(s, 1));
+  PetscCall(Take(s, lambda));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

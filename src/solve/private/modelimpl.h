@@ -54,7 +54,6 @@ typedef struct _n_ModelWork {
   PetscBool      ordered;       /* the linear solver has chosen the order of its unknowns */
   Vec            residual;      /* of a trial point, for OBJECTIVE_RESIDUAL */
   Vec            step;          /* the whole step that the line search has got last: from x to x - step (length) */
-  Vec            rest;          /* the part of a step turned round that leads downhill; the step may be longer by it */
   SNESLineSearch backtracking;  /* PETSc's, for steps that are to be shortened */
   ContactCycle   watch;         /* of the contact set; NULL without contact */
   Extrapolation  extrapolation; /* NULL with small kinematics and no plasticity: bodies move along straight lines */
