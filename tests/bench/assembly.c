@@ -131,7 +131,7 @@ static PetscErrorCode Print(ElementType type, const char *what, double microseco
 
 static PetscErrorCode TimeOurs(ElementType type, PetscInt n)
 {
-  const KernelCase kernel = {type, GEOMETRY_SOLID, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_FULL, 0, NULL, 0, 0};
+  const KernelCase kernel = {type, GEOMETRY_SOLID, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_FULL, 0, NULL, 0, 0, 0};
   const struct {
     const char *what;
     PetscErrorCode (*call)(Work *);

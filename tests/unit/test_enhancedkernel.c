@@ -153,7 +153,7 @@ static void CompressedElementsDoNotHourglass(void **state)
     for (int i = 0; i < 6; i++) {
       for (double stretch = 0.95; stretch > (law == MATERIAL_SVK ? 0.6 : 0.45); stretch -= 0.05) {
         KernelCase kernel = {
-          ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, (MaterialLaw)law, FORMULATION_ENHANCED, 0, NULL, 0, 0};
+          ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, (MaterialLaw)law, FORMULATION_ENHANCED, 0, NULL, 0, 0, 0};
         const double plane = LeastHourglass(&kernel, ratios[i % 2], heights[i / 2], stretch);
         double       solid, plain;
 
@@ -172,7 +172,7 @@ static void CompressedElementsDoNotHourglass(void **state)
 static void ModesWithoutRestAreReported(void **state)
 {
   const KernelCase kernel = {
-    ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_ENHANCED, 0, NULL, 0, 0};
+    ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_ENHANCED, 0, NULL, 0, 0, 0};
   double X[MAX_DOFS], u[MAX_DOFS] = {0};
   Result result;
 
