@@ -36,6 +36,7 @@ static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
                              .law         = material.law,
                              .formulation = scene->bodies[body].formulation,
                              .n_constants = material.n_constants,
+                             .condensed   = scene->bodies[body].condensed,
                              .thin        = scene->plane_stress};
 
   if (scene->bodies[body].chosen && !ElementKernelExists(&kernel)) kernel.formulation = FORMULATION_FULL;
@@ -46,7 +47,7 @@ static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
 static PetscBool SameKernel(const KernelCase *a, const KernelCase *b)
 {
   return a->type == b->type && a->law == b->law && a->formulation == b->formulation &&
-             a->n_constants == b->n_constants &&
+             a->n_constants == b->n_constants && a->condensed == b->condensed &&
              (a->plastic ? a->plastic->hardening : NULL) == (b->plastic ? b->plastic->hardening : NULL)
            ? PETSC_TRUE
            : PETSC_FALSE;

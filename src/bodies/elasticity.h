@@ -11,7 +11,7 @@
    them in an iteration of Newton's method, ElasticityAugment() after a solve until the volume is right.
    ElasticityAccept() keeps them with the accepted state, ElasticityRestore() returns to those. ElasticityKeep() and
    ElasticityReturn() do so for states on the way.
-   ElasticityFindEnclosed() comes before all these: it finds the bodies whose level of pressure is free.
+   ElasticitySetEnclosed() comes before all these: it tells the bodies whose level of pressure is free.
 
    Plastic bodies have an accepted state at each quadrature point. All evaluations start from it;
    ElasticityAcceptPlastic() alone changes it. ElasticityArchivePlastic() saves and loads it. */
@@ -75,7 +75,7 @@ PetscErrorCode ElasticityKeep(Elasticity, VolumesKept);
 PetscErrorCode ElasticityReturn(Elasticity, VolumesKept);
 PetscErrorCode ElasticityArchive(Elasticity, Archive);
 PetscBool      ElasticityAugments(Elasticity);
-PetscErrorCode ElasticityFindEnclosed(Elasticity, Scene, const PetscBool *prescribed);
+PetscErrorCode ElasticitySetEnclosed(Elasticity, Scene, const PetscBool *prescribed);
 PetscBool      ElasticityEnclosedChange(Elasticity);
 PetscErrorCode ElasticityEnhanced(Elasticity, PetscBool *any);
 PetscErrorCode ElasticityPlacePoints(Elasticity, PetscInt cell, PetscReal *x, PetscReal *volume);

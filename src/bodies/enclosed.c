@@ -1,11 +1,6 @@
 /* The level of pressure of bodies whose volume is enclosed, see enclosed.h. */
 #include "enclosed.h"
-#include "base/complaint.h"
-#include "mesh/pressurenodes.h"
 
-/* Derivatives of the volume of a body by its nodes are zero below this part of the largest one: interior nodes have
-   round-off only. */
-#define ENCLOSED_ROUND_OFF 1e-8
 /* Relative change of the volume that prescribed displacements may make. Displacements that keep the volume change that
    of a coarse mesh with curved faces by so much. */
 #define ENCLOSED_CHANGE 1e-3
@@ -13,94 +8,25 @@
    move nodes by as small a part of what the load does. */
 #define ENCLOSED_FORCE 1e-6
 
-/* Adds the derivatives of the volume of a body by its nodes: the forces of a uniform pressure 1. */
-static void AddVolumeGradient(Elasticity e, PetscInt body, PetscReal *gradient)
-{
-  for (int k = 0; k < e->n_groups; k++) {
-    const CellGroup *g = &e->groups[k];
-
-    for (PetscInt slot = 0; slot < g->n_cells; slot++) {
-      const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
-      PetscReal       X[MAX_DOFS], f[MAX_DOFS];
-
-      if (e->mesh->cell_body[g->cell[slot]] != body) continue;
-      ElasticitySlotCoordinates(e, g, slot, X);
-      CellVolumeGradient(g->kernel.type, e->dim, g->kernel.geometry, X, f);
-      for (int a = 0; a < ElementGet(g->kernel.type)->nodes * e->dim; a++)
-        gradient[nodes[a / e->dim] * e->dim + a % e->dim] += f[a];
-    }
-  }
-}
-
-/* Finds out whether the volume of a body is enclosed. */
-static PetscErrorCode FindEnclosed(Elasticity e, PetscInt body, PetscBool *enclosed)
-{
-  const PetscInt n          = e->mesh->n_nodes * e->dim;
-  PetscReal      largest[2] = {0, 0}; /* of all nodes, of those that are free */
-  PetscReal     *gradient;
-  PetscMPIInt    rank;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(e->mesh->comm, &rank));
-  PetscCall(PetscCalloc1(n, &gradient));
-  AddVolumeGradient(e, body, gradient);
-  PetscCall(MeshSumNodes(e->mesh, e->dim, gradient));
-  for (PetscInt d = 0; d < n; d++) {
-    largest[0] = PetscMax(largest[0], PetscAbsReal(gradient[d]));
-    if (!e->enclosed.prescribed[d] && e->mesh->node_owner[d / e->dim] == rank)
-      largest[1] = PetscMax(largest[1], PetscAbsReal(gradient[d]));
-  }
-  PetscCall(PetscFree(gradient));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPIU_REAL, MPI_MAX, e->mesh->comm));
-  *enclosed = (PetscBool)(largest[1] <= ENCLOSED_ROUND_OFF * largest[0]);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Refuses an enclosed body whose nodes have pressures: nothing would tell an impossible change of its volume. */
-static PetscErrorCode RefusePressureNodes(Elasticity e, Scene scene, PetscInt body)
-{
-  Complaint complaint = {""};
-
-  PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < e->mesh->n_cells && !complaint.text[0]; c++)
-    if (e->mesh->cell_body[c] == body && CellHasPressureNodes(e->mesh, scene, c))
-      Complain(&complaint,
-               "%s: body '%s' keeps its volume exactly, and displacements are prescribed on its whole surface: its "
-               "pressure is not determined, which mixed tri3 and tet4 do not treat; allowed: mesh.order: 2, or nu "
-               "below 0.5",
-               SceneWhere(scene, scene->bodies[body].path, "material"), scene->bodies[body].name);
-  PetscCall(ComplaintRefuse(e->mesh->comm, &complaint));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
-  ElasticityFindEnclosed - finds bodies that keep their volume exactly and have no free node whose motion would change
-  it.
+  ElasticitySetEnclosed - takes over the bodies that EnclosedBodiesFind() has found.
 
-  Collective
+  Not collective
 
   Input Parameters:
 + e          - the elasticity
 . scene      - its bodies
 - prescribed - whether a displacement is supported or imposed [n_nodes*dim]; it is kept
-
-  Note:
-  The pressure of such a body is determined up to a constant only; its mean becomes zero. A body with cells whose nodes
-  have pressures is refused.
 @*/
-PetscErrorCode ElasticityFindEnclosed(Elasticity e, Scene scene, const PetscBool *prescribed)
+PetscErrorCode ElasticitySetEnclosed(Elasticity e, Scene scene, const PetscBool *prescribed)
 {
   PetscFunctionBeginUser;
   if (!e->augments) PetscFunctionReturn(PETSC_SUCCESS);
   e->enclosed = (Enclosed){.n_bodies = scene->n_bodies, .prescribed = prescribed};
   PetscCall(PetscCalloc1(scene->n_bodies, &e->enclosed.body));
   for (int b = 0; b < scene->n_bodies; b++) {
-    if (scene->bodies[b].rigid || scene->bodies[b].formulation != FORMULATION_MIXED ||
-        !PetscIsInfReal(scene->bodies[b].material.constants[0]))
-      continue;
-    PetscCall(FindEnclosed(e, b, &e->enclosed.body[b]));
-    if (e->enclosed.body[b]) PetscCall(RefusePressureNodes(e, scene, b));
-    e->enclosed.any = (PetscBool)(e->enclosed.any || e->enclosed.body[b]);
+    e->enclosed.body[b] = (PetscBool)scene->bodies[b].enclosed;
+    e->enclosed.any     = (PetscBool)(e->enclosed.any || e->enclosed.body[b]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,6 @@
 /* Loads, supports and imposed displacements, see loads.h. */
 #include <math.h>
+#include "enclosedbodies.h"
 #include "kernels/elementkernel.h"
 #include "bodies/foundation.h"
 #include "bodies/loads.h"
@@ -205,6 +206,7 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
   PetscCall(PetscFree(loads->owner));
   PetscCall(ComplaintRefuse(mesh->comm, &loads->complaint));
   ToolsConstrain(mesh, loads->constrained);
+  PetscCall(EnclosedBodiesFind(mesh, scene, loads->constrained));
   PetscCall(PressureNodesConstrain(mesh, scene, loads->constrained));
   PetscCall(MeshSetConstraints(mesh, loads->constrained));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -99,9 +99,14 @@ static BatchFn *const full_batches[ELEMENT_TYPES][2] = {
   [ELEMENT_HEX27] = {BatchHex27, NULL},
 };
 
-static int HasNodalPressure(const KernelCase *kernel)
+/* The kernels of mixed elements whose nodes have pressures, NULL where there are none. Elements of second order condense
+   their pressures with plastic laws, and where the case says so. */
+static BatchFn *const *NodalPressureBatches(const KernelCase *kernel)
 {
-  return kernel->formulation == FORMULATION_MIXED && nodal_pressure_batches[kernel->type][0] != NULL;
+  if (kernel->formulation != FORMULATION_MIXED) return NULL;
+  if (nodal_pressure_batches[kernel->type][0]) return nodal_pressure_batches[kernel->type];
+  if (kernel->condensed || MaterialGetLaw(kernel->law)->plastic || !taylor_hood_batches[kernel->type][0]) return NULL;
+  return taylor_hood_batches[kernel->type];
 }
 
 static BatchFn *GetBatch(const KernelCase *kernel)
@@ -115,7 +120,7 @@ static BatchFn *GetBatch(const KernelCase *kernel)
   case FORMULATION_FBAR: return mean_dilatation_batches[kernel->type][axisymmetric];
   case FORMULATION_MIXED:
     if (!splits) return NULL;
-    return (HasNodalPressure(kernel) ? nodal_pressure_batches : mixed_batches)[kernel->type][axisymmetric];
+    return (NodalPressureBatches(kernel) ? NodalPressureBatches(kernel) : mixed_batches[kernel->type])[axisymmetric];
   default: return full_batches[kernel->type][axisymmetric];
   }
 }
@@ -173,7 +178,7 @@ int ElementExtrapolates(const KernelCase *kernel)
 {
   const ElasticLaw *law = MaterialGetLaw(kernel->law);
 
-  if (kernel->kinematics == KINEMATICS_SMALL || kernel->thin || HasNodalPressure(kernel)) return 0;
+  if (kernel->kinematics == KINEMATICS_SMALL || kernel->thin || NodalPressureBatches(kernel)) return 0;
   return law->separable || (law->extrapolate && kernel->formulation != FORMULATION_FBAR);
 }
 
@@ -390,11 +395,12 @@ void ElementAcceptState(const KernelCase *kernel, const double *X, const double 
 @*/
 int ElementPressures(const KernelCase *kernel)
 {
-  return kernel->formulation == FORMULATION_MIXED ? mixed_pressures[kernel->type] : 0;
+  return kernel->formulation == FORMULATION_MIXED && !NodalPressureBatches(kernel) ? mixed_pressures[kernel->type] : 0;
 }
 
 /*@
-  ElementNodes - returns the number of nodes that a kernel has: twice that of the element where nodes have pressures.
+  ElementNodes - returns the number of nodes that a kernel has: those of the element, and its corners once more where
+  they have pressures.
 
   Not collective
 
@@ -402,12 +408,14 @@ int ElementPressures(const KernelCase *kernel)
 . kernel - element type and formulation
 
   Note:
-  The nodes of the element come first. Those of the pressures follow in the same order; nodalpressurekernel.c tells what
-  their displacements are.
+  The nodes of the element come first. Those of the corners' pressures follow in the same order; nodalpressurekernel.c
+  tells what their displacements are.
 @*/
 int ElementNodes(const KernelCase *kernel)
 {
-  return ElementGet(kernel->type)->nodes * (HasNodalPressure(kernel) ? 2 : 1);
+  const Element *e = ElementGet(kernel->type);
+
+  return e->nodes + (NodalPressureBatches(kernel) ? e->corners : 0);
 }
 
 /*@

@@ -53,8 +53,9 @@ typedef struct {
   /* of a plastic law, or NULL: its elastic part alone */
   const PlasticBatch *plastic;
   int    yields; /* of mixed elements: the energy is that of a soft volume about the multipliers, see ElementYield() */
-  double length; /* of mixed elements whose nodes have pressures: that which makes these unknowns lengths */
-  int    thin;   /* 1: in plane stress; of geometry plane strain, formulations full and enhanced, without plasticity */
+  int    condensed; /* of mixed triangles and tetrahedra of second order: their pressures are not those of nodes */
+  double length;    /* of mixed elements whose nodes have pressures: that which makes these unknowns lengths */
+  int    thin;      /* 1: in plane stress; of geometry plane strain, formulations full and enhanced, without plasticity */
 } KernelCase;
 
 /* Parts of the modulus of the volume in a mixed element (stress). local acts at the points, projected on the mean that

@@ -17,50 +17,26 @@
    such a node is tau length / mu, with the length of the KernelCase; the others do not count. The rows of the pressures
    have the sign with which the symmetric part of the tangent is positive definite where that of the displacements is:
    the tangent is not symmetric. */
-#include "mixedpressure.h"
+#include "nodalpressure.h"
 
 enum { MAX_CORNERS = 4 };
 
 /* The pressure at the middle of an element */
 typedef struct {
-  Lanes tau[MAX_CORNERS]; /* at the nodes */
-  Lanes mean, p;
-  Lanes slope, bend;     /* first and second derivative of p by tau */
-  Lanes excess, j_slope; /* J - j; derivative of j by tau */
-  Lanes scale;           /* derivative of tau by the unknowns */
+  Lanes         tau[MAX_CORNERS]; /* at the nodes */
+  Lanes         mean;
+  NodalPressure at;
 } Pressure;
-
-LANES_INLINE Lanes Exponential(Lanes a)
-{
-  for (int lane = 0; lane < LANES; lane++) a[lane] = expm1(a[lane]);
-  return a;
-}
 
 /* Computes the pressure and its derivatives from the unknowns and J - 1. */
 LANES_INLINE void SetPressure(const BatchCall *call, const int n, const int dim, const Lanes *dilatation, Pressure *x)
 {
-  const Lanes soft = 1 / call->modulus;
-  Lanes       strain, j;
-
-  x->scale = call->mu / call->length;
-  x->mean  = (Lanes){0};
+  x->mean = (Lanes){0};
   for (int a = 0; a < n; a++) {
-    x->tau[a] = x->scale * CONST_LANE(call->u, (n + a) * dim);
+    x->tau[a] = call->mu / call->length * CONST_LANE(call->u, (n + a) * dim);
     x->mean += x->tau[a] / n;
   }
-  strain    = x->mean * soft;
-  x->p      = x->mean;
-  x->slope  = (Lanes){0} + 1;
-  x->bend   = (Lanes){0};
-  x->excess = *dilatation - strain;
-  x->j_slope = soft;
-  if (!call->finite) return;
-  j          = 1 + Exponential(strain);
-  x->p       = x->mean / j;
-  x->slope   = (1 - strain) / j;
-  x->bend    = soft * (strain - 2) / j;
-  x->excess  = *dilatation - (j - 1);
-  x->j_slope = soft * j;
+  NodalPressureSet(call, &x->mean, dilatation, &x->at);
 }
 
 /* Second derivative of the last integral by tau at the nodes a and b */
@@ -75,10 +51,10 @@ LANES_INLINE void AddPressureForce(const BatchCall *call, const int n, const int
                                    const Pressure *x)
 {
   for (int a = 0; a < n; a++) {
-    Lanes force = -*volume * x->slope * x->excess / n;
+    Lanes force = -*volume * x->at.slope * x->at.excess / n;
 
     for (int b = 0; b < n; b++) force += Deviation(call, n, volume, a, b) * x->tau[b];
-    for (int i = 0; i < dim; i++) LANE(call->f, (n + a) * dim + i) = i == 0 ? x->scale * force : (Lanes){0};
+    for (int i = 0; i < dim; i++) LANE(call->f, (n + a) * dim + i) = i == 0 ? x->at.scale * force : (Lanes){0};
   }
 }
 
@@ -87,8 +63,8 @@ LANES_INLINE void JoinTangent(const BatchCall *call, const int n, const int dim,
                               const double *part, const double *D)
 {
   const int   half = n * dim, all = 2 * half;
-  const Lanes across = x->scale * x->slope / n;
-  const Lanes middle = *volume * (x->slope * x->j_slope - x->bend * x->excess) / (n * n);
+  const Lanes across = x->at.scale * x->at.slope / n;
+  const Lanes middle = *volume * (x->at.slope * x->at.j_slope - x->at.bend * x->at.excess) / (n * n);
 
   for (int r = 0; r < all * all; r++) LANE(call->K, r) = (Lanes){0};
   for (int r = 0; r < half; r++) {
@@ -101,17 +77,8 @@ LANES_INLINE void JoinTangent(const BatchCall *call, const int n, const int dim,
   for (int a = 0; a < n; a++) {
     for (int b = 0; b < n; b++)
       LANE(call->K, (half + a * dim) * all + half + b * dim) =
-        x->scale * x->scale * (middle + Deviation(call, n, volume, a, b));
+        x->at.scale * x->at.scale * (middle + Deviation(call, n, volume, a, b));
   }
-}
-
-/* Stores displacement gradient and pressure, as StoreOutput() of mixedkernel.c. */
-LANES_INLINE void StoreMiddle(const BatchCall *call, const Lanes H[9], const Lanes *dilatation, const Pressure *x)
-{
-  StorePoint(call, 0, H);
-  if (!call->pressure) return;
-  LANE(call->pressure, 0) = x->p;
-  if (call->finite) LANE(call->pressure, 0) = (1 + *dilatation) * x->p;
 }
 
 /* Computes energy, force and tangent of the first LANES elements of the arrays. n, dim and hoop are constants of the
@@ -133,15 +100,15 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int dim, const
   PointLaw(call, 0, H, &dilatation, call->W ? &energy : NULL, P, call->K ? c.A[0] : NULL);
   DilatationGradient(call, H, G);
   if (call->W) LANE(call->W, 0) = volume * (energy + x.mean * x.mean / (2 * call->modulus));
-  if (call->H) StoreMiddle(call, H, &dilatation, &x);
+  if (call->H) NodalPressureStore(call, 0, H, &dilatation, &x.at);
   if (call->f) {
-    for (int r = 0; r < 9; r++) P[r] = volume * (P[r] + x.p * G[r]);
+    for (int r = 0; r < 9; r++) P[r] = volume * (P[r] + x.at.p * G[r]);
     for (int i = 0; i < n * dim; i++) LANE(call->f, i) = (Lanes){0};
     AddForce(n, dim, hoop, 0, &c, P, call->f);
     AddPressureForce(call, n, dim, &volume, &x);
   }
   if (!call->K) return;
-  if (call->finite) AddGeometry(&x.p, H, c.A[0]);
+  if (call->finite) AddGeometry(&x.at.p, H, c.A[0]);
   for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) c.A[0][k] *= volume;
   for (int r = 0; r < 9; r++) G[r] *= volume;
   for (int i = 0; i < n * dim; i++) LANE(D, i) = (Lanes){0};

@@ -4,10 +4,6 @@
 #include "linear/reusedfactor.h"
 #include "multigrid.h"
 
-/* Number of unknowns in space above which solver.type auto iterates. Two thick rings of first-order bricks take equal
-   CPU time at 16,000 unknowns; at 120,000 iterations take a fifth of it and a third of the memory. Thin walls of
-   second-order bricks take three times the iterations. */
-#define LINEAR_DIRECT_DOFS 60000
 /* Number of unknowns from which on the factor of a tangent may serve later ones. With fewer a factorisation is worth
    few solves. Measured: 60 Newton iterations on a cup that is flattened (956 unknowns) take no less time, 98 on a pipe
    between plates with enhanced elements (2065) take the same, 90 on that pipe with second-order elements (3406) a tenth
@@ -81,7 +77,7 @@ PetscErrorCode LinearSolverCreate(KSP ksp, Mesh mesh, Scene scene, PetscBool sym
   (*solver)->ksp       = ksp;
   (*solver)->symmetric = symmetric;
   if (type == SOLVER_AUTO)
-    type = mesh->dim == 3 && !mesh->has_pressures && mesh->dim * mesh->n_global > LINEAR_DIRECT_DOFS
+    type = mesh->dim == 3 && !mesh->saddle && mesh->dim * mesh->n_global > SOLVER_DIRECT_DOFS
              ? SOLVER_ITERATIVE
              : SOLVER_DIRECT;
   if (type == SOLVER_DIRECT) {

@@ -66,6 +66,7 @@ typedef struct {
     n_body_global;            /* nodes of cells, which come first; the others are those of pressures and tools */
   PetscBool has_pressures;    /* there are nodes for pressures, see pressurenodes.h; the same on all ranks */
   PetscInt  n_pressure_nodes; /* as many as of cells, or 0; they follow these */
+  PetscBool saddle;           /* a node for pressures has an unknown, on any rank; PressureNodesConstrain() sets it */
   PetscInt *node_id;          /* 0..n_global-1 in the order of gmsh's tags, the same on any number of ranks */
   PetscInt *node_tag;         /* gmsh's tag */
   PetscInt *node_owner;       /* rank */

@@ -142,7 +142,8 @@ PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
   }
   if (mesh->has_pressures && scene->solver.type == SOLVER_ITERATIVE)
     Complain(&complaint,
-             "%s: iterative is not for mixed tri3 and tet4, whose tangents are of a saddle; allowed: direct",
+             "%s: iterative is not for mixed tri3 and tet4, whose tangents are of a saddle; allowed: direct, or "
+             "mesh.order: 2",
              SceneWhere(scene, "solver", "type"));
   PetscCall(ComplaintRefuse(mesh->comm, &complaint));
   PetscCall(FindLocking(mesh, scene));

@@ -1,4 +1,4 @@
-/* Nodes for the pressures of mixed triangles and tetrahedra of first order, see pressurenodes.h. */
+/* Nodes for the pressures of mixed triangles and tetrahedra, see pressurenodes.h. */
 #include "kernels/elementkernel.h"
 #include "mesh/meshdofs.h"
 #include "pressurenodesimpl.h"
@@ -6,9 +6,64 @@
 /* Says whether the nodes of the cells of a type in a body have pressures. */
 static PetscBool HasPressures(Scene scene, int body, ElementType type)
 {
-  const KernelCase kernel = {.type = type, .formulation = scene->bodies[body].formulation};
+  const KernelCase kernel = {.type        = type,
+                             .law         = scene->bodies[body].material.law,
+                             .formulation = scene->bodies[body].formulation,
+                             .condensed   = scene->bodies[body].condensed};
 
   return (PetscBool)(ElementNodes(&kernel) > ElementGet(type)->nodes);
+}
+
+/* Says whether two bodies have the same material but for its plasticity. */
+static PetscBool SameMaterial(const Material *a, const Material *b)
+{
+  PetscBool same = (PetscBool)(a->law == b->law && a->n_constants == b->n_constants);
+
+  for (int k = 0; k < a->n_constants && same; k++) same = (PetscBool)(a->constants[k] == b->constants[k]);
+  return same;
+}
+
+/* Condenses the pressures of bodies of different materials that share nodes: their pressures jump there, and unknowns
+   of the nodes would make them continuous. On rank 0. */
+static PetscErrorCode CondenseBonded(Scene scene, const RootMesh *root, int *condensed)
+{
+  int *first; /* the first body with pressures at each node of gmsh; -1: none */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(root->gmsh.n_nodes, &first));
+  for (PetscInt i = 0; i < root->gmsh.n_nodes; i++) first[i] = -1;
+  for (PetscInt c = 0; c < root->n_cells; c++) {
+    const PetscInt *nodes = RootMeshCellNodes(root, c);
+    const int       body  = root->cell_body[c];
+
+    if (!HasPressures(scene, body, root->cell_block[c]->element->type)) continue;
+    for (int k = 0; k < root->cell_block[c]->nodes; k++) {
+      int *other = &first[nodes[k]];
+
+      if (*other < 0) *other = body;
+      if (!SameMaterial(&scene->bodies[*other].material, &scene->bodies[body].material))
+        condensed[*other] = condensed[body] = 1;
+    }
+  }
+  PetscCall(PetscFree(first));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Condenses pressures where the linear solver iterates, which is not for tangents of a saddle, and of bonded bodies. */
+static PetscErrorCode Condense(Scene scene, const RootMesh *root, Mesh mesh)
+{
+  int *condensed, all = scene->solver.type == SOLVER_ITERATIVE;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(scene->n_bodies, &condensed));
+  if (root && scene->solver.type == SOLVER_AUTO && mesh->dim == 3 && mesh->dim * root->n_nodes > SOLVER_DIRECT_DOFS)
+    all = 1;
+  if (root) PetscCall(CondenseBonded(scene, root, condensed));
+  for (int b = 0; b < scene->n_bodies && all; b++) condensed[b] = 1;
+  PetscCallMPI(MPI_Bcast(condensed, scene->n_bodies, MPI_INT, 0, mesh->comm));
+  for (int b = 0; b < scene->n_bodies; b++) scene->bodies[b].condensed = condensed[b];
+  PetscCall(PetscFree(condensed));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -17,13 +72,14 @@ static PetscBool HasPressures(Scene scene, int body, ElementType type)
   Collective
 
   Input Parameters:
-+ scene - its bodies
++ scene - its bodies, of which condensed is set
 . root  - on rank 0, NULL on other ranks
 - mesh  - has_pressures is set
 @*/
 PetscErrorCode PressureNodesExist(Scene scene, const RootMesh *root, Mesh mesh)
 {
   PetscFunctionBeginUser;
+  PetscCall(Condense(scene, root, mesh));
   for (PetscInt c = 0; root && c < root->n_cells && !mesh->has_pressures; c++)
     mesh->has_pressures = HasPressures(scene, root->cell_body[c], root->cell_block[c]->element->type);
   PetscCallMPI(MPI_Bcast(&mesh->has_pressures, 1, MPIU_BOOL, 0, mesh->comm));
@@ -73,7 +129,7 @@ PetscBool CellHasPressureNodes(Mesh mesh, Scene scene, PetscInt cell)
   Collective
 
   Input Parameters:
-+ mesh  - the mesh
++ mesh  - the mesh, of which saddle is set
 - scene - its bodies
 
   Output Parameter:
@@ -87,14 +143,16 @@ PetscErrorCode PressureNodesConstrain(Mesh mesh, Scene scene, PetscBool *constra
   if (!mesh->has_pressures) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(mesh->n_nodes, &has));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
-    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
-      if (CellHasPressureNodes(mesh, scene, c)) has[PressureNodeOf(mesh, mesh->cell_nodes[k])] = 1;
+    for (int k = 0; k < ElementGet(mesh->cell_type[c])->corners && CellHasPressureNodes(mesh, scene, c); k++)
+      has[PressureNodeOf(mesh, mesh->cell_nodes[mesh->cell_ptr[c] + k])] = 1;
   PetscCall(MeshSumNodes(mesh, 1, has));
   for (PetscInt i = 0; i < mesh->n_pressure_nodes; i++) {
     const PetscInt node = PressureNodeOf(mesh, i);
 
     for (int d = 0; d < mesh->dim; d++) constrained[node * mesh->dim + d] = (PetscBool)(d > 0 || has[node] == 0);
+    mesh->saddle = (PetscBool)(mesh->saddle || has[node] > 0);
   }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mesh->saddle, 1, MPIU_BOOL, MPI_LOR, mesh->comm));
   PetscCall(PetscFree(has));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -135,7 +135,7 @@ static PetscErrorCode ModelTurnStep(Model model, SNES snes, Vec F, Vec y, PetscR
 
   PetscFunctionBeginUser;
   if (slope >= 0 || PetscIsInfOrNanReal(slope)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (model->mesh->has_pressures) {
+  if (model->mesh->saddle) {
     PetscCall(VecDuplicate(y, &z));
     PetscCall(ModelSplitStep(model, snes, F, y, z, &slope));
     if (slope < 0) PetscCall(VecAXPY(y, -2, z));

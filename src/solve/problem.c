@@ -56,7 +56,7 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   PetscCall(ElasticityCreate(mesh, scene, &problem->elasticity));
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, problem->elasticity, problem->loads, &problem->contact));
   PetscCall(ElasticitySetSymmetric(problem->elasticity, ProblemConservative(problem)));
-  PetscCall(ElasticityFindEnclosed(problem->elasticity, scene, LoadsConstrained(problem->loads)));
+  PetscCall(ElasticitySetEnclosed(problem->elasticity, scene, LoadsConstrained(problem->loads)));
   PetscCall(FluidCreate(mesh, scene, problem->loads, problem->contact, &problem->fluids));
   PetscCall(PetscCalloc2(n, &problem->f, n, &problem->trial));
   PetscCall(ElasticityTangent(problem->elasticity, problem->trial, NULL));
@@ -647,7 +647,7 @@ PetscBool ProblemIsPlastic(Problem problem)
 PetscBool ProblemConservative(Problem problem)
 {
   return (PetscBool)(LoadsConservative(problem->loads) && !ContactHasFriction(problem->contact) &&
-                     !SceneHasRoutine(problem->scene) && !problem->mesh->has_pressures);
+                     !SceneHasRoutine(problem->scene) && !problem->mesh->saddle);
 }
 
 /*@

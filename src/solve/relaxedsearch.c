@@ -305,10 +305,17 @@ static PetscErrorCode Keep(const Search *s, PetscReal rise, PetscReal slope, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Lets cells turn farther in the next step that is bounded so, after one that turned them by `turn` has paid. */
+static void LengthenBound(RelaxedStep *step, PetscReal turn)
+{
+  step->farthest = PetscMin(MODEL_FARTHEST, PetscMax(step->farthest, SEARCH_GROW * turn));
+}
+
 /* Takes the step as far as cells may turn in it and lists reach, although the energy rises. *taken: it could be. The
    pressures of stiff volumes change along the step as the step's linear problem says, however far it goes, and whether
    it leads to a minimum or away from a saddle. Where the energy falls over the shortened step, the next one may still
-   be judged from its start; not so where there is no energy, and the work on the way tells less. */
+   be judged from its start; not so where there is no energy, and the work on the way tells less. It has paid then: a
+   bound that an earlier step left grows again, or a solve would crawl along a soft motion. */
 static PetscErrorCode Relax(const Search *s, PetscReal rise, PetscReal slope, PetscBool *taken)
 {
   ModelWork *work = s->model->work;
@@ -325,6 +332,8 @@ static PetscErrorCode Relax(const Search *s, PetscReal rise, PetscReal slope, Pe
   if (!*taken) PetscFunctionReturn(PETSC_SUCCESS);
   if (ProblemConservative(s->model->problem) || rise > -SEARCH_FALL * lambda * slope)
     PetscCall(Keep(s, rise, slope, lambda * turn));
+  else
+    LengthenBound(&work->relaxed, lambda * turn);
   work->relaxed.linear = PETSC_TRUE;
   work->uphill         = PETSC_FALSE;
   PetscCall(Take(s, lambda));
@@ -409,7 +418,7 @@ static PetscErrorCode Judge(const Search *s, PetscReal rise)
   if (paid) {
     if (s->model->contact) PetscCall(ContactCycleStart(s->model->work->watch)); /* a lower energy is no repetition */
     step->waits    = PETSC_FALSE;
-    step->farthest = PetscMin(MODEL_FARTHEST, PetscMax(step->farthest, SEARCH_GROW * step->turn));
+    LengthenBound(step, step->turn);
   }
   step->rise = since;
   PetscCall(Take(s, 1));

@@ -323,11 +323,14 @@ static PetscErrorCode NodalMean(Elasticity e, Mesh mesh, const PetscReal *u, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the squares of the error of the pressure of the nodes of a cell, and of the field's pressure. The cells fill a
-   box of volume 1, which is that of the first two coordinates in the plane. */
+/* Adds the squares of the error of the pressure of the corners of a cell, and of the field's pressure. The pressure is
+   linear, so that its value in the middle of an edge is the mean of those of its ends. The cells fill a box of volume 1,
+   which is that of the first two coordinates in the plane. */
 static void AddNodalPressureError(const Rule *rule, const Case *test, Mesh mesh, PetscInt c, const PetscReal *u,
                                   PetscReal sum[2])
 {
+  const Element  *e     = ElementGet(mesh->cell_type[c]);
+  const PetscInt *nodes = &mesh->cell_nodes[mesh->cell_ptr[c]];
   const PetscReal mu = young / (2 * (1 + poisson)), unit = mu * PetscPowReal(mesh->n_cells_global, 1. / mesh->dim);
 
   for (int q = 0; q < rule->points; q++) {
@@ -335,8 +338,13 @@ static void AddNodalPressureError(const Rule *rule, const Case *test, Mesh mesh,
     const PetscReal volume = Place(test, mesh, c, rule->N[q], rule->dN[q], mesh->dim, rule->weight[q], x, g);
 
     Exact(test->geometry, x, exact, D);
-    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
-      p += rule->N[q][k - mesh->cell_ptr[c]] * unit * u[PressureNodeOf(mesh, mesh->cell_nodes[k]) * mesh->dim];
+    for (int k = 0; k < e->nodes; k++) {
+      const int edge = k - e->corners, a = edge < 0 ? k : e->edge_corners[edge][0],
+                b = edge < 0 ? k : e->edge_corners[edge][1];
+
+      p += rule->N[q][k] * unit / 2 *
+           (u[PressureNodeOf(mesh, nodes[a]) * mesh->dim] + u[PressureNodeOf(mesh, nodes[b]) * mesh->dim]);
+    }
     sum[0] += volume * PetscSqr(p - ExactPressure(D));
     sum[1] += volume * PetscSqr(ExactPressure(D));
   }

@@ -172,6 +172,8 @@ def choice():
     said("the last screen says so", "advice   body 'ring' has nu = 0.499 in elements of first order", *locking, status=0)
     said("they need the direct solver", "solver.type: iterative is not for mixed tri3 and tet4",
          "bodies.0.material.nu=0.5", "solver.type=iterative", *triangles)
+    said("those of second order condense their pressures for the iterative one", "done: ", "bodies.0.material.nu=0.499",
+         "solver.type=iterative", "mesh.order=2", *triangles, status=0)
     said("their pressure must be determined", "its pressure is not determined", "bodies.0.material.nu=0.5", *triangles,
          "loads=[{surface: inner, ux: '0.1*x/r', uy: '0.1*y/r'}, {surface: outer, ux: 0, uy: 0}]")
     said("svk has no mixed elements", "formulation: mixed needs a law whose volume part is separate",

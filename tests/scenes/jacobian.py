@@ -116,6 +116,9 @@ CASES["rubber ring, fluid up to the contact"] = (RUNS / "o_ring_pressure.yaml", 
     "mesh.parameters.n=3", "loads.0.pressure=1", "stepping={control: fixed, initial: 0.5}",
     "contact.0.penalty.scale=1", "contact.1.penalty.scale=1", "output.certificate=false"
 ])
+CASES["rubber ring, pressures of corners"] = (RUNS / "o_ring.yaml", [
+    "mesh.order=2", "mesh.parameters.triangles=1", "mesh.parameters.n=3", "output.certificate=false"
+])
 TOOL = ["mesh.parameters={lx: 10, ly: 5, nx: 6, ny: 3, skew: 0}", "stepping.initial=1"]
 PUSHED = [
     "loads=[]", "stepping.initial=0.5", "mesh.parameters.overlap=-0.1", "supports.1={surface: block_top, ux: 0, uy: 0}",

@@ -161,8 +161,11 @@ static void SetGradient(Batch *b, const double H[9])
 
 static int NextOfAll(KernelCase *kernel)
 {
-  static const KernelCase first = {
-    ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FULL, 0, NULL, 0, 0, 0};
+  static const KernelCase first = {.type        = ELEMENT_TRI3,
+                                   .geometry    = GEOMETRY_PLANE_STRAIN,
+                                   .kinematics  = KINEMATICS_SMALL,
+                                   .law         = MATERIAL_LINEAR,
+                                   .formulation = FORMULATION_FULL};
 
   if (kernel->type == ELEMENT_TYPES) {
     *kernel = first;

@@ -62,16 +62,11 @@ static void BendingEnergyIsABeams(void **state)
   (void)state;
   for (int solid = 0; solid < 2; solid++) {
     for (double height = 0.01; height < 2; height *= 10) {
-      const KernelCase kernel = {solid ? ELEMENT_HEX8 : ELEMENT_QUAD4,
-                                 solid ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN,
-                                 KINEMATICS_SMALL,
-                                 MATERIAL_LINEAR,
-                                 FORMULATION_ENHANCED,
-                                 0,
-                                 NULL,
-                                 0,
-                                 0,
-                                 0};
+      const KernelCase kernel = {.type        = solid ? ELEMENT_HEX8 : ELEMENT_QUAD4,
+                                 .geometry    = solid ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN,
+                                 .kinematics  = KINEMATICS_SMALL,
+                                 .law         = MATERIAL_LINEAR,
+                                 .formulation = FORMULATION_ENHANCED};
       const int    dim    = solid ? 3 : 2;
       const double moment = 2 * height * height * height / 3 * (solid ? 2 : 1 / (1 - poisson * poisson));
       double       X[MAX_DOFS], u[MAX_DOFS] = {0};
@@ -153,16 +148,11 @@ static void CompressedElementsDoNotHourglass(void **state)
   for (int law = MATERIAL_SVK; law <= MATERIAL_NEO_HOOKEAN; law++) {
     for (int i = 0; i < 6; i++) {
       for (double stretch = 0.95; stretch > (law == MATERIAL_SVK ? 0.6 : 0.45); stretch -= 0.05) {
-        KernelCase   kernel = {ELEMENT_QUAD4,
-                               GEOMETRY_PLANE_STRAIN,
-                               KINEMATICS_FINITE,
-                               (MaterialLaw)law,
-                               FORMULATION_ENHANCED,
-                               0,
-                               NULL,
-                               0,
-                               0,
-                               0};
+        KernelCase   kernel = {.type        = ELEMENT_QUAD4,
+                               .geometry    = GEOMETRY_PLANE_STRAIN,
+                               .kinematics  = KINEMATICS_FINITE,
+                               .law         = (MaterialLaw)law,
+                               .formulation = FORMULATION_ENHANCED};
         const double plane  = LeastHourglass(&kernel, ratios[i % 2], heights[i / 2], stretch);
         double       solid, plain;
 

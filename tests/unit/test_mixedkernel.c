@@ -1,7 +1,8 @@
 /* Shows what mixed elements do with multipliers: force and tangent are derivatives of the energy of an incompressible
  * element, multipliers that do not change any more leave the pressure of the whole modulus, and those that follow
  * Newton's method start from the same pressure. Elements that yield have the forces of the others. test_elementkernel.c
- * treats mixed elements without multipliers. */
+ * treats mixed elements without multipliers. Pressures of triangles and tetrahedra of second order are condensed here;
+ * test_nodalpressure.c has those of nodes. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -70,7 +71,8 @@ static int NextCase(KernelCase *kernel)
                            .geometry    = next & 1 ? GEOMETRY_AXISYMMETRIC : GEOMETRY_PLANE_STRAIN,
                            .kinematics  = next & 2 ? KINEMATICS_FINITE : KINEMATICS_SMALL,
                            .law         = next & 2 ? MATERIAL_NEO_HOOKEAN : MATERIAL_LINEAR,
-                           .formulation = FORMULATION_MIXED};
+                           .formulation = FORMULATION_MIXED,
+                           .condensed   = 1};
     if (ElementGet(kernel->type)->dim == 3) kernel->geometry = next & 1 ? GEOMETRY_AXISYMMETRIC : GEOMETRY_SOLID;
     next++;
     if (ElementGet(kernel->type)->dim > 1 && ElementKernelExists(kernel) && ElementPressures(kernel) > 0) return 1;

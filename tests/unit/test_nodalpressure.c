@@ -1,6 +1,7 @@
-/* Shows that mixed triangles and tetrahedra of first order, whose nodes have pressures, have the exact tangent of their
- * force with every law, give the stress of the law in a uniform strain, and resist no pressure that is the same
- * everywhere: only pressures that differ within an element. */
+/* Shows that mixed triangles and tetrahedra, whose corners have pressures, have the exact tangent of their force with
+ * every law and give the stress of the law in a uniform strain. Those of first order resist no pressure that is the same
+ * everywhere: only pressures that differ within an element. Those of second order resist none, and no pressure is
+ * without a force. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -12,7 +13,7 @@
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-enum { MAX_DOFS = 24 };
+enum { MAX_DOFS = 42 };
 static const double    young = 3, length = 0.7, infinite = 0.5;
 static const Hardening hardening = {.yield = 0.05, .linear = 0.3};
 
@@ -20,11 +21,17 @@ typedef struct {
   KernelCase   kernel;
   Material     material;
   PlasticBatch plastic;
-  int          n, dim, dofs; /* n: nodes of the element */
+  int          n, pressures, dim, dofs; /* n: nodes of the element */
   double       X[MAX_DOFS * KERNEL_LANES], u[MAX_DOFS * KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES],
     K[MAX_DOFS * MAX_DOFS * KERNEL_LANES], constants[MATERIAL_MAX_CONSTANTS * KERNEL_LANES],
     state[PLASTIC_MAX_STATE * KERNEL_LANES], J[KERNEL_LANES];
 } Case;
+
+/* The place in the element of a node, perhaps of a pressure */
+static const double *Place(const Case *c, int node)
+{
+  return ElementGet(c->kernel.type)->node[node < c->n ? node : node - c->n];
+}
 
 static double Random(void)
 {
@@ -46,37 +53,50 @@ static void CaseCreate(Case *c, KernelCase kernel, double nu)
   c->kernel.n_constants = c->material.n_constants;
   c->plastic            = (PlasticBatch){.hardening = &hardening, .dt = 1, .state = c->state};
   if (kernel.law == MATERIAL_VON_MISES) c->kernel.plastic = &c->plastic;
-  c->n    = e->nodes;
-  c->dim  = e->dim;
-  c->dofs = ElementNodes(&c->kernel) * e->dim;
-  assert_int_equal(c->dofs, 2 * e->nodes * e->dim);
+  c->n         = e->nodes;
+  c->pressures = e->corners;
+  c->dim       = e->dim;
+  c->dofs      = ElementNodes(&c->kernel) * e->dim;
+  assert_int_equal(c->dofs, (e->nodes + e->corners) * e->dim);
+  assert_int_equal(ElementPressures(&c->kernel), 0);
   for (int lane = 0; lane < KERNEL_LANES; lane++) {
     for (int k = 0; k < c->material.n_constants; k++)
       c->constants[k * KERNEL_LANES + lane] = c->material.constants[k];
     for (int k = 0; k < c->dofs; k++) {
       c->X[k * KERNEL_LANES + lane] =
-        e->node[k / e->dim % e->nodes][k % e->dim] + (k % e->dim == 0 ? 3 : 0) + 0.2 * Random();
-      c->u[k * KERNEL_LANES + lane] = k < c->dofs / 2 ? 0.1 * Random() : length * Random();
+        Place(c, k / e->dim)[k % e->dim] + (k % e->dim == 0 ? 3 : 0) + 0.2 / e->order * Random();
+      c->u[k * KERNEL_LANES + lane] = k < c->n * c->dim ? 0.1 / e->order * Random() : length * Random();
     }
   }
 }
 
-/* tri3 in the plane and axisymmetric, and tet4, with small strains and every law */
+/* Triangles in the plane and axisymmetric, and tetrahedra, of both orders, with small strains and every law. Plastic
+   elements of second order have no pressures of nodes. */
 static int NextCase(KernelCase *kernel)
 {
+  enum { SHAPES = 6 };
+  static const struct {
+    ElementType type;
+    Geometry    geometry;
+  } shapes[SHAPES] = {
+    {ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN}, {ELEMENT_TRI3, GEOMETRY_AXISYMMETRIC}, {ELEMENT_TET4, GEOMETRY_SOLID},
+    {ELEMENT_TRI6, GEOMETRY_PLANE_STRAIN}, {ELEMENT_TRI6, GEOMETRY_AXISYMMETRIC}, {ELEMENT_TET10, GEOMETRY_SOLID},
+  };
   static int next = 0;
 
-  for (; next < 3 * (MATERIAL_LAWS + 1); next++) {
-    const int law = next / 3;
+  for (; next < SHAPES * (MATERIAL_LAWS + 1); next++) {
+    const int law = next / SHAPES;
 
-    *kernel = (KernelCase){.type        = next % 3 == 2 ? ELEMENT_TET4 : ELEMENT_TRI3,
-                           .geometry    = next % 3 == 2   ? GEOMETRY_SOLID
-                                          : next % 3 == 1 ? GEOMETRY_AXISYMMETRIC
-                                                          : GEOMETRY_PLANE_STRAIN,
+    *kernel = (KernelCase){.type        = shapes[next % SHAPES].type,
+                           .geometry    = shapes[next % SHAPES].geometry,
                            .kinematics  = law == MATERIAL_LAWS ? KINEMATICS_SMALL : KINEMATICS_FINITE,
                            .law         = law == MATERIAL_LAWS ? MATERIAL_LINEAR : (MaterialLaw)law,
                            .formulation = FORMULATION_MIXED};
     if (law == MATERIAL_LINEAR || !ElementKernelExists(kernel)) continue;
+    if (ElementGet(kernel->type)->order == 2 && MaterialGetLaw(kernel->law)->plastic) {
+      assert_true(ElementPressures(kernel) > 0);
+      continue;
+    }
     next++;
     return 1;
   }
@@ -118,7 +138,7 @@ static void TangentIsTheDerivative(void **state)
       tested++;
     }
   }
-  assert_true(tested >= 2 * 3 * 7);
+  assert_true(tested >= 2 * 6 * 7);
 }
 
 /* In a uniform strain with the pressure of the law nothing acts on the pressures, and the stress is that of the law. */
@@ -141,10 +161,10 @@ static void UniformStrainHasTheStressOfTheLaw(void **state)
     for (int k = 0; k < c.dofs * KERNEL_LANES; k++) {
       const int i = k / KERNEL_LANES % c.dim;
 
-      c.u[k] = k < c.dofs * KERNEL_LANES / 2 ? H[4 * i] * c.X[k] : tau * length / MaterialShear(&c.material);
+      c.u[k] = k < c.n * c.dim * KERNEL_LANES ? H[4 * i] * c.X[k] : tau * length / MaterialShear(&c.material);
     }
     Evaluate(&c, c.f, NULL);
-    for (int k = c.dofs / 2 * KERNEL_LANES; k < c.dofs * KERNEL_LANES; k++) assert_near(c.f[k], 0, 1e-13 * young);
+    for (int k = c.n * c.dim * KERNEL_LANES; k < c.dofs * KERNEL_LANES; k++) assert_near(c.f[k], 0, 1e-13 * young);
     for (int lane = 0; lane < KERNEL_LANES; lane++) {
       double X[MAX_DOFS], u[MAX_DOFS], stress[6], volume;
 
@@ -158,31 +178,71 @@ static void UniformStrainHasTheStressOfTheLaw(void **state)
   }
 }
 
-/* Where the volume is kept exactly, the rows and columns of the pressures are opposite but for a block that resists
-   differences of pressures alone. */
+/* Where the volume is kept exactly, the rows and columns of the pressures are opposite but for a block. In elements of
+   first order it resists differences of pressures alone, in those of second order nothing. */
 static void OnlyDifferencesOfPressuresAreResisted(void **state)
 {
   (void)state;
   for (KernelCase kernel; NextCase(&kernel);) {
-    Case c;
+    const int second = ElementGet(kernel.type)->order == 2;
+    Case      c;
 
     CaseCreate(&c, kernel, infinite);
     Evaluate(&c, c.f, c.K);
     for (int lane = 0; lane < KERNEL_LANES; lane++) {
       const double *K = &c.K[lane];
 
-      for (int a = 0; a < c.n; a++) {
+      for (int a = 0; a < c.pressures; a++) {
         const int p = (c.n + a) * c.dim;
         double    sum = 0;
 
         for (int r = 0; r < c.n * c.dim; r++)
           assert_near(K[(r * c.dofs + p) * KERNEL_LANES], -K[(p * c.dofs + r) * KERNEL_LANES], 0);
-        for (int b = 0; b < c.n; b++) sum += K[(p * c.dofs + (c.n + b) * c.dim) * KERNEL_LANES];
+        for (int b = 0; b < c.pressures; b++) sum += K[(p * c.dofs + (c.n + b) * c.dim) * KERNEL_LANES];
         assert_near(sum, 0, 1e-14 * young);
-        assert_true(K[(p * c.dofs + p) * KERNEL_LANES] > 0);
+        assert_true(second ? K[(p * c.dofs + p) * KERNEL_LANES] == 0 : K[(p * c.dofs + p) * KERNEL_LANES] > 0);
       }
     }
   }
+}
+
+/* Makes a column orthogonal to earlier ones, and returns the square of what is left. */
+static double Orthogonalise(int n, int earlier, double G[][MAX_DOFS])
+{
+  double *g = G[earlier], left = 0;
+
+  for (int b = 0; b < earlier; b++) {
+    double product = 0, square = 0;
+
+    for (int r = 0; r < n; r++) product += g[r] * G[b][r];
+    for (int r = 0; r < n; r++) square += G[b][r] * G[b][r];
+    for (int r = 0; r < n; r++) g[r] -= product / square * G[b][r];
+  }
+  for (int r = 0; r < n; r++) left += g[r] * g[r];
+  return left;
+}
+
+/* The pressures of an element of second order have forces on its nodes that are independent. */
+static void PressuresOfSecondOrderHaveForces(void **state)
+{
+  int tested = 0;
+
+  (void)state;
+  for (KernelCase kernel; NextCase(&kernel);) {
+    double G[4][MAX_DOFS], size = 0;
+    Case   c;
+
+    if (ElementGet(kernel.type)->order == 1) continue;
+    CaseCreate(&c, kernel, infinite);
+    Evaluate(&c, c.f, c.K);
+    for (int a = 0; a < c.pressures; a++) {
+      for (int r = 0; r < c.n * c.dim; r++) G[a][r] = c.K[(r * c.dofs + (c.n + a) * c.dim) * KERNEL_LANES];
+      for (int r = 0; r < c.n * c.dim; r++) size = fmax(size, fabs(G[a][r]));
+      assert_true(Orthogonalise(c.n * c.dim, a, G) > 0.01 * size * size);
+    }
+    tested++;
+  }
+  assert_true(tested >= 3 * 7);
 }
 
 int main(void)
@@ -191,6 +251,7 @@ int main(void)
     cmocka_unit_test(TangentIsTheDerivative),
     cmocka_unit_test(UniformStrainHasTheStressOfTheLaw),
     cmocka_unit_test(OnlyDifferencesOfPressuresAreResisted),
+    cmocka_unit_test(PressuresOfSecondOrderHaveForces),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -56,7 +56,8 @@ static int NextCase(KernelCase *kernel)
                            .geometry    = GEOMETRY_AXISYMMETRIC,
                            .kinematics  = KINEMATICS_FINITE,
                            .law         = MATERIAL_NEO_HOOKEAN,
-                           .formulation = (Formulation)(next / ELEMENT_TYPES % FORMULATIONS)};
+                           .formulation = (Formulation)(next / ELEMENT_TYPES % FORMULATIONS),
+                           .condensed   = 1};
     if (next >= ELEMENT_TYPES * FORMULATIONS)
       kernel->geometry = ElementGet(kernel->type)->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
     if ((kernel->geometry == GEOMETRY_AXISYMMETRIC && ElementGet(kernel->type)->dim == 3) ||

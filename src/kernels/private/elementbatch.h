@@ -314,6 +314,7 @@ extern BatchFn *const enhanced_batches[ELEMENT_TYPES][2];
 extern BatchFn *const mean_dilatation_batches[ELEMENT_TYPES][2];
 extern BatchFn *const mixed_batches[ELEMENT_TYPES][2];
 extern BatchFn *const nodal_pressure_batches[ELEMENT_TYPES][2];
+extern BatchFn *const taylor_hood_batches[ELEMENT_TYPES][2];
 extern const int      mixed_pressures[ELEMENT_TYPES];
 
 int  MixedPoints(const Element *);
