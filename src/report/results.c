@@ -1,5 +1,6 @@
 /* What a run writes, step by step: ties its directory, tables, fields and the terminal, see results.h. */
 #include "report/results.h"
+#include "errorfields.h"
 #include "fields.h"
 #include "optionrecord.h"
 #include "report/rundirectory.h"
@@ -418,6 +419,7 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   }
   TimingBegin(TIMING_OUTPUT);
   if (results->stepped && !results->written) PetscCall(ResultsWriteFields(results));
+  if (results->written) PetscCall(ErrorFieldsWrite(results->model->mesh, results->scene, results->errors, results->directory));
   TimingEnd(TIMING_OUTPUT);
   PetscCall(ResultsGetUsage(results, &usage));
   usage.wall_s = results->before.wall_s + run->wall_s;

@@ -1,8 +1,10 @@
 /* The loop over meshes of a run that is to reach an accuracy, see refinement.h. */
 #include "refinement.h"
 #include <math.h>
+#include "errors/elementsizes.h"
 #include "files/textfile.h"
 #include "mesh/meshdensities.h"
+#include "mesh/meshsizes.h"
 #include "meshplan.h"
 #include "base/refusal.h"
 
@@ -11,7 +13,12 @@
 /* Where other causes leave less than this part of the allowed error to the mesh, it is made for this part. */
 #define REFINEMENT_LEAST_SHARE 0.25
 
-enum { TABLE_ROW = 1024, EDIT_LENGTH = 320 };
+/* A mesh with sizes of its own has at most so many times the elements of the last one. */
+#define REFINEMENT_MOST_ELEMENTS 8
+/* It is made for at most this part of the present error, or the estimate would hardly change. */
+#define REFINEMENT_PART 0.8
+
+enum { TABLE_ROW = 1024, EDIT_LENGTH = 2 * PETSC_MAX_PATH_LEN };
 
 /* A mesh that was solved */
 typedef struct {
@@ -28,7 +35,10 @@ typedef struct {
   char           directory[PETSC_MAX_PATH_LEN];
   int            dim, order, n_densities, n_given; /* edits that the user gave */
   MeshDensity   *density;
-  char         **edit; /* of each density */
+  PetscBool      structured; /* meshes follow densities, else sizes of elements in a file */
+  PetscReal     *size;       /* wanted of the next mesh at each local cell of the last one */
+  int            n_edits;
+  char         **edit; /* of each density, or of the file of sizes */
   int            n;
   MeshFigures   *figures; /* of each mesh */
   SolvedMesh    *mesh;
@@ -81,7 +91,6 @@ static PetscErrorCode Begin(Run *run, const RunInput *input, Refinement *r)
 {
   const SceneAccuracy *wish = &run->scene->accuracy;
   const char          *name = run->scene->probes[wish->probe].name, *ending = strrchr(run->scene->mesh_file, '.');
-  PetscBool            structured;
   char                *copy;
 
   PetscFunctionBeginUser;
@@ -95,12 +104,13 @@ static PetscErrorCode Begin(Run *run, const RunInput *input, Refinement *r)
   if (strcmp(ending, ".geo"))
     PetscCall(RefuseInput(run->comm, "%s: '%s' cannot be meshed anew; allowed with accuracy: a .geo file",
                           SceneWhere(run->scene, "mesh", "file"), run->scene->mesh_file));
-  PetscCall(MeshDensitiesFind(run->comm, run->scene, input->trust, &r->n_densities, &r->density, &structured));
-  if (!r->n_densities)
+  PetscCall(MeshDensitiesFind(run->comm, run->scene, input->trust, &r->n_densities, &r->density, &r->structured));
+  if (r->structured && !r->n_densities)
     PetscCall(RefuseInput(run->comm, "%s: '%s' declares no parameter that refines its mesh; allowed: names of them in "
                                      "accuracy.densities",
                           SceneWhere(run->scene, "accuracy", NULL), run->scene->mesh_file));
-  PetscCall(PetscCalloc1(r->n_densities, &r->edit));
+  r->n_edits = r->structured ? r->n_densities : 1;
+  PetscCall(PetscCalloc1(r->n_edits, &r->edit));
   PetscCall(PetscCalloc2(wish->meshes, &r->figures, wish->meshes, &r->mesh));
   r->wish.densities = NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -110,7 +120,8 @@ static PetscErrorCode Begin(Run *run, const RunInput *input, Refinement *r)
 static PetscErrorCode End(Refinement *r)
 {
   PetscFunctionBeginUser;
-  for (int i = 0; i < r->n_densities; i++) PetscCall(PetscFree(r->edit[i]));
+  for (int i = 0; i < r->n_edits; i++) PetscCall(PetscFree(r->edit[i]));
+  PetscCall(PetscFree(r->size));
   PetscCall(PetscFree(r->edit));
   PetscCall(PetscFree(r->density));
   PetscCall(PetscFree2(r->figures, r->mesh));
@@ -135,6 +146,7 @@ static PetscErrorCode Record(Refinement *r, double factor)
   PetscCall(ResultsGetUsage(r->run->results, &usage));
   PetscCall(ModelDofs(r->run->model, &mesh->dofs));
   mesh->error       = *error;
+  mesh->error.cells = NULL; /* they go with the run */
   mesh->mesh_s      = r->run->mesh_s;
   r->figures[r->n] = (MeshFigures){.factor   = factor,
                                    .unknowns = (double)mesh->dofs,
@@ -192,12 +204,38 @@ static PetscErrorCode Write(const Refinement *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Chooses the next mesh and forecasts it. r->why: there is none. */
-static void Plan(Refinement *r, MeshFigures *next)
+/* Chooses the sizes of the next mesh's elements and forecasts it. */
+static PetscErrorCode PlanSizes(Refinement *r, MeshFigures *next)
 {
-  const double factor = MeshPlanFactor(r->n, r->figures, r->order, (double)WantedMeshError(r));
+  const Mesh           mesh   = r->run->mesh;
+  const MeshFigures   *last   = &r->figures[r->n - 1];
+  const PetscReal      wanted = WantedMeshError(r) / (PetscReal)last->error;
+  const QuantityError *error;
+  const char          *why;
+  PetscReal            value;
+  SizesForecast        forecast;
 
-  *next = MeshPlanForecast(r->n, r->figures, r->dim, r->order, factor);
+  PetscFunctionBeginUser;
+  PetscCall(ResultsGetError(r->run->results, r->wish.probe, &value, &why, &error));
+  PetscCall(PetscFree(r->size));
+  PetscCall(PetscMalloc1(mesh->n_cells, &r->size));
+  PetscCall(ElementSizesFind(r->run->model, error->cells, PetscMin(wanted, REFINEMENT_PART), REFINEMENT_MOST_ELEMENTS, r->size,
+                             &forecast));
+  *next       = MeshPlanForecast(r->n, r->figures, r->dim, r->order,
+                                 last->factor * pow((double)forecast.elements, 1.0 / r->dim));
+  next->error = last->error * (double)forecast.error;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Chooses the next mesh and forecasts it. r->why: there is none. */
+static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
+{
+  PetscFunctionBeginUser;
+  if (r->structured)
+    *next = MeshPlanForecast(r->n, r->figures, r->dim, r->order,
+                             MeshPlanFactor(r->n, r->figures, r->order, (double)WantedMeshError(r)));
+  else
+    PetscCall(PlanSizes(r, next));
   if (r->n == r->wish.meshes)
     r->why = "accuracy.meshes are solved";
   else if (r->wish.cpu_s > 0 && r->cpu_s + next->cpu_s > r->wish.cpu_s)
@@ -207,6 +245,21 @@ static void Plan(Refinement *r, MeshFigures *next)
   else if (MeshError(&r->mesh[r->n - 1].error) < REFINEMENT_LEAST_SHARE * r->mesh[r->n - 1].error.magnitude &&
            (double)MeshError(&r->mesh[r->n - 1].error) < (double)WantedMeshError(r))
     r->why = "what is left of error does not come from the mesh";
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Writes the sizes of the next mesh's elements and the edit that names their file. */
+static PetscErrorCode EditSizes(Refinement *r)
+{
+  char file[PETSC_MAX_PATH_LEN + 32], full[PETSC_MAX_PATH_LEN] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(file, sizeof(file), "%s/mesh-%d.pos", r->directory, r->n + 1));
+  PetscCall(MeshSizesWrite(r->run->mesh, r->size, file));
+  if (!r->rank) PetscCall(PetscGetFullPath(file, full, sizeof(full)));
+  PetscCallMPI(MPI_Bcast(full, sizeof(full), MPI_CHAR, 0, r->run->comm));
+  PetscCall(PetscSNPrintf(r->edit[0], EDIT_LENGTH, "mesh.sizes=%s", full));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Makes the edits of the scene that give the next mesh. */
@@ -217,17 +270,19 @@ static PetscErrorCode Edit(Refinement *r, double factor)
   char      value[MESH_DENSITY_TEXT];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(r->n_given + r->n_densities, &set));
+  PetscCall(PetscMalloc1(r->n_given + r->n_edits, &set));
   PetscCall(PetscArraycpy(set, input->set, r->n_given));
-  for (int i = 0; i < r->n_densities; i++) {
+  for (int i = 0; i < r->n_edits; i++) {
     if (!r->edit[i]) PetscCall(PetscMalloc1(EDIT_LENGTH, &r->edit[i]));
+    set[r->n_given + i] = r->edit[i];
+    if (!r->structured) continue;
     MeshDensityText(&r->density[i], (PetscReal)factor, value);
     PetscCall(PetscSNPrintf(r->edit[i], EDIT_LENGTH, "mesh.parameters.%s=%s", r->density[i].name, value));
-    set[r->n_given + i] = r->edit[i];
   }
+  if (!r->structured) PetscCall(EditSizes(r));
   if (input->n_set > r->n_given) PetscCall(PetscFree(input->set));
   input->set       = set;
-  input->n_set     = r->n_given + r->n_densities;
+  input->n_set     = r->n_given + r->n_edits;
   input->overwrite = PETSC_TRUE;
   input->mesh      = r->n + 1;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -242,7 +297,7 @@ static PetscErrorCode SolveNext(Refinement *r, const MeshFigures *next, BurnishS
   PetscFunctionBeginUser;
   PetscCall(Edit(r, next->factor));
   Say(r, "next    ");
-  for (int i = 0; i < r->n_densities; i++) Say(r, " %s,", strchr(r->edit[i], '.') + strlen(".parameters."));
+  for (int i = 0; r->structured && i < r->n_edits; i++) Say(r, " %s,", strchr(r->edit[i], '.') + strlen(".parameters."));
   Say(r, " some %.0f unknowns, error by the mesh %.2g %%, CPU %.2g s\n", next->unknowns, part * next->error, next->cpu_s);
   PetscCall(RunDestroy(r->run));
   *r->run = (Run){.comm = comm};
@@ -277,7 +332,7 @@ static PetscErrorCode Loop(Refinement *r, BurnishStatus *status)
     Print(r);
     PetscCall(Write(r));
     if (Error(r) <= r->wish.to) break;
-    Plan(r, &next);
+    PetscCall(Plan(r, &next));
     if (!r->why) PetscCall(SolveNext(r, &next, status));
   }
   Conclude(r, status);
