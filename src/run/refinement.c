@@ -90,7 +90,7 @@ static PetscReal WantedMeshError(const Refinement *r)
 static PetscErrorCode Begin(Run *run, const RunInput *input, Refinement *r)
 {
   const SceneAccuracy *wish = &run->scene->accuracy;
-  const char          *name = run->scene->probes[wish->probe].name, *ending = strrchr(run->scene->mesh_file, '.');
+  const char          *name = run->scene->probes[wish->probe].name;
   char                *copy;
 
   PetscFunctionBeginUser;
@@ -101,9 +101,6 @@ static PetscErrorCode Begin(Run *run, const RunInput *input, Refinement *r)
   r->probe = copy;
   PetscCall(PetscStrncpy(r->directory, run->directory, sizeof(r->directory)));
   *strrchr(r->directory, '/') = '\0';
-  if (strcmp(ending, ".geo"))
-    PetscCall(RefuseInput(run->comm, "%s: '%s' cannot be meshed anew; allowed with accuracy: a .geo file",
-                          SceneWhere(run->scene, "mesh", "file"), run->scene->mesh_file));
   PetscCall(MeshDensitiesFind(run->comm, run->scene, input->trust, &r->n_densities, &r->density, &r->structured));
   if (r->structured && !r->n_densities)
     PetscCall(RefuseInput(run->comm, "%s: '%s' declares no parameter that refines its mesh; allowed: names of them in "
@@ -317,8 +314,10 @@ static void Conclude(Refinement *r, BurnishStatus *status)
              r->directory, r->n);
     if (!r->rank) fprintf(stderr, "burnish: %s\n", r->run->message);
   } else
-    Say(r, "done: %s %.6g is accurate to %.3g %% after %d meshes and %.1f s of CPU; results in %s/mesh-%d\n", r->probe,
-        (double)r->mesh[r->n - 1].value, 100 * (double)Error(r), r->n, r->cpu_s, r->directory, r->n);
+    Say(r, "done: %s %.6g with an estimated error of %.3g %%%s, %d meshes, %.1f s of CPU; results in %s/mesh-%d\n", r->probe,
+        (double)r->mesh[r->n - 1].value, 100 * (double)Error(r),
+        isnan((double)r->mesh[r->n - 1].error.part[ERROR_GEOMETRY]) ? " besides that of the contact surfaces" : "", r->n,
+        r->cpu_s, r->directory, r->n);
 }
 
 /* Solves meshes until the last one is accurate enough. */

@@ -56,6 +56,9 @@ PetscErrorCode SceneReadAccuracy(Scene scene)
   PetscFunctionBeginUser;
   scene->accuracy.probe = -1;
   if (!SchemaHas(document, "accuracy")) PetscFunctionReturn(PETSC_SUCCESS);
+  if (strcmp(scene->mesh_file + PetscMax(strlen(scene->mesh_file), 4) - 4, ".geo"))
+    PetscCall(SceneRefuse(scene, "mesh", "file", "cannot be meshed anew; allowed with accuracy: a .geo file",
+                          scene->mesh_file));
   PetscCall(FindProbe(scene));
   PetscCall(ReadDensities(scene));
   scene->accuracy.to     = SchemaReal(document, "accuracy.to") / 100;
