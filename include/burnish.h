@@ -28,7 +28,8 @@ typedef enum {
   BURNISH_WRONG_INPUT   = 1, /* the scene, the mesh or an option is wrong; nothing was overwritten */
   BURNISH_NOT_CONVERGED = 2, /* a load step failed; the results up to it are there */
   BURNISH_STOPPED       = 3, /* a signal or a time limit ended the run after a checkpoint */
-  BURNISH_FAILED        = 4  /* internal error or failure of the machine; the trace is in error.log */
+  BURNISH_FAILED        = 4, /* internal error or failure of the machine; the trace is in error.log */
+  BURNISH_INACCURATE    = 5  /* the accuracy that the scene asks for is not reached; the best results are there */
 } BurnishStatus;
 
 typedef struct _n_Burnish *Burnish;

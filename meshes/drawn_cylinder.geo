@@ -1,6 +1,6 @@
 // A block of quadrilaterals, and a half cylinder with a hole that touches its upper face, in the plane.
 DefineConstant[
-  h = {0.5, Name "size of the block's elements"}, h_cylinder = {0.25, Name "size of the cylinder's elements"},
+  h = {0.5, Name "element size, block"}, h_cylinder = {0.25, Name "element size, cylinder"},
   length = {20, Name "length of the block"}, height = {5, Name "height of the block"},
   radius = {4, Name "radius of the cylinder"},
   hole = {2.5, Name "radius of the hole"}, x = {7.5, Name "place of the cylinder's axis"}

@@ -9,7 +9,7 @@ DefineConstant[
   zone = {8, Name "length of the surface that is meshed with that size, from the plane of symmetry on"},
   core = {0, Name "depth below that zone that is meshed with that size too"},
   rows = {1, Name "1: the core's quadrilaterals lie in rows, 0: where the mesher puts them"},
-  growth = {0.15, Name "by how much the size grows per distance beyond"},
+  growth = {0.15, Name "element size: by how much it grows per distance beyond"},
   jitter = {0, Name "largest move of a node of that length, in elements"}, seed = {1, Name "of the moves"}
 ];
 angle = zone / radius;

@@ -1,8 +1,8 @@
 // A plate clamped at x = 0 over a rigid cylinder that touches it at x = 50 (paper, section 5.2). Lengths in mm.
 // The contact patch is 1.5 mm wide at full load: elements are h_contact long for 48 <= x <= 52 and grow away from there.
 DefineConstant[
-  h_contact = {0.25, Name "element length at the contact"},
-  h_far = {2, Name "largest element length"},
+  h_contact = {0.25, Name "element size at the contact"},
+  h_far = {2, Name "element size, the largest"},
   n_thick = {4, Name "elements through the thickness"},
   n_width = {10, Name "elements along z"},
   cylinder = {0, Name "1: the cylinder's upper half as a rigid surface"},

@@ -143,10 +143,11 @@ static PetscReal CellError(BodyError b, PetscInt cell, const PetscReal *rates, c
 + b - the recovered fields
 - y - adjoint solution of the quantity, y[n_nodes*dim], ghosts included
 
-  Output Parameter:
-. error - true less computed value, the same on all ranks
+  Output Parameters:
++ cells - share of each local cell
+- error - true less computed value, the same on all ranks
 @*/
-PetscErrorCode BodyErrorEvaluate(BodyError b, const PetscReal *y, PetscReal *error)
+PetscErrorCode BodyErrorEvaluate(BodyError b, const PetscReal *y, PetscReal *cells, PetscReal *error)
 {
   PetscReal *rates, *patches;
 
@@ -156,7 +157,10 @@ PetscErrorCode BodyErrorEvaluate(BodyError b, const PetscReal *y, PetscReal *err
     PetscCall(CellRate(b, y, c, &rates[RecoveryPoints(b->recovery, c, NULL) * RATE_WIDTH]));
   PetscCall(RecoveryFit(b->recovery, RATE_WIDTH, rates, &patches));
   *error = 0;
-  for (PetscInt c = 0; c < b->mesh->n_cells; c++) *error += CellError(b, c, rates, patches);
+  for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
+    cells[c] = CellError(b, c, rates, patches);
+    *error += cells[c];
+  }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, error, 1, MPIU_REAL, MPIU_SUM, b->mesh->comm));
   PetscCall(PetscFree(patches));
   PetscCall(PetscFree(rates));

@@ -29,4 +29,4 @@ typedef struct _n_BodyError *BodyError;
 
 PetscErrorCode BodyErrorCreate(Mesh, Elasticity, Kinematics, const PetscReal *u, BodyError *);
 PetscErrorCode BodyErrorDestroy(BodyError *);
-PetscErrorCode BodyErrorEvaluate(BodyError, const PetscReal *y, PetscReal *error);
+PetscErrorCode BodyErrorEvaluate(BodyError, const PetscReal *y, PetscReal *cells, PetscReal *error);

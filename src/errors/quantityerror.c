@@ -22,9 +22,11 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
   PetscFunctionBeginUser;
   error->known = adjoint->known;
   error->sum = error->magnitude = 0;
+  error->cells                  = NULL;
   for (int c = 0; c < ERROR_CAUSES; c++) error->part[c] = NAN;
   if (!error->known) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyErrorEvaluate(bodies, adjoint->y, &error->part[ERROR_BODIES]));
+  PetscCall(PetscMalloc1(model->mesh->n_cells, &error->cells));
+  PetscCall(BodyErrorEvaluate(bodies, adjoint->y, error->cells, &error->part[ERROR_BODIES]));
   error->part[ERROR_GEOMETRY]    = model->contact ? NAN : 0;
   error->part[ERROR_PENETRATION] = adjoint->penetration;
   error->part[ERROR_SLIP]        = adjoint->slip;
@@ -49,7 +51,7 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
 - functional - their first variations
 
   Output Parameter:
-. error - of each
+. error - of each; free them with QuantityErrorReset()
 
   Note:
   The state stays as it is. One tangent is factored for all quantities, and solved with once for each.
@@ -71,5 +73,20 @@ PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional funct
   PetscCall(BodyErrorDestroy(&bodies));
   for (int i = 0; i < n; i++) PetscCall(PetscFree(adjoint[i].y));
   PetscCall(PetscFree(adjoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  QuantityErrorReset - frees what an estimate holds.
+
+  Not collective
+
+  Input Parameter:
+. error - its values stay
+@*/
+PetscErrorCode QuantityErrorReset(QuantityError *error)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(error->cells));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -29,6 +29,8 @@ typedef struct {
   PetscReal  part[ERROR_CAUSES];
   PetscReal  sum;       /* of the known parts */
   PetscReal  magnitude; /* sum of their absolute values */
+  PetscReal *cells;     /* share of each local cell in that of the bodies; NULL: not known */
 } QuantityError;
 
 PetscErrorCode QuantityErrorsEstimate(Model, int n, const Functional[], QuantityError[]);
+PetscErrorCode QuantityErrorReset(QuantityError *);

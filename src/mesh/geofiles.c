@@ -208,6 +208,7 @@ static PetscErrorCode WalkScript(Walk *walk, const char *path, const char *text,
     Judge(walk, path, tokens.token[tokens.n - 1].line, tokens.wrong);
   }
   PetscCall(GeoParametersAdd(text, &walk->files->declared));
+  PetscCall(GeoDensitiesAdd(&walk->files->densities, &tokens));
   PetscCall(GeoStringsAdd(&walk->found, &tokens));
   if (!walk->complaint->text[0]) PetscCall(FollowNames(walk, path, &tokens));
   PetscCall(GeoTokensDestroy(&tokens));
@@ -335,6 +336,7 @@ PetscErrorCode GeoFilesReset(GeoFiles *files)
 {
   PetscFunctionBeginUser;
   PetscCall(GeoParametersReset(&files->declared));
+  PetscCall(GeoDensitiesReset(&files->densities));
   *files = (GeoFiles){0};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

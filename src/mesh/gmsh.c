@@ -21,6 +21,8 @@
 /* The digits behind these stand for the version of gmsh. They are apart so that a machine without gmsh finds a mesh of
    the same content. */
 #define VERSION_DIGITS 4
+/* Arguments of gmsh for given sizes of elements */
+enum { SIZES_ARGUMENTS = 5 };
 
 /* Appends a line of gmsh's output to a message. */
 static void AppendLine(const char *line, char *text, size_t size)
@@ -105,6 +107,23 @@ static PetscErrorCode CheckParameters(Scene scene, PetscBool trust, const GeoFil
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Hashes the sizes of elements that the scene gives. */
+static PetscErrorCode HashSizes(Scene scene, uint64_t *content, Complaint *complaint)
+{
+  char  *text;
+  size_t size;
+
+  PetscFunctionBeginUser;
+  if (!scene->sizes) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GmshFileLoad(scene->sizes, &text, &size));
+  if (!text)
+    Complain(complaint, "%s: there is no file '%s'", SceneWhere(scene, "mesh", "sizes"), scene->sizes);
+  else
+    *content = HashBytes(*content, text, size);
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Hashes all that the mesh depends on. The order of parameters in the scene does not matter, as each is hashed apart
    and the hashes are added. *open: the geometry may read files that the hash does not know. */
 static PetscErrorCode HashScene(Scene scene, PetscBool trust, uint64_t *content, PetscBool *open, Complaint *complaint)
@@ -124,6 +143,7 @@ static PetscErrorCode HashScene(Scene scene, PetscBool trust, uint64_t *content,
   }
   snprintf(text, sizeof(text), "%016llx %d %d", (unsigned long long)sum, scene->dim, scene->order);
   *content = HashBytes(files.content, text, strlen(text));
+  PetscCall(HashSizes(scene, content, complaint));
   *open    = files.open;
   PetscCall(GeoFilesReset(&files));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -192,13 +212,20 @@ static PetscErrorCode MeshGeometry(Scene scene, const char *file, PetscBool trus
                                "-setnumber",
                                "Mesh.SecondOrderIncomplete",
                                "0"};
-  PetscCall(PetscMalloc1(sizeof(fixed) / sizeof(*fixed) + 3 * (size_t)scene->n_parameters + 3, &arguments));
+  /* Sizes of the scene's take the place of fields, and within bodies of all others. Sizes at points still bound those of
+     curves. NULL: the name of their file */
+  static const char *const sizes[SIZES_ARGUMENTS] = {"-bgm", NULL, "-setnumber", "Mesh.MeshSizeExtendFromBoundary",
+                                                     "0"};
+
+  PetscCall(PetscMalloc1(sizeof(fixed) / sizeof(*fixed) + 3 * (size_t)scene->n_parameters + SIZES_ARGUMENTS + 3,
+                         &arguments));
   for (; n < (int)(sizeof(fixed) / sizeof(*fixed)); n++) arguments[n] = fixed[n];
   for (int i = 0; i < scene->n_parameters; i++) {
     arguments[n++] = IsNumber(scene->parameters[i].value) ? "-setnumber" : "-setstring";
     arguments[n++] = scene->parameters[i].key;
     arguments[n++] = scene->parameters[i].value;
   }
+  for (int i = 0; scene->sizes && i < SIZES_ARGUMENTS; i++) arguments[n++] = sizes[i] ? sizes[i] : scene->sizes;
   arguments[n++] = "-o";
   arguments[n++] = draft.mesh;
   arguments[n]   = NULL;

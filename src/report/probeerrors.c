@@ -58,6 +58,7 @@ PetscErrorCode ProbeErrorsDestroy(ProbeErrors *errors)
 {
   PetscFunctionBeginUser;
   if (!*errors) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int i = 0; i < (*errors)->scene->n_probes; i++) PetscCall(QuantityErrorReset(&(*errors)->error[i]));
   PetscCall(PetscFree3((*errors)->value, (*errors)->why, (*errors)->error));
   PetscCall(PetscFree(*errors));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,5 +1,6 @@
 /* What a run writes, step by step: ties its directory, tables, fields and the terminal, see results.h. */
 #include "report/results.h"
+#include "errorfields.h"
 #include "fields.h"
 #include "optionrecord.h"
 #include "report/rundirectory.h"
@@ -109,6 +110,28 @@ PetscErrorCode ResultsGetProbes(Results results, const PetscReal **values)
 {
   PetscFunctionBeginUser;
   *values = results->stepped ? results->values : NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ResultsGetError - gives the estimated error of a probe at the end of the load.
+
+  Not collective
+
+  Input Parameters:
++ results - of a run whose scene has output.error
+- probe   - number of the probe
+
+  Output Parameters:
++ value - of the probe
+. why   - why there is no estimate; NULL: there is one
+- error - the estimate
+@*/
+PetscErrorCode ResultsGetError(Results results, int probe, PetscReal *value, const char **why,
+                               const QuantityError **error)
+{
+  PetscFunctionBeginUser;
+  *error = ProbeErrorsGet(results->errors, probe, value, why);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -253,8 +276,18 @@ PetscErrorCode ResultsStep(Results results, const StepRecord *step)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds up what all parts of the run have used until now. */
-static PetscErrorCode ResultsUsage(Results results, RunUsage *usage)
+/*@
+  ResultsGetUsage - adds up what all parts of the run have used until now.
+
+  Collective
+
+  Input Parameter:
+. results - of the run
+
+  Output Parameter:
+. usage - the same on all ranks
+@*/
+PetscErrorCode ResultsGetUsage(Results results, RunUsage *usage)
 {
   const RunUsage *before = &results->before;
 
@@ -313,7 +346,7 @@ static PetscErrorCode ResultsArchiveUsage(Results results, Archive archive)
   PetscInt   restarts = results->restarts;
 
   PetscFunctionBeginUser;
-  if (!ArchiveLoads(archive)) PetscCall(ResultsUsage(results, &usage));
+  if (!ArchiveLoads(archive)) PetscCall(ResultsGetUsage(results, &usage));
   PetscCall(ArchiveRealsAt(archive, "results/used", PETSC_STATIC_ARRAY_LENGTH(used), used));
   PetscCall(ArchiveReals(archive, "results/seconds", TIMING_KINDS, usage.seconds));
   PetscCall(ArchiveIntegers(archive, "results/restarts", 1, &restarts));
@@ -386,8 +419,9 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   }
   TimingBegin(TIMING_OUTPUT);
   if (results->stepped && !results->written) PetscCall(ResultsWriteFields(results));
+  if (results->written) PetscCall(ErrorFieldsWrite(results->model->mesh, results->scene, results->errors, results->directory));
   TimingEnd(TIMING_OUTPUT);
-  PetscCall(ResultsUsage(results, &usage));
+  PetscCall(ResultsGetUsage(results, &usage));
   usage.wall_s = results->before.wall_s + run->wall_s;
   PetscCall(RunFiguresCollect(results->model, results->scene, run, &usage, results->restarts,
                               results->stepped ? &results->last : NULL, &figures));

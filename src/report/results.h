@@ -6,6 +6,7 @@
    it went. ResultsArchive() keeps the state of all this in a checkpoint; loaded before ResultsStart(), it lets the run go on in the same files. Which directory may be used is
    decided before, by rundirectory.h. */
 #pragma once
+#include "errors/quantityerror.h"
 #include "solve/model.h"
 #include "report/probe.h"
 #include "step/stepper.h"
@@ -37,3 +38,5 @@ PetscErrorCode ResultsStep(Results, const StepRecord *);
 PetscErrorCode ResultsFinish(Results, const RunRecord *);
 PetscErrorCode ResultsArchive(Results, Archive);
 PetscErrorCode ResultsGetProbes(Results, const PetscReal **values);
+PetscErrorCode ResultsGetError(Results, int probe, PetscReal *value, const char **why, const QuantityError **);
+PetscErrorCode ResultsGetUsage(Results, RunUsage *);

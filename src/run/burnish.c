@@ -4,7 +4,7 @@
 #include "base/errorlog.h"
 #include "base/explanation.h"
 #include "base/refusal.h"
-#include "run.h"
+#include "refinement.h"
 
 struct _n_Burnish {
   MPI_Comm   comm;
@@ -261,6 +261,7 @@ static PetscErrorCode Execute(Burnish burnish, RunTask task, BurnishStatus *stat
   PetscCall(ErrorLogBegin());
   TimingReset();
   code = RunScene(&run, &input, status);
+  if (!code && run.refines && *status == BURNISH_DONE) code = RefinementRun(&run, &input, status);
   if (!code) code = KeepRun(burnish, &run);
   if (code == REFUSED && RefusalIsPending()) {
     *status = BURNISH_WRONG_INPUT;

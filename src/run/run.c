@@ -59,6 +59,12 @@ static PetscErrorCode RunOpen(Run *run, const RunInput *input)
   PetscCall(RunInsertOptions(run, input->trust));
   PetscCall(PetscSNPrintf(run->directory, sizeof(run->directory), "%s%s", input->directory ? input->directory : "out/",
                           input->directory ? "" : run->scene->name));
+  run->refines = (PetscBool)(run->scene->accuracy.probe >= 0 && input->task == RUN_SOLVE);
+  if (run->refines) {
+    const size_t used = strlen(run->directory);
+
+    PetscCall(PetscSNPrintf(run->directory + used, sizeof(run->directory) - used, "/mesh-%d", PetscMax(input->mesh, 1)));
+  }
   if (input->task != RUN_MESH) PetscCall(RunDirectoryCheckPath(run->comm, run->directory));
   PetscCall(ErrorLogSetDirectory(run->directory));
   if (input->task == RUN_SOLVE) PetscCall(RunDirectoryCheck(run->comm, run->scene, run->directory, input->overwrite));
@@ -143,7 +149,8 @@ static PetscErrorCode RunLastSolution(void *context)
 static PetscErrorCode RunCreateStepper(Run *run, const RunInput *input)
 {
   PetscFunctionBeginUser;
-  PetscCall(ResultsCreate(run->model, run->probes, run->scene, run->directory, input->quiet, &run->results));
+  PetscCall(ResultsCreate(run->model, run->probes, run->scene, run->directory, input->quiet || run->refines,
+                          &run->results));
   PetscCall(LoadStepperCreate(run->comm, &run->stepper));
   PetscCall(LoadStepperSetModel(run->stepper, run->model));
   PetscCall(LoadStepperSetFromScene(run->stepper, run->scene));

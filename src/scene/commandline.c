@@ -69,6 +69,20 @@ static void CommandLineSetLimit(CommandLine *line, const char *value)
   if (*end || !(line->time_limit > 0)) CommandLineComplain(line, "-time_limit needs seconds, more than 0", value);
 }
 
+/* Makes edits of the scene of -to 1% and -probe NAME. */
+static void CommandLineSetAccuracy(CommandLine *line, const char *word, const char *value)
+{
+  char        *edit = line->accuracy[word[1] == 'p'];
+  const size_t room = sizeof line->accuracy[0];
+
+  if (!value) return;
+  if (edit[0]) CommandLineComplain(line, "given twice", word);
+  if (snprintf(edit, room, "accuracy.%s=%s", word + 1, value) >= (int)room)
+    CommandLineComplain(line, "is too long", value);
+  if (word[1] == 't' && edit[strlen(edit) - 1] == '%') edit[strlen(edit) - 1] = 0;
+  line->set[line->n_set++] = edit;
+}
+
 /* Complains of options that exclude each other, and of a missing scene file. */
 static void CommandLineCheck(CommandLine *line)
 {
@@ -104,6 +118,8 @@ static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
     if (value && (value[0] == '=' || !strchr(value, '=')))
       CommandLineComplain(line, "-set needs KEY=VALUE, such as contact.0.smoother=facet", value);
     line->set[line->n_set++] = value;
+  } else if (!strcmp(word, "-to") || !strcmp(word, "-probe")) {
+    CommandLineSetAccuracy(line, word, CommandLineValue(line, argc, argv, i, "needs an error in per cent, or a probe"));
   } else if (!strcmp(word, "-check") || !strcmp(word, "-mesh")) {
     CommandLineSetMode(line, word[1] == 'c' ? COMMAND_CHECK : COMMAND_MESH, word);
     if (*i + 1 < argc && !IsOption(argv[*i + 1])) CommandLineSetScene(line, argv[++*i]);
@@ -241,6 +257,8 @@ void CommandLineHelp(FILE *file)
         "                   'loads.0={surface: top, uy: -1}'; repeatable, the last one wins; with -restart only of "
         "output,\n"
         "                   solver and stepping\n"
+        "  -to E -probe P   makes meshes until the error of probe P is below E per cent (the scene's accuracy.to and\n"
+        "                   accuracy.probe)\n"
         "  -overwrite       lets DIR hold another scene's results\n"
         "  -quiet           no progress on the terminal\n"
         "  -trust           lets the scene load libraries (law: umat), run programs and write files of its own (gmsh's "
@@ -253,7 +271,7 @@ void CommandLineHelp(FILE *file)
         "which passes it\n"
         "on, or to any rank), SIGTERM (to any rank) or -time_limit ends it after the current step.\n\n"
         "Exit status: 0 done, 1 wrong input, 2 did not converge, 3 stopped after a checkpoint, 4 machine or internal "
-        "error.\n\n"
+        "error,\n5 the accuracy that was asked for is not reached.\n\n"
         "Scene file (YAML; file names in it start at its own folder):\n\n",
         file);
   SchemaReference(file);

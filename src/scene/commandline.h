@@ -32,6 +32,7 @@ typedef struct {
   int         n_set;
   char      **set; /* values of -set, each KEY=VALUE */
   int         overwrite, quiet, trust;
+  char        accuracy[2][256]; /* the edits that -to and -probe stand for, or empty */
   /* The arguments that are left for PetscInitialize(). The first one is the program's name. */
   int    argc;
   char **argv;

@@ -1,4 +1,5 @@
 /* The reader of a scene: it fills the Scene from a validated document, see scene.h. */
+#include "sceneaccuracy.h"
 #include "scenecontact.h"
 #include "sceneload.h"
 #include "scenemotion.h"
@@ -11,25 +12,6 @@
 #include "base/refusal.h"
 #include <string.h>
 
-/* Reads a map of keys and values that are not in the schema. The value null becomes an empty text. */
-static PetscErrorCode SceneReadPairs(Scene scene, const char *key, int *n, ScenePair **pairs)
-{
-  Node map = NodeFind(SceneDocument(scene)->root, key);
-
-  PetscFunctionBeginUser;
-  *n = map ? map->n : 0;
-  PetscCall(PetscCalloc1(*n, pairs));
-  for (int i = 0; i < *n; i++) {
-    const Node value = map->child[i];
-
-    PetscCall(PetscStrallocpy(map->key[i] + (map->key[i][0] == '-'), &(*pairs)[i].key));
-    PetscCall(
-      PetscStrallocpy(value->plain && (!strcmp(value->text, "null") || !strcmp(value->text, "~")) ? "" : value->text,
-                      &(*pairs)[i].value));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Tells whether a file has the ending of a mesh file of another program. */
 static PetscBool IsForeignMesh(const char *ending)
 {
@@ -40,11 +22,24 @@ static PetscBool IsForeignMesh(const char *ending)
   return PETSC_FALSE;
 }
 
+/* Reads the name of a file below mesh: where the process can open it. */
+static PetscErrorCode SceneReadPath(Scene scene, const char *key, char **name)
+{
+  const char *file = SchemaText(SceneDocument(scene), "mesh.%s", key);
+  char        path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  if (snprintf(path, sizeof path, "%s%s%s", file[0] == '/' ? "" : scene->directory, file[0] == '/' ? "" : "/", file) >=
+      (int)sizeof path)
+    PetscCall(SceneRefuse(scene, "mesh", key, "the path is too long", NULL));
+  PetscCall(PetscStrallocpy(path, name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneReadMesh(Scene scene)
 {
   const char *file = SchemaText(SceneDocument(scene), "mesh.file"), *dot = strrchr(file, '.');
   const int   geo = dot && !strcmp(dot, ".geo");
-  char        path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
   scene->foreign_mesh = dot ? IsForeignMesh(dot) : PETSC_FALSE;
@@ -52,10 +47,11 @@ static PetscErrorCode SceneReadMesh(Scene scene)
     PetscCall(SceneRefuse(scene, "mesh", "file",
                           "is no mesh file; allowed: .geo, .msh, .inp, .med, .unv, .cgns, .bdf, .nas, .vtk, .vtu",
                           file));
-  if (snprintf(path, sizeof path, "%s%s%s", file[0] == '/' ? "" : scene->directory, file[0] == '/' ? "" : "/", file) >=
-      (int)sizeof path)
-    PetscCall(SceneRefuse(scene, "mesh", "file", "the path is too long", NULL));
-  PetscCall(PetscStrallocpy(path, &scene->mesh_file));
+  PetscCall(SceneReadPath(scene, "file", &scene->mesh_file));
+  if (SceneHas(scene, "mesh", "sizes")) {
+    if (!geo) PetscCall(SceneRefuse(scene, "mesh", "sizes", "needs a geometry; allowed with a .geo file", NULL));
+    PetscCall(SceneReadPath(scene, "sizes", &scene->sizes));
+  }
   scene->order =
     SchemaHas(SceneDocument(scene), "mesh.order") ? SchemaInteger(SceneDocument(scene), "mesh.order") : geo;
   PetscCall(SceneReadPairs(scene, "mesh.parameters", &scene->n_parameters, &scene->parameters));
@@ -320,6 +316,7 @@ static PetscErrorCode SceneReadAll(Scene scene, const char *file)
   PetscCall(SceneReadStepping(scene));
   PetscCall(SceneReadProbes(scene));
   PetscCall(SceneReadOutput(scene));
+  PetscCall(SceneReadAccuracy(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -553,11 +550,13 @@ PetscErrorCode SceneDestroy(Scene *scene)
   PetscCall(SceneDestroySteps(s));
   PetscCall(PairsDestroy(s->n_parameters, &s->parameters));
   PetscCall(PairsDestroy(s->n_petsc, &s->petsc));
+  PetscCall(PairsDestroy(s->accuracy.n_densities, &s->accuracy.densities));
   PetscCall(PetscFree(s->file));
   PetscCall(PetscFree(s->directory));
   PetscCall(PetscFree(s->text));
   PetscCall(PetscFree(s->name));
   PetscCall(PetscFree(s->mesh_file));
+  PetscCall(PetscFree(s->sizes));
   PetscCall(DocumentDestroy(SceneDocument(s)));
   PetscCall(PetscFree(*scene));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -181,6 +181,21 @@ typedef struct {
   char *key, *value; /* the key has no dash */
 } ScenePair;
 
+/* What a parameter of a .geo does that refines its mesh: it counts elements, it is a size, or it divides sizes */
+typedef enum { DENSITY_COUNT, DENSITY_SIZE, DENSITY_DIVISOR, DENSITY_KINDS } DensityKind;
+extern const char *const DensityKinds[]; /* their words */
+
+/* The accuracy that a run is to reach on meshes of its own choice */
+typedef struct {
+  int        probe;       /* whose error counts; -1: none is asked for */
+  double     to;          /* error that is allowed, over the value */
+  double     cpu_s;       /* that may be used; 0: no limit */
+  double     rss_mb;      /* memory of the largest rank; 0: no limit */
+  int        meshes;      /* at most */
+  int        n_densities; /* parameters of the .geo that refine, each with one of DensityKinds */
+  ScenePair *densities;
+} SceneAccuracy;
+
 typedef struct {
   char      *file, *directory; /* file as the user gave it; its directory, where relative paths start */
   char      *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
@@ -188,6 +203,7 @@ typedef struct {
   char      *mesh_file;    /* path with which the process can open the file */
   PetscBool  foreign_mesh; /* the mesh file is one of another program, by its ending */
   int        order;        /* of the elements, 1 or 2; 0 stands for that of the .msh file */
+  char      *sizes;        /* view of gmsh with the sizes of elements; NULL: those of the .geo file */
   int        n_parameters;
   ScenePair *parameters; /* of the .geo file */
   Geometry   geometry;
@@ -235,6 +251,7 @@ typedef struct {
     int error;                                            /* 1 if the errors of the probes are estimated */
     int certificate;                                      /* 1 if each accepted step is judged */
   } output;
+  SceneAccuracy accuracy;
   struct {
     double penetration; /* largest depth to which faces may cross, in sizes of the smaller face */
   } certificate;

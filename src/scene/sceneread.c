@@ -256,6 +256,37 @@ PetscErrorCode SceneReadHistory(Scene scene, const char *path, History *history)
 }
 
 /*@
+  SceneReadPairs - reads a map of keys and values that are not in the schema.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+- key   - path of the map
+
+  Output Parameters:
++ n     - number of its entries, 0 where the scene has none
+- pairs - the entries, freed with the scene; the value null becomes an empty text
+@*/
+PetscErrorCode SceneReadPairs(Scene scene, const char *key, int *n, ScenePair **pairs)
+{
+  Node map = NodeFind(SceneDocument(scene)->root, key);
+
+  PetscFunctionBeginUser;
+  *n = map ? map->n : 0;
+  PetscCall(PetscCalloc1(*n, pairs));
+  for (int i = 0; i < *n; i++) {
+    const Node value = map->child[i];
+
+    PetscCall(PetscStrallocpy(map->key[i] + (map->key[i][0] == '-'), &(*pairs)[i].key));
+    PetscCall(
+      PetscStrallocpy(value->plain && (!strcmp(value->text, "null") || !strcmp(value->text, "~")) ? "" : value->text,
+                      &(*pairs)[i].value));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   SceneRefuseRigid - refuses a surface that belongs to a rigid tool.
 
   Not collective

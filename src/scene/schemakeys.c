@@ -52,6 +52,9 @@ const SchemaKey SchemaKeys[] = {
   {"mesh.order", INTEGER, .range = "[1, 2]",
    .help = "order of the elements; the default is 1 for a .geo file, and that of the file for the others"},
   {"mesh.parameters", FREE, .help = "numbers and texts that are passed to the .geo file"},
+  {"mesh.sizes", FILENAME,
+   .help = "a view of gmsh (.pos) with element sizes that take the place of those of the .geo file; curves and surfaces "
+           "that the .geo divides itself (Transfinite) keep their divisions"},
   {"geometry", CHOICE, .values = "solid | plane_strain | axisymmetric | plane_stress", .preset = "solid",
    .help = "geometry of the model; for axisymmetric, x is the radius and y is the axial coordinate; plane_stress is for "
            "thin parts, free to become thinner or thicker"},
@@ -402,6 +405,19 @@ const SchemaKey SchemaKeys[] = {
    .help = "true: each step is judged before it is accepted: nothing passed through anything unseen"},
   {"output.error", BOOLEAN, .preset = "false",
    .help = "true: the error of each probe is estimated at the end, split by cause; one more solve for each"},
+  {"accuracy", MAP,
+   .help = "meshes are made and solved on until a probe is accurate; the run ends with status 5 if it does not get there"},
+  {"accuracy.probe", TEXT, REQUIRED, .help = "name of the probe; its error must have an estimate (output.error)"},
+  {"accuracy.to", REAL, REQUIRED, .range = "(0, 100)", .unit = "per cent",
+   .help = "the error that is allowed: the sum of the magnitudes of all estimated parts, over the probe's value"},
+  {"accuracy.densities", FREE,
+   .help = "parameters of the .geo file that refine the mesh, each `count` (a number of elements), `size` (of elements) "
+           "or `divisor` (of sizes); the default is those whose Name in the .geo begins with elements or faces (count), "
+           "element size (size) or divides (divisor)"},
+  {"accuracy.meshes", INTEGER, .range = "[1, 100]", .preset = "10", .help = "number of meshes at most"},
+  {"accuracy.limit", MAP, .help = "what the run may use; a mesh that is forecast to need more is not begun"},
+  {"accuracy.limit.time", REAL, .range = "(0, inf)", .unit = "s", .help = "CPU time of all meshes and ranks together"},
+  {"accuracy.limit.memory", REAL, .range = "(0, inf)", .unit = "MB", .help = "memory of the largest rank"},
   {"certificate", MAP, .help = "what a step must hold to be certified"},
   {"certificate.penetration", REAL, .range = "(0, inf)", .unit = "face sizes", .preset = "0.1",
    .help = "largest depth to which faces may cross, in sizes of the smaller face, besides what the shape of faces "

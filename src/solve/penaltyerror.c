@@ -16,8 +16,10 @@
    not count for this. Where the slave's nodes are denser than the master's, pressures scatter, and stiffer penalties
    only let them scatter more. */
 #define PENALTY_ERROR_LARGE 0.004
-/* They are made so stiff that this is to be expected. */
-#define PENALTY_ERROR_WANTED 0.002
+/* Where the scene asks for an accuracy, it is at most this part of the error that is allowed: the rest is for the mesh. */
+#define PENALTY_ERROR_SHARE 0.3
+/* They are made so stiff that this part of it is to be expected. */
+#define PENALTY_ERROR_WANTED 0.5
 /* Close to the threshold the factor rises from 1, by this part of itself for each part of the estimate: an estimate
    that rounding moves over the threshold, on other ranks, then hardly changes the answer. */
 #define PENALTY_RISE 6
@@ -327,11 +329,20 @@ PetscErrorCode ModelEstimatePenalty(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many times as stiff penalties become for an estimated error above PENALTY_ERROR_LARGE, where it is 1. */
-static PetscReal Factor(PetscReal error)
+/* The error above which penalties are made stiffer. */
+static PetscReal LargeError(Model model)
+{
+  const SceneAccuracy *accuracy = &model->scene->accuracy;
+
+  return accuracy->probe < 0 ? PENALTY_ERROR_LARGE
+                             : PetscMin(PENALTY_ERROR_LARGE, PENALTY_ERROR_SHARE * (PetscReal)accuracy->to);
+}
+
+/* How many times as stiff penalties become for an estimated error above a large one, where it is 1. */
+static PetscReal Factor(PetscReal error, PetscReal large)
 {
   return PetscMin(PENALTY_MOST_STIFFER,
-                  PetscMin(error / PENALTY_ERROR_WANTED, 1 + PENALTY_RISE * (error / PENALTY_ERROR_LARGE - 1)));
+                  PetscMin(error / (PENALTY_ERROR_WANTED * large), 1 + PENALTY_RISE * (error / large - 1)));
 }
 
 /* May the run make a pair's penalties stiffer? */
@@ -346,8 +357,9 @@ static PetscBool MayStiffen(const SceneContact *scene, PenaltySource source)
 static PetscErrorCode StiffenSource(Model model, PenaltySource source, const ContactLoad load[], PetscReal factor[],
                                     PetscBool *stiffened)
 {
-  const int pairs = ContactPairs(model->contact);
-  PetscReal most = 0, left = model->scene->solver.tolerance * ProblemForceScale(model->problem);
+  const int       pairs = ContactPairs(model->contact);
+  const PetscReal large = LargeError(model);
+  PetscReal       most = 0, left = model->scene->solver.tolerance * ProblemForceScale(model->problem);
 
   PetscFunctionBeginUser;
   for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
@@ -356,10 +368,10 @@ static PetscErrorCode StiffenSource(Model model, PenaltySource source, const Con
     PetscReal      *at    = &model->work->stiffened_at[source * pairs + p];
     PetscReal      *by    = &model->work->stiffened_by[source * pairs + p];
 
-    if (!MayStiffen(ContactPairScene(model->contact, p), source) || !(worst > PENALTY_ERROR_LARGE) ||
-        load[p].force < PENALTY_LIGHT_PAIR * most || PENALTY_ERROR_LARGE * load[p].force <= left || *by < 0)
+    if (!MayStiffen(ContactPairScene(model->contact, p), source) || !(worst > large) ||
+        load[p].force < PENALTY_LIGHT_PAIR * most || large * load[p].force <= left || *by < 0)
       continue;
-    factor[p] = *by = Factor(worst);
+    factor[p] = *by = Factor(worst, large);
     *at             = worst;
     PetscCall(StiffenPair(model, source, p, factor[p]));
     PetscCall(PetscInfo(model->snes, "contact '%s': estimated error %g, penalties%s %g times as stiff\n",

@@ -170,8 +170,11 @@ static void CompressedElementsDoNotHourglass(void **state)
 
 static void ModesWithoutRestAreReported(void **state)
 {
-  const KernelCase kernel = {
-    ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_ENHANCED, 0, NULL, 0, 0, 0};
+  const KernelCase kernel = {.type        = ELEMENT_QUAD4,
+                             .geometry    = GEOMETRY_PLANE_STRAIN,
+                             .kinematics  = KINEMATICS_FINITE,
+                             .law         = MATERIAL_SVK,
+                             .formulation = FORMULATION_ENHANCED};
   double X[MAX_DOFS], u[MAX_DOFS] = {0};
   Result result;
 

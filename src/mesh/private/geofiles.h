@@ -6,6 +6,7 @@
    together by StrCat or Str. GeoFilesReset() frees the lists. */
 #pragma once
 #include "base/complaint.h"
+#include "geodensities.h"
 #include "geoparameters.h"
 #include "scene/scene.h"
 #include <stdint.h>
@@ -13,6 +14,7 @@
 typedef struct {
   uint64_t      content;  /* hash of all files that are read */
   GeoParameters declared; /* by the .geo and the files that it reads */
+  GeoDensities  densities; /* those of these parameters that refine the mesh */
   PetscBool     open;     /* the geometry may read files that are not known here, so that `content` may miss a change */
 } GeoFiles;
 

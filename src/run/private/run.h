@@ -18,6 +18,7 @@ typedef struct {
   const char *scene;     /* scene file; NULL with restart */
   const char *directory; /* of the results; NULL: out/NAME */
   const char *restart;   /* directory of a run that is continued, or NULL */
+  int         mesh;      /* with an accuracy that is asked for: number of the mesh; 0 counts as 1 */
   int         n_set;
   char      **set; /* KEY=VALUE edits of the scene */
   PetscBool   overwrite, quiet;
@@ -36,6 +37,7 @@ typedef struct {
   Probes         probes;
   Results        results;
   LoadStepper    stepper;
+  PetscBool      refines;       /* the scene asks for an accuracy: this run is on one of several meshes */
   PetscInt       kept;          /* step of the last checkpoint, -1: none */
   int            n_options;     /* PETSc options of the scene that are in PETSc's database */
   char         **options;       /* their names, with dash */

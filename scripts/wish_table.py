@@ -1,0 +1,92 @@
+"""Accuracy that is asked for, against the true error: scenes of this repository with `-to` 5, 1 and 0.2 %. Structured
+geometries begin with the coarsest mesh of scripts/error_table.py, free ones with `refine: 0.5`. Leaves one record per
+scene and wish and prints the table; --print tables an existing record, --only runs some scenes.
+    python scripts/wish_table.py [--burnish BINARY] [--record FILE] [--only NAME ...]
+References are the converged answers of the same scenes: those of runs/records/error.csv, or of tests/jobs."""
+import csv
+import shutil
+import subprocess
+
+from launch import ROOT, command, environment, read_records, table_parser, write_records
+
+WISHES = (5, 1, 0.2)  # per cent
+LIMIT = "accuracy.limit.time=20"  # CPU seconds of one wish
+COLUMNS = ("scene", "wish", "probe", "status", "meshes", "unknowns", "cpu_s", "gmsh_s", "value", "estimate", "reference")
+FULL, MIXED, SECOND, FREE = "bodies.0.formulation=full", "bodies.0.formulation=mixed", "mesh.order=2", (
+    "mesh.parameters.refine=0.5", )
+CASES = {  # scene, probe, overrides; a number: the reference of a job
+    "cook": ("runs/cook.yaml", "tip_uy", ("mesh.parameters.n=4", SECOND, MIXED), None),
+    "cantilever": ("runs/cantilever.yaml", "high_y",
+                   ("mesh.parameters={lx: 100, ly: 1, nx: 16, ny: 1, skew: 0}", SECOND, FULL), None),
+    "ring_pinch": ("runs/ring_pinch.yaml", "force",
+                   ("mesh.parameters={r_in: 99, r_out: 101, n_arc: 8, n_wall: 1}", SECOND, FULL), None),
+    "punch": ("runs/punch.yaml", "force", ("mesh.parameters.n=2", SECOND), None),
+    "o_ring": ("runs/o_ring.yaml", "force", ("mesh.parameters.n=6", SECOND), None),
+    "cup_flattening": ("runs/cup_flattening.yaml", "plane_force", ("mesh.parameters={n_arc: 30, n_wall: 1}", ), None),
+    "hertz_line": ("runs/hertz_line.yaml", "force",
+                   ("mesh.parameters={h: 1.6, growth: 0.6}", "loads=[{surface: cylinder_cut, uy: -0.3}]", SECOND), None),
+    "lip_seal": ("tests/jobs/lip_seal.yaml", "lip_up", FREE, 0.46007),
+    "x_ring": ("tests/jobs/x_ring.yaml", "force", FREE, 239.1),
+    "job o_ring": ("tests/jobs/o_ring.yaml", "force", FREE, 537.9),
+    "rollers_in_nip": ("tests/jobs/rollers_in_nip.yaml", "force", FREE, 5.578),
+    "bush_bonded": ("tests/jobs/bush_bonded.yaml", "force", FREE, 310.1),
+}
+
+
+def reference(name):
+    """The converged answer of a scene."""
+    scene, probe, _, known = CASES[name]
+    return known or next(float(row["reference"]) for row in read_records(ROOT / "runs/records/error.csv")
+                         if f"runs/{row['scene']}.yaml" == scene and row["probe"] == probe)
+
+
+def records(args, name):
+    """Those of all wishes of a scene."""
+    scene, probe, overrides, _ = CASES[name]
+    rows = []
+    for wish in WISHES:
+        out = args.out / name.replace(" ", "_")
+        shutil.rmtree(out, ignore_errors=True)
+        line = command(args.burnish, 1, ROOT / scene, out, (*overrides, LIMIT), "-quiet", "-to", str(wish), "-probe", probe)
+        finished = subprocess.run(line, env=environment(args.burnish), capture_output=True, text=True, check=False)
+        if not (out / "accuracy.csv").exists():
+            print(name, wish, finished.stderr[-400:])
+            continue
+        with open(out / "accuracy.csv", newline="") as file:
+            meshes = list(csv.DictReader(file))
+        last = meshes[-1]
+        rows.append({
+            "scene": name, "wish": wish, "probe": probe, "status": finished.returncode, "meshes": len(meshes),
+            "unknowns": last["unknowns"], "cpu_s": f"{sum(float(m['cpu_s']) for m in meshes):.2f}",
+            "gmsh_s": f"{sum(float(m['gmsh_s']) for m in meshes):.2f}", "value": last["value"],
+            "estimate": last["per_cent"], "reference": f"{reference(name):.9g}"
+        })
+    return rows
+
+
+def table(rows):
+    print("| scene | wish (%) | meshes | unknowns | CPU, all meshes (s) | estimate (%) | true error (%) | |")
+    print("| --- " * 8 + "|")
+    met = 0
+    for row in rows:
+        true = 100 * (float(row["reference"]) / float(row["value"]) - 1)
+        holds = row["status"] == "0" and abs(true) <= float(row["wish"])
+        met += holds
+        word = "met" if holds else "missed" if row["status"] == "0" else f"ended with status {row['status']}"
+        print(f"| {row['scene']} | {row['wish']} | {row['meshes']} | {row['unknowns']} | {row['cpu_s']} "
+              f"| {float(row['estimate']):.3g} | {true:+.3g} | {word} |")
+    print(f"\n{met} of {len(rows)} met")
+
+
+def main():
+    parser = table_parser(__doc__, "wish")
+    parser.add_argument("--only", nargs="*", default=list(CASES), metavar="NAME", help="of these scenes")
+    args = parser.parse_args()
+    if not args.only_print:
+        args.out.mkdir(parents=True, exist_ok=True)
+        write_records(args.record, COLUMNS, lambda name: records(args, name), args.only, 1)
+    table(read_records(args.record))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,134 @@
+/* Sizes of the elements of the next mesh, see elementsizes.h. */
+#include "errors/elementsizes.h"
+#include "mesh/meshsizes.h"
+
+/* An element becomes at most so much smaller and larger from one mesh to the next. */
+#define SIZES_SMALLER 0.25
+#define SIZES_LARGER  2
+/* Cells with a smaller error per measure than this part of the mean count as having this part. */
+#define SIZES_LEAST_ERROR 1e-8
+/* Halvings of the bracket of ln s. The bracket has the width of all doubles' logarithms at most. */
+enum { SIZES_HALVINGS = 60 };
+
+typedef struct {
+  Mesh       mesh;
+  PetscReal *density, *error, *size; /* error per measure to the power -1 / (2p + d); error; present size */
+  PetscBool *touches;                /* the cell lies at a surface of a contact pair */
+} Present;
+
+/* The factor on the size of a cell. */
+static PetscReal Factor(const Present *p, PetscInt cell, PetscReal s)
+{
+  return PetscMin(PetscMax(s * p->density[cell], SIZES_SMALLER), p->touches[cell] ? 1 : SIZES_LARGER);
+}
+
+/* Elements and error of the next mesh for the common factor s. */
+static PetscErrorCode Forecast(const Present *p, PetscReal s, SizesForecast *forecast)
+{
+  const Mesh mesh   = p->mesh;
+  PetscReal  sum[4] = {0, 0, 0, (PetscReal)mesh->n_cells_global};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const PetscReal r = Factor(p, c, s);
+
+    sum[0] += PetscPowRealInt(r, -mesh->dim);
+    sum[1] += p->error[c] * PetscPowRealInt(r, 2 * mesh->order);
+    sum[2] += p->error[c];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPIU_SUM, mesh->comm));
+  forecast->elements = sum[0] / sum[3];
+  forecast->error    = sum[2] > 0 ? sum[1] / sum[2] : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the cells with faces on a surface. */
+static void MarkCells(const MeshGroup *group, PetscBool *touches)
+{
+  for (PetscInt f = 0; group && f < group->n_faces; f++) touches[group->face_cell[f]] = PETSC_TRUE;
+}
+
+/* Marks the cells at the surfaces of contact pairs. */
+static PetscErrorCode FindTouching(Model model, PetscBool *touches)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < ContactPairs(model->contact); p++) {
+    ContactSides sides;
+
+    ContactPairSides(model->contact, p, &sides);
+    MarkCells(sides.slave->group, touches);
+    if (sides.master) MarkCells(sides.master->group, touches);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes the errors of the cells. *least, *most: of the densities' powers. */
+static PetscErrorCode Take(const PetscReal *cell_error, Present *p, PetscReal *least, PetscReal *most)
+{
+  const Mesh mesh   = p->mesh;
+  PetscReal  sum[2] = {0, 0}, bound[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL};
+
+  PetscFunctionBeginUser;
+  MeshCellSizes(mesh, p->size, p->density);
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    p->error[c] = PetscAbsReal(cell_error[c]);
+    sum[0] += p->error[c];
+    sum[1] += p->density[c];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const PetscReal mean = sum[0] > 0 ? sum[0] / sum[1] : 1;
+
+    p->density[c] = PetscPowReal(PetscMax(p->error[c] / p->density[c] / mean, SIZES_LEAST_ERROR),
+                                 -1.0 / (2 * mesh->order + mesh->dim));
+    bound[0] = PetscMax(bound[0], -p->density[c]);
+    bound[1] = PetscMax(bound[1], p->density[c]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bound, 2, MPIU_REAL, MPIU_MAX, mesh->comm));
+  *least = -bound[0];
+  *most  = bound[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElementSizesFind - finds sizes of elements that leave a part of the present error.
+
+  Collective
+
+  Input Parameters:
++ model      - on the present mesh
+. cell_error - what each local cell leaves of error; the sign does not count
+. part       - of the present error that is to be left
+- most       - elements at most, over the present ones; then more error is left
+
+  Output Parameters:
++ size     - wanted at each local cell
+- forecast - of the next mesh
+@*/
+PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscReal part, PetscReal most,
+                                PetscReal *size, SizesForecast *forecast)
+{
+  const Mesh mesh = model->mesh;
+  Present    p    = {.mesh = mesh};
+  PetscReal  low, high, least, largest;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc4(mesh->n_cells, &p.density, mesh->n_cells, &p.error, mesh->n_cells, &p.size, mesh->n_cells,
+                         &p.touches));
+  PetscCall(FindTouching(model, p.touches));
+  PetscCall(Take(cell_error, &p, &least, &largest));
+  low  = PetscLogReal(SIZES_SMALLER / largest); /* all cells become as small, and as large, as they may */
+  high = PetscLogReal(SIZES_LARGER / least);
+  for (int k = 0; k < SIZES_HALVINGS; k++) {
+    const PetscReal middle = 0.5 * (low + high);
+
+    PetscCall(Forecast(&p, PetscExpReal(middle), forecast));
+    if (forecast->error > part && forecast->elements < most)
+      high = middle;
+    else
+      low = middle;
+  }
+  for (PetscInt c = 0; c < mesh->n_cells; c++) size[c] = p.size[c] * Factor(&p, c, PetscExpReal(high));
+  PetscCall(PetscFree4(p.density, p.error, p.size, p.touches));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,22 @@
+/* Sizes of the elements of the next mesh from the errors of the present ones: as few elements as possible for a given
+   part of the present error.
+
+   The error of a cell is taken as e r^(2p) where its size changes by the factor r and p is the order. Over its measure
+   |K|, with e = E |K|, the number of cells sum r^-d is least for a given sum of errors where
+
+     r = s E^(-1 / (2p + d)),
+
+   with one factor s for all cells, so that the errors of the new cells are equal (equidistribution). r is bounded, since
+   the errors far from those of the present mesh are guesses. Cells at surfaces that may meet do not become larger: how
+   well these surfaces are resolved is in no cell's error. Sources: Zienkiewicz and Zhu (1987); Coorevits, Hild and
+   Hjiaj, Computer Methods in Applied Mechanics and Engineering 190 (2001). */
+#pragma once
+#include "solve/model.h"
+
+typedef struct {
+  PetscReal elements; /* of the next mesh, over those of the present one */
+  PetscReal error;    /* of the next mesh, over that of the present one */
+} SizesForecast;
+
+PetscErrorCode ElementSizesFind(Model, const PetscReal *cell_error, PetscReal part, PetscReal most, PetscReal *size,
+                                SizesForecast *);

@@ -1,0 +1,367 @@
+/* The loop over meshes of a run that is to reach an accuracy, see refinement.h. */
+#include "refinement.h"
+#include <math.h>
+#include "errors/elementsizes.h"
+#include "files/textfile.h"
+#include "mesh/meshdensities.h"
+#include "mesh/meshsizes.h"
+#include "meshplan.h"
+#include "base/refusal.h"
+
+/* Of the error that is allowed the next mesh is made for this part: forecasts are not exact. */
+#define REFINEMENT_AIM 0.85
+/* Where other causes leave less than this part of the allowed error to the mesh, it is made for this part. */
+#define REFINEMENT_LEAST_SHARE 0.25
+
+/* A mesh with sizes of its own has at most so many times the elements of the last one. */
+#define REFINEMENT_MOST_ELEMENTS 8
+/* It is made for at most this part of the present error, or the estimate would hardly change. */
+#define REFINEMENT_PART 0.8
+
+enum { TABLE_ROW = 1024, EDIT_LENGTH = 2 * PETSC_MAX_PATH_LEN };
+
+/* A mesh that was solved */
+typedef struct {
+  QuantityError error;
+  PetscReal     value, mesh_s;
+  PetscInt      dofs;
+} SolvedMesh;
+
+typedef struct {
+  Run           *run;
+  RunInput       input; /* of the next mesh */
+  SceneAccuracy  wish;
+  const char    *probe;
+  char           directory[PETSC_MAX_PATH_LEN];
+  int            dim, order, n_densities, n_given; /* edits that the user gave */
+  MeshDensity   *density;
+  PetscBool      structured; /* meshes follow densities, else sizes of elements in a file */
+  PetscReal     *size;       /* wanted of the next mesh at each local cell of the last one */
+  int            n_edits;
+  char         **edit; /* of each density, or of the file of sizes */
+  int            n;
+  MeshFigures   *figures; /* of each mesh */
+  SolvedMesh    *mesh;
+  double         cpu_s; /* spent before the present mesh */
+  PetscMPIInt    rank;
+  const char    *why; /* it ends without the accuracy */
+} Refinement;
+
+static void Say(const Refinement *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Prints a line on the terminal unless the user wants none. */
+static void Say(const Refinement *r, const char *format, ...)
+{
+  va_list arguments;
+
+  if (r->rank || r->input.quiet) return;
+  va_start(arguments, format);
+  vfprintf(stdout, format, arguments);
+  va_end(arguments);
+  fflush(stdout);
+}
+
+/* The error of the last mesh over the value. */
+static PetscReal Error(const Refinement *r)
+{
+  const SolvedMesh *mesh = &r->mesh[r->n - 1];
+
+  return mesh->error.magnitude / PetscAbsReal(mesh->value);
+}
+
+/* What the elements and the contact surfaces leave of error. */
+static PetscReal MeshError(const QuantityError *error)
+{
+  const PetscReal geometry = error->part[ERROR_GEOMETRY];
+
+  return PetscAbsReal(error->part[ERROR_BODIES]) + (isnan((double)geometry) ? 0 : PetscAbsReal(geometry));
+}
+
+/* What the next mesh may leave of error, in the units of the probe. */
+static PetscReal WantedMeshError(const Refinement *r)
+{
+  const SolvedMesh *mesh    = &r->mesh[r->n - 1];
+  const PetscReal   allowed = r->wish.to * PetscAbsReal(mesh->value), others = mesh->error.magnitude - MeshError(&mesh->error);
+
+  return REFINEMENT_AIM * PetscMax(allowed - others, REFINEMENT_LEAST_SHARE * allowed);
+}
+
+/* Makes room, and finds out how the mesh can be refined. */
+static PetscErrorCode Begin(Run *run, const RunInput *input, Refinement *r)
+{
+  const SceneAccuracy *wish = &run->scene->accuracy;
+  const char          *name = run->scene->probes[wish->probe].name;
+  char                *copy;
+
+  PetscFunctionBeginUser;
+  *r = (Refinement){.run = run, .input = *input, .wish = *wish, .dim = run->mesh->dim, .order = run->mesh->order};
+  r->n_given = input->n_set;
+  PetscCallMPI(MPI_Comm_rank(run->comm, &r->rank));
+  PetscCall(PetscStrallocpy(name, &copy));
+  r->probe = copy;
+  PetscCall(PetscStrncpy(r->directory, run->directory, sizeof(r->directory)));
+  *strrchr(r->directory, '/') = '\0';
+  PetscCall(MeshDensitiesFind(run->comm, run->scene, input->trust, &r->n_densities, &r->density, &r->structured));
+  if (r->structured && !r->n_densities)
+    PetscCall(RefuseInput(run->comm, "%s: '%s' declares no parameter that refines its mesh; allowed: names of them in "
+                                     "accuracy.densities",
+                          SceneWhere(run->scene, "accuracy", NULL), run->scene->mesh_file));
+  r->n_edits = r->structured ? r->n_densities : 1;
+  PetscCall(PetscCalloc1(r->n_edits, &r->edit));
+  PetscCall(PetscCalloc2(wish->meshes, &r->figures, wish->meshes, &r->mesh));
+  r->wish.densities = NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Frees what Begin() and Edit() have made. */
+static PetscErrorCode End(Refinement *r)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < r->n_edits; i++) PetscCall(PetscFree(r->edit[i]));
+  PetscCall(PetscFree(r->size));
+  PetscCall(PetscFree(r->edit));
+  PetscCall(PetscFree(r->density));
+  PetscCall(PetscFree2(r->figures, r->mesh));
+  if (r->input.n_set > r->n_given) PetscCall(PetscFree(r->input.set));
+  PetscCall(PetscFree(r->probe));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes the figures of the mesh that was solved last. */
+static PetscErrorCode Record(Refinement *r, double factor)
+{
+  SolvedMesh          *mesh = &r->mesh[r->n];
+  const QuantityError *error;
+  const char          *why;
+  RunUsage             usage;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsGetError(r->run->results, r->wish.probe, &mesh->value, &why, &error));
+  if (why)
+    PetscCall(RefuseInput(r->run->comm, "%s: the error of '%s' has no estimate: %s",
+                          SceneWhere(r->run->scene, "accuracy", "probe"), r->probe, why));
+  PetscCall(ResultsGetUsage(r->run->results, &usage));
+  PetscCall(ModelDofs(r->run->model, &mesh->dofs));
+  mesh->error       = *error;
+  mesh->error.cells = NULL; /* they go with the run */
+  mesh->mesh_s      = r->run->mesh_s;
+  r->figures[r->n] = (MeshFigures){.factor   = factor,
+                                   .unknowns = (double)mesh->dofs,
+                                   .error    = (double)MeshError(error),
+                                   .cpu_s    = (double)usage.cpu_s - r->cpu_s,
+                                   .rss_mb   = (double)usage.peak_rss_mb};
+  r->cpu_s         = (double)usage.cpu_s;
+  r->n++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Prints the last mesh. */
+static void Print(const Refinement *r)
+{
+  const SolvedMesh *mesh = &r->mesh[r->n - 1];
+  const double      part = 100 / fabs((double)mesh->value);
+
+  Say(r, "mesh %-2d  %" PetscInt_FMT " unknowns, %s %.6g, error %.3g %% =", r->n, mesh->dofs, r->probe,
+      (double)mesh->value, 100 * (double)Error(r));
+  for (int c = 0; c < ERROR_CAUSES; c++)
+    if (isnan((double)mesh->error.part[c]))
+      Say(r, " %s not included", ErrorCauses[c]);
+    else if (mesh->error.part[c] != 0)
+      Say(r, " %s %+.2g", ErrorCauses[c], part * (double)mesh->error.part[c]);
+  Say(r, "; CPU %.2f s, gmsh %.2f s\n", r->figures[r->n - 1].cpu_s, (double)mesh->mesh_s);
+}
+
+/* Writes accuracy.csv anew, with a row for each mesh. */
+static PetscErrorCode Write(const Refinement *r)
+{
+  const size_t size = (size_t)(r->n + 1) * TABLE_ROW;
+  char        *text;
+  size_t       used = 0;
+
+  PetscFunctionBeginUser;
+  if (r->rank) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(size, &text));
+  used += (size_t)snprintf(text, size, "mesh,unknowns,value,error,magnitude");
+  for (int c = 0; c < ERROR_CAUSES; c++) used += (size_t)snprintf(text + used, size - used, ",%s", ErrorCauses[c]);
+  used += (size_t)snprintf(text + used, size - used, ",per_cent,cpu_s,gmsh_s,peak_rss_mb\n");
+  for (int k = 0; k < r->n; k++) {
+    const SolvedMesh *mesh = &r->mesh[k];
+
+    used += (size_t)snprintf(text + used, size - used, "%d,%" PetscInt_FMT ",%.10g,%.6g,%.6g", k + 1, mesh->dofs,
+                             (double)mesh->value, (double)mesh->error.sum, (double)mesh->error.magnitude);
+    for (int c = 0; c < ERROR_CAUSES; c++)
+      used += (size_t)snprintf(text + used, size - used, isnan((double)mesh->error.part[c]) ? "," : ",%.6g",
+                               (double)mesh->error.part[c]);
+    used += (size_t)snprintf(text + used, size - used, ",%.4g,%.3f,%.3f,%.1f\n",
+                             100 * (double)(mesh->error.magnitude / PetscAbsReal(mesh->value)), r->figures[k].cpu_s,
+                             (double)mesh->mesh_s, r->figures[k].rss_mb);
+  }
+  PetscCall(TextFileReplace(r->directory, "accuracy.csv", text));
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Chooses the sizes of the next mesh's elements and forecasts it. */
+static PetscErrorCode PlanSizes(Refinement *r, MeshFigures *next)
+{
+  const Mesh           mesh   = r->run->mesh;
+  const MeshFigures   *last   = &r->figures[r->n - 1];
+  const PetscReal      wanted = WantedMeshError(r) / (PetscReal)last->error;
+  const QuantityError *error;
+  const char          *why;
+  PetscReal            value;
+  SizesForecast        forecast;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsGetError(r->run->results, r->wish.probe, &value, &why, &error));
+  PetscCall(PetscFree(r->size));
+  PetscCall(PetscMalloc1(mesh->n_cells, &r->size));
+  PetscCall(ElementSizesFind(r->run->model, error->cells, PetscMin(wanted, REFINEMENT_PART), REFINEMENT_MOST_ELEMENTS, r->size,
+                             &forecast));
+  *next       = MeshPlanForecast(r->n, r->figures, r->dim, r->order,
+                                 last->factor * pow((double)forecast.elements, 1.0 / r->dim));
+  next->error = last->error * (double)forecast.error;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Chooses the next mesh and forecasts it. r->why: there is none. */
+static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
+{
+  PetscFunctionBeginUser;
+  if (r->structured)
+    *next = MeshPlanForecast(r->n, r->figures, r->dim, r->order,
+                             MeshPlanFactor(r->n, r->figures, r->order, (double)WantedMeshError(r)));
+  else
+    PetscCall(PlanSizes(r, next));
+  if (r->n == r->wish.meshes)
+    r->why = "accuracy.meshes are solved";
+  else if (r->wish.cpu_s > 0 && r->cpu_s + next->cpu_s > r->wish.cpu_s)
+    r->why = "the next mesh would take more than accuracy.limit.time";
+  else if (r->wish.rss_mb > 0 && next->rss_mb > r->wish.rss_mb)
+    r->why = "the next mesh would take more than accuracy.limit.memory";
+  else if (MeshError(&r->mesh[r->n - 1].error) < REFINEMENT_LEAST_SHARE * r->mesh[r->n - 1].error.magnitude &&
+           (double)MeshError(&r->mesh[r->n - 1].error) < (double)WantedMeshError(r))
+    r->why = "what is left of error does not come from the mesh";
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Writes the sizes of the next mesh's elements and the edit that names their file. */
+static PetscErrorCode EditSizes(Refinement *r)
+{
+  char file[PETSC_MAX_PATH_LEN + 32], full[PETSC_MAX_PATH_LEN] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(file, sizeof(file), "%s/mesh-%d.pos", r->directory, r->n + 1));
+  PetscCall(MeshSizesWrite(r->run->mesh, r->size, file));
+  if (!r->rank) PetscCall(PetscGetFullPath(file, full, sizeof(full)));
+  PetscCallMPI(MPI_Bcast(full, sizeof(full), MPI_CHAR, 0, r->run->comm));
+  PetscCall(PetscSNPrintf(r->edit[0], EDIT_LENGTH, "mesh.sizes=%s", full));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes the edits of the scene that give the next mesh. */
+static PetscErrorCode Edit(Refinement *r, double factor)
+{
+  RunInput *input = &r->input;
+  char    **set;
+  char      value[MESH_DENSITY_TEXT];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(r->n_given + r->n_edits, &set));
+  PetscCall(PetscArraycpy(set, input->set, r->n_given));
+  for (int i = 0; i < r->n_edits; i++) {
+    if (!r->edit[i]) PetscCall(PetscMalloc1(EDIT_LENGTH, &r->edit[i]));
+    set[r->n_given + i] = r->edit[i];
+    if (!r->structured) continue;
+    MeshDensityText(&r->density[i], (PetscReal)factor, value);
+    PetscCall(PetscSNPrintf(r->edit[i], EDIT_LENGTH, "mesh.parameters.%s=%s", r->density[i].name, value));
+  }
+  if (!r->structured) PetscCall(EditSizes(r));
+  if (input->n_set > r->n_given) PetscCall(PetscFree(input->set));
+  input->set       = set;
+  input->n_set     = r->n_given + r->n_edits;
+  input->overwrite = PETSC_TRUE;
+  input->mesh      = r->n + 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Announces the next mesh and solves it. */
+static PetscErrorCode SolveNext(Refinement *r, const MeshFigures *next, BurnishStatus *status)
+{
+  const MPI_Comm comm = r->run->comm;
+  const double   part = 100 / fabs((double)r->mesh[r->n - 1].value);
+
+  PetscFunctionBeginUser;
+  PetscCall(Edit(r, next->factor));
+  Say(r, "next    ");
+  for (int i = 0; r->structured && i < r->n_edits; i++) Say(r, " %s,", strchr(r->edit[i], '.') + strlen(".parameters."));
+  Say(r, " some %.0f unknowns, error by the mesh %.2g %%, CPU %.2g s\n", next->unknowns, part * next->error, next->cpu_s);
+  PetscCall(RunDestroy(r->run));
+  *r->run = (Run){.comm = comm};
+  PetscCall(RunScene(r->run, &r->input, status));
+  if (*status != BURNISH_DONE) r->why = "the next mesh is not solved";
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says how it ended. */
+static void Conclude(Refinement *r, BurnishStatus *status)
+{
+  if (r->why) {
+    if (*status == BURNISH_DONE || *status == BURNISH_NOT_CONVERGED) *status = BURNISH_INACCURATE;
+    snprintf(r->run->message, sizeof(r->run->message),
+             "the accuracy of %g %% is not reached: %s; the best is %s %.6g with an error of %.3g %%, in %.600s/mesh-%d",
+             100 * (double)r->wish.to, r->why, r->probe, (double)r->mesh[r->n - 1].value, 100 * (double)Error(r),
+             r->directory, r->n);
+    if (!r->rank) fprintf(stderr, "burnish: %s\n", r->run->message);
+  } else
+    Say(r, "done: %s %.6g with an estimated error of %.3g %%%s, %d meshes, %.1f s of CPU; results in %s/mesh-%d\n", r->probe,
+        (double)r->mesh[r->n - 1].value, 100 * (double)Error(r),
+        isnan((double)r->mesh[r->n - 1].error.part[ERROR_GEOMETRY]) ? " besides that of the contact surfaces" : "", r->n,
+        r->cpu_s, r->directory, r->n);
+}
+
+/* Solves meshes until the last one is accurate enough. */
+static PetscErrorCode Loop(Refinement *r, BurnishStatus *status)
+{
+  MeshFigures next = {.factor = 1};
+
+  PetscFunctionBeginUser;
+  while (!r->why) {
+    PetscCall(Record(r, next.factor));
+    Print(r);
+    PetscCall(Write(r));
+    if (Error(r) <= r->wish.to) break;
+    PetscCall(Plan(r, &next));
+    if (!r->why) PetscCall(SolveNext(r, &next, status));
+  }
+  Conclude(r, status);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  RefinementRun - solves a scene on finer meshes until the probe is as accurate as the scene asks
+
+  Collective
+
+  Input Parameters:
++ run   - solved on the first mesh, by RunScene()
+- input - what the user asks for
+
+  Output Parameters:
++ run    - solved on the last mesh
+- status - BURNISH_DONE or BURNISH_INACCURATE, or that of a run which was stopped
+
+  Note:
+  Returns REFUSED for a scene whose mesh cannot be refined, or whose probe has no estimate.
+@*/
+PetscErrorCode RefinementRun(Run *run, const RunInput *input, BurnishStatus *status)
+{
+  Refinement     r;
+  PetscErrorCode code;
+
+  PetscFunctionBeginUser;
+  code = Begin(run, input, &r);
+  if (!code) code = Loop(&r, status);
+  if (!code || code == REFUSED) PetscCall(End(&r));
+  PetscFunctionReturn(code);
+}

@@ -1,0 +1,71 @@
+/* Reads the accuracy that a scene asks for, see sceneaccuracy.h. */
+#include "sceneaccuracy.h"
+#include "sceneread.h"
+#include <string.h>
+
+const char *const DensityKinds[] =
+  {[DENSITY_COUNT] = "count", [DENSITY_SIZE] = "size", [DENSITY_DIVISOR] = "divisor"};
+
+/* Finds the probe. */
+static PetscErrorCode FindProbe(Scene scene)
+{
+  const char *name = SchemaText(SceneDocument(scene), "accuracy.probe");
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < scene->n_probes; i++)
+    if (!strcmp(scene->probes[i].name, name)) scene->accuracy.probe = i;
+  if (scene->accuracy.probe < 0)
+    PetscCall(SceneRefuse(scene, "accuracy", "probe", "is no probe; allowed: the name of one under probes:", name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads the parameters that refine the mesh. */
+static PetscErrorCode ReadDensities(Scene scene)
+{
+  SceneAccuracy *accuracy = &scene->accuracy;
+
+  PetscFunctionBeginUser;
+  PetscCall(SceneReadPairs(scene, "accuracy.densities", &accuracy->n_densities, &accuracy->densities));
+  for (int i = 0; i < accuracy->n_densities; i++) {
+    const ScenePair *pair = &accuracy->densities[i];
+    int              kind = 0;
+
+    while (kind < DENSITY_KINDS && strcmp(pair->value, DensityKinds[kind])) kind++;
+    if (kind == DENSITY_KINDS)
+      PetscCall(SceneRefuse(scene, "accuracy.densities", pair->key, "is no density; allowed: count | size | divisor",
+                            pair->value));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SceneReadAccuracy - reads the accuracy that is asked for.
+
+  Collective
+
+  Input Parameter:
+. scene - the scene, whose probes and output have been read
+
+  Note:
+  It refuses the first mistake.
+@*/
+PetscErrorCode SceneReadAccuracy(Scene scene)
+{
+  Document *document = SceneDocument(scene);
+
+  PetscFunctionBeginUser;
+  scene->accuracy.probe = -1;
+  if (!SchemaHas(document, "accuracy")) PetscFunctionReturn(PETSC_SUCCESS);
+  if (strcmp(scene->mesh_file + PetscMax(strlen(scene->mesh_file), 4) - 4, ".geo"))
+    PetscCall(SceneRefuse(scene, "mesh", "file", "cannot be meshed anew; allowed with accuracy: a .geo file",
+                          scene->mesh_file));
+  PetscCall(FindProbe(scene));
+  PetscCall(ReadDensities(scene));
+  scene->accuracy.to     = SchemaReal(document, "accuracy.to") / 100;
+  scene->accuracy.meshes = SchemaInteger(document, "accuracy.meshes");
+  if (SchemaHas(document, "accuracy.limit.time")) scene->accuracy.cpu_s = SchemaReal(document, "accuracy.limit.time");
+  if (SchemaHas(document, "accuracy.limit.memory"))
+    scene->accuracy.rss_mb = SchemaReal(document, "accuracy.limit.memory");
+  scene->output.error = 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,46 @@
+"""A run reaches the accuracy that is asked for, on meshes of its own choice: by densities of the geometry, and by sizes of
+elements for a free one; on any number of ranks. A limit ends it with the best answer and status 5."""
+import csv
+
+from harness import Check, arguments, run, SCENES
+
+RUNS, JOBS = SCENES.parent.parent / "runs", SCENES.parent / "jobs"
+
+
+def wish(scene, probe, per_cent, name, *overrides, must=0):
+    """Meshes of a run: rows of accuracy.csv as numbers."""
+    finished = run(args, scene, "-to", f"{per_cent}%", "-probe", probe, out=name, overrides=overrides, must=must)
+    with open(finished.directory / "accuracy.csv", newline="") as file:
+        return finished, [{key: float(value or "nan") for key, value in row.items()} for row in csv.DictReader(file)]
+
+
+def has_errors(finished, mesh):
+    """Says whether the last mesh's results hold as many errors as it has elements, with their sum."""
+    import h5py
+
+    with h5py.File(finished.directory / f"mesh-{mesh}" / "results.h5", "r") as file:
+        return len(file["error/lip_up"]) == len(file["error/centres"]) == sum(
+            len(file[f"mesh/{name}"]) for name in file["mesh"] if name.startswith("cells_") and "body" not in name)
+
+
+args = arguments()
+check = Check()
+finished, meshes = wish(RUNS / "cook.yaml", "tip_uy", 1, "densities")
+check.holds("densities: several meshes", len(meshes) > 1, f"{len(meshes)}")
+check.holds("the estimate is below the wish", meshes[-1]["per_cent"] <= 1 < meshes[-2]["per_cent"])
+check.near("so is the error", meshes[-1]["value"], 6.925, 0.015 * 6.925)
+check.holds("each mesh has its results", (finished.directory / f"mesh-{len(meshes)}" / "summary.json").exists())
+check.holds("the last line says it", "done: tip_uy" in finished.text)
+free = ("mesh.parameters.refine=0.5", "mesh.order=1")
+finished, meshes = wish(JOBS / "lip_seal.yaml", "lip_up", 1, "sizes", *free)
+check.holds("sizes: several meshes", len(meshes) > 1, f"{len(meshes)}")
+check.holds("the estimate is below the wish", meshes[-1]["per_cent"] <= 1)
+check.near("the same on all ranks", meshes[-1]["value"], 0.4647077601, 1e-7)
+check.holds("errors of elements are there", has_errors(finished, len(meshes)))
+finished, meshes = wish(RUNS / "cook.yaml", "tip_uy", 0.01, "limit", "accuracy.meshes=2", must=5)
+check.holds("a limit ends it", len(meshes) == 2 and "is not reached" in finished.text)
+finished, meshes = wish(RUNS / "cook.yaml", "tip_uy", 0.01, "time", "accuracy.limit.time=1e-3", must=5)
+check.holds("so does the time", len(meshes) == 1 and "accuracy.limit.time" in finished.text)
+check.holds("a probe that is not there is refused",
+            "is no probe" in run(args, RUNS / "cook.yaml", "-to", "1", "-probe", "tip", out="none", must=1).text)
+check.finish()

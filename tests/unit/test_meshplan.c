@@ -1,0 +1,52 @@
+/* The next mesh is finer by the power of the error, measured once there are two meshes, and within bounds. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+#include "meshplan.h"
+
+static const MeshFigures first  = {.factor = 1, .unknowns = 1000, .error = 8, .cpu_s = 1, .rss_mb = 100};
+static const MeshFigures second = {.factor = 2, .unknowns = 4000, .error = 2, .cpu_s = 6, .rss_mb = 130};
+
+static void test_first_mesh(void **state)
+{
+  (void)state;
+  assert_float_equal(MeshPlanFactor(1, &first, 1, 2), 2, 1e-12);     /* order 1: the power 2 */
+  assert_float_equal(MeshPlanFactor(1, &first, 2, 1), 2, 1e-12);     /* order 2: 3 */
+  assert_float_equal(MeshPlanFactor(1, &first, 1, 1e-9), 3, 1e-12);  /* no further than this */
+  assert_float_equal(MeshPlanFactor(1, &first, 1, 7.9), 1.2, 1e-12); /* at least so much */
+}
+
+static void test_measured(void **state)
+{
+  const MeshFigures meshes[] = {first, second};
+  const MeshFigures next     = MeshPlanForecast(2, meshes, 2, 2, 4);
+
+  (void)state;
+  assert_float_equal(MeshPlanFactor(2, meshes, 2, 0.5), 4, 1e-12); /* the power is 2, though the order is 2 */
+  assert_float_equal(next.unknowns, 16000, 1e-6);
+  assert_float_equal(next.error, 0.5, 1e-12);
+  assert_float_equal(next.cpu_s, 36, 1e-9);
+  assert_float_equal(next.rss_mb, 250, 1e-9);
+}
+
+/* Errors that do not fall are those of meshes too coarse to tell. */
+static void test_no_fall(void **state)
+{
+  MeshFigures meshes[] = {first, second};
+
+  (void)state;
+  meshes[1].error = 9;
+  assert_float_equal(MeshPlanFactor(2, meshes, 1, 4), 6, 1e-12);
+  assert_true(MeshPlanForecast(2, meshes, 2, 1, 4).error < 9);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_first_mesh), cmocka_unit_test(test_measured),
+                                     cmocka_unit_test(test_no_fall)};
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
