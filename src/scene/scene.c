@@ -1,6 +1,7 @@
 /* The reader of a scene: it fills the Scene from a validated document, see scene.h. */
 #include "scenecontact.h"
 #include "sceneload.h"
+#include "scenemesh.h"
 #include "scenemotion.h"
 #include "sceneprobe.h"
 #include "scenematerial.h"
@@ -8,62 +9,6 @@
 #include "sceneread.h"
 #include "base/refusal.h"
 #include <string.h>
-
-/* Reads a map of keys and values that are not in the schema. The value null becomes an empty text. */
-static PetscErrorCode SceneReadPairs(Scene scene, const char *key, int *n, ScenePair **pairs)
-{
-  Node map = NodeFind(SceneDocument(scene)->root, key);
-
-  PetscFunctionBeginUser;
-  *n = map ? map->n : 0;
-  PetscCall(PetscCalloc1(*n, pairs));
-  for (int i = 0; i < *n; i++) {
-    const Node value = map->child[i];
-
-    PetscCall(PetscStrallocpy(map->key[i] + (map->key[i][0] == '-'), &(*pairs)[i].key));
-    PetscCall(
-      PetscStrallocpy(value->plain && (!strcmp(value->text, "null") || !strcmp(value->text, "~")) ? "" : value->text,
-                      &(*pairs)[i].value));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Tells whether a file has the ending of a mesh file of another program. */
-static PetscBool IsForeignMesh(const char *ending)
-{
-  static const char *const endings[] = {".inp", ".med", ".unv", ".cgns", ".bdf", ".nas", ".vtk", ".vtu"};
-
-  for (size_t i = 0; i < sizeof(endings) / sizeof(*endings); i++)
-    if (!strcmp(ending, endings[i])) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-static PetscErrorCode SceneReadMesh(Scene scene)
-{
-  const char *file = SchemaText(SceneDocument(scene), "mesh.file"), *dot = strrchr(file, '.');
-  const int   geo = dot && !strcmp(dot, ".geo");
-  char        path[PETSC_MAX_PATH_LEN];
-
-  PetscFunctionBeginUser;
-  scene->foreign_mesh = dot ? IsForeignMesh(dot) : PETSC_FALSE;
-  if (!geo && !scene->foreign_mesh && (!dot || strcmp(dot, ".msh")))
-    PetscCall(SceneRefuse(scene, "mesh", "file",
-                          "is no mesh file; allowed: .geo, .msh, .inp, .med, .unv, .cgns, .bdf, .nas, .vtk, .vtu",
-                          file));
-  if (snprintf(path, sizeof path, "%s%s%s", file[0] == '/' ? "" : scene->directory, file[0] == '/' ? "" : "/", file) >=
-      (int)sizeof path)
-    PetscCall(SceneRefuse(scene, "mesh", "file", "the path is too long", NULL));
-  PetscCall(PetscStrallocpy(path, &scene->mesh_file));
-  scene->order =
-    SchemaHas(SceneDocument(scene), "mesh.order") ? SchemaInteger(SceneDocument(scene), "mesh.order") : geo;
-  PetscCall(SceneReadPairs(scene, "mesh.parameters", &scene->n_parameters, &scene->parameters));
-  for (int i = 0; i < scene->n_parameters; i++) {
-    if (!scene->parameters[i].value[0])
-      PetscCall(SceneRefuse(scene, "mesh.parameters", scene->parameters[i].key,
-                            "has no value; allowed: a number or a text", NULL));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Bulk modulus over shear modulus from which elements with full integration lock noticeably (nu = 0.475), so that
    `auto` takes mixed ones. */
@@ -433,17 +378,6 @@ PetscErrorCode SceneReadAgain(MPI_Comm comm, const char *file, const char *where
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PairsDestroy(int n, ScenePair **pairs)
-{
-  PetscFunctionBeginUser;
-  for (int i = 0; i < n; i++) {
-    PetscCall(PetscFree((*pairs)[i].key));
-    PetscCall(PetscFree((*pairs)[i].value));
-  }
-  PetscCall(PetscFree(*pairs));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode SceneDestroyBodies(Scene scene)
 {
   PetscFunctionBeginUser;
@@ -497,13 +431,12 @@ PetscErrorCode SceneDestroy(Scene *scene)
   PetscCall(PetscFree(s->loads));
   PetscCall(PetscFree(s->probes));
   PetscCall(PetscFree(s->stepping.at));
-  PetscCall(PairsDestroy(s->n_parameters, &s->parameters));
-  PetscCall(PairsDestroy(s->n_petsc, &s->petsc));
+  PetscCall(SceneMeshDestroy(s));
+  PetscCall(ScenePairsDestroy(s->n_petsc, &s->petsc));
   PetscCall(PetscFree(s->file));
   PetscCall(PetscFree(s->directory));
   PetscCall(PetscFree(s->text));
   PetscCall(PetscFree(s->name));
-  PetscCall(PetscFree(s->mesh_file));
   PetscCall(DocumentDestroy(SceneDocument(s)));
   PetscCall(PetscFree(*scene));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -167,26 +167,38 @@ typedef struct {
   char *key, *value; /* the key has no dash */
 } ScenePair;
 
+/* A surface of CAD geometry that the scene names by a point on it, or whose elements get a size of their own. */
 typedef struct {
-  char         *file, *directory; /* file as the user gave it; its directory, where relative paths start */
-  char         *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
-  char         *name;
-  char         *mesh_file;    /* path with which the process can open the file */
-  PetscBool     foreign_mesh; /* the mesh file is one of another program, by its ending */
-  int           order;        /* of the elements, 1 or 2; 0 stands for that of the .msh file */
-  int           n_parameters;
-  ScenePair    *parameters; /* of the .geo file */
-  Geometry      geometry;
-  Kinematics    kinematics;
-  int           dim; /* 3 for solid, else 2 */
-  int           n_bodies;
-  SceneBody    *bodies;
-  int           n_supports;
-  SceneSupport *supports;
-  int           n_loads; /* supports with an expression, which are imposed displacements, and loads */
-  SceneLoad    *loads;
-  int           n_contacts;
-  SceneContact *contacts;
+  char  *name, *body; /* body: the body whose surface is meant, or NULL */
+  int    has_point;
+  double point[3];
+  double size; /* of its elements; 0: that of the body */
+} SceneCadSurface;
+
+typedef struct {
+  char            *file, *directory; /* file as the user gave it; its directory, where relative paths start */
+  char            *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
+  char            *name;
+  char            *mesh_file;    /* path with which the process can open the file */
+  PetscBool        foreign_mesh; /* the mesh file is one of another program, by its ending; CAD geometry too */
+  PetscBool        cad;          /* the file is geometry of a CAD program, by its ending */
+  double           mesh_size;    /* of the elements of CAD geometry; 0: by the size of each body */
+  int              n_cad_surfaces;
+  SceneCadSurface *cad_surfaces;
+  int              order; /* of the elements, 1 or 2; 0 stands for that of the .msh file */
+  int              n_parameters;
+  ScenePair       *parameters; /* of the .geo file */
+  Geometry         geometry;
+  Kinematics       kinematics;
+  int              dim; /* 3 for solid, else 2 */
+  int              n_bodies;
+  SceneBody       *bodies;
+  int              n_supports;
+  SceneSupport    *supports;
+  int              n_loads; /* supports with an expression, which are imposed displacements, and loads */
+  SceneLoad       *loads;
+  int              n_contacts;
+  SceneContact    *contacts;
   struct {
     StepControlKind control;
     double          initial, dt_min, dt_max, growth;
