@@ -146,6 +146,8 @@ static PetscErrorCode Convert(Scene scene, const char *names, const char *cad, c
                                    dim,    "--bodies", names,  *cad ? cad : NULL, NULL};
   PetscCall(GmshExecute((char *const *)arguments, draft.folder, &output, &status));
   said = strstr(output, SAID);
+  for (size_t n = strlen(output); n && output[n - 1] == '\n'; n--)
+    output[n - 1] = '\0'; /* the code of the message follows */
   if (status == GMSH_NO_PROGRAM)
     Complain(complaint, "%s: '%s' must be converted, and there is no Python here (%s); `make deps` installs one",
              SceneWhere(scene, "mesh", "file"), scene->mesh_file, python);

@@ -98,8 +98,7 @@ static PetscErrorCode SceneReadCad(Scene scene)
   for (int k = 0; k < 2 && !scene->cad; k++)
     if (SceneHas(scene, "mesh", keys[k]))
       PetscCall(SceneRefuse(scene, "mesh", keys[k],
-                            "is for geometry of CAD programs; allowed with .step, .stp, .brep, .igs, .iges, not with",
-                            SchemaText(document, "mesh.file")));
+                            "is for geometry of CAD programs; allowed with .step, .stp, .brep, .igs, .iges", NULL));
   if (!scene->cad) PetscFunctionReturn(PETSC_SUCCESS);
   if (SceneHas(scene, "mesh", "parameters"))
     PetscCall(SceneRefuse(scene, "mesh", "parameters", "is for a .geo file; allowed: size, order, surfaces", NULL));
