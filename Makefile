@@ -149,7 +149,7 @@ install: all ## installs program, library, pages and examples into PREFIX (defau
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/scripts $(wildcard scripts/*.py) scripts/requirements.txt
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/scripts/meshfiles $(wildcard scripts/meshfiles/*.py)
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/runs $(wildcard runs/*.yaml)
-	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/meshes $(wildcard meshes/*.geo)
+	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/meshes $(wildcard meshes/*.geo meshes/*.step)
 
 # The library is static, so that a program that links it also links the libraries that it calls.
 define PKGCONFIG_FILE

@@ -2,12 +2,16 @@
 `mesh.file` that is neither a .geo nor a .msh of this format.
     python scripts/convert_mesh.py IN OUT.msh --dim 2|3 [--bodies NAMES] [--list]
 Formats: .inp (Abaqus, CalculiX), .msh of other versions, .med, .unv, .cgns, .bdf, .nas by gmsh, .vtk and .vtu by
-meshio. --bodies: the groups (with commas) that are
-bodies, where groups overlap. --list prints the groups, that is, what a scene can name. Lines that start with `note:` say what was changed."""
+meshio; geometry of CAD programs, which gmsh meshes: .step, .stp, .brep, .igs, .iges. --bodies: the groups (with commas)
+that are bodies, where groups overlap. --cad: how geometry is meshed, a map in JSON with size, order and surfaces, as
+under `mesh` in a scene. --list prints the groups, that is, what a scene can name. Lines that start with `note:` say what
+was changed."""
 import argparse
+import json
 import pathlib
 import sys
 
+from meshfiles.cad import ENDINGS, read_cad
 from meshfiles.deck import Deck
 from meshfiles.libraries import read_gmsh, read_meshio
 from meshfiles.mesh import MeshError
@@ -20,17 +24,35 @@ READERS = {
 }
 
 
-def convert(file, dim, bodies):
-    """Reads a mesh and makes it fit for the solver."""
+def convert(file, dim, bodies, cad):
+    """Reads a mesh, or meshes geometry, and makes the mesh fit for the solver."""
     reader = READERS.get(file.suffix.lower())
-    if reader is None:
-        raise MeshError(f"the ending '{file.suffix}' is not known; there are {', '.join(sorted(READERS))}")
-    mesh = reader(file, dim)
+    if file.suffix.lower() in ENDINGS:
+        mesh = read_cad(file, dim, {"order": 2, "surfaces": [], **cad})
+    elif reader:
+        mesh = reader(file, dim)
+    else:
+        raise MeshError(f"the ending '{file.suffix}' is not known; there are {', '.join(sorted([*READERS, *ENDINGS]))}")
     mesh.complete()
     mesh.merge_faces()
     mesh.choose_bodies(bodies)
     mesh.check()
     return mesh
+
+
+def list_groups(groups):
+    for group in groups:
+        if group.size:
+            print(f"{group.dim} {group.name}: {group.size} elements")
+
+
+def list_geometry(rows, dim):
+    """Bodies and surfaces with all their names, their size, and a point by which a surface can be told in a program."""
+    measures = ("", "length", "area", "volume")
+    for entity_dim, names, centre, size in rows:
+        place = ", ".join("%.5g" % (round(x, 9) + 0.0) for x in centre[:dim])
+        print(f"{'body' if entity_dim == dim else 'surface':<8} {' = '.join(names)}: {measures[entity_dim]} {size:.5g}, "
+              f"centre ({place})")
 
 
 def main():
@@ -39,18 +61,20 @@ def main():
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--dim", type=int, choices=(2, 3), required=True)
     parser.add_argument("--bodies", default="", help="names with commas")
+    parser.add_argument("--cad", default={}, type=json.loads, help="a map with size, order and surfaces")
     parser.add_argument("--list", action="store_true", help="print the groups")
     args = parser.parse_args()
     try:
-        mesh = convert(args.file, args.dim, args.bodies.split(","))
+        mesh = convert(args.file, args.dim, args.bodies.split(","), args.cad)
     except MeshError as error:
         sys.exit(f"Error: {error}")
     mesh.write(args.out)
     for note in mesh.notes:
         print(f"note: {note}")
-    for group in mesh.groups if args.list else ():
-        if group.size:
-            print(f"{group.dim} {group.name}: {group.size} elements")
+    if args.list and args.file.suffix.lower() in ENDINGS:
+        list_geometry(mesh.geometry, args.dim)
+    elif args.list:
+        list_groups(mesh.groups)
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ def read_gmsh(file, dim):
     gmsh.option.setNumber("General.Verbosity", 0)
     try:
         gmsh.open(str(file))
-        return _from_gmsh(gmsh, dim)
+        return mesh_of_entities(gmsh, dim, _names_of_entities(gmsh, dim))
     except MeshError:
         raise
     except Exception as error:  # gmsh raises Exception itself
@@ -43,7 +43,21 @@ def read_gmsh(file, dim):
         gmsh.finalize()
 
 
-def _from_gmsh(gmsh, dim):
+def _names_of_entities(gmsh, dim):
+    """Names of all entities that are read: physical groups, else the entity's own name, else its kind and number."""
+    names = {}
+    for entity in gmsh.model.getEntities():
+        groups = gmsh.model.getPhysicalGroupsForEntity(*entity)
+        own = gmsh.model.getEntityName(*entity).split("/")[-1] or f"{KINDS[entity[0]]}_{entity[1]}"
+        if len(groups):
+            names[entity] = [gmsh.model.getPhysicalName(entity[0], abs(tag)).strip() or str(abs(tag)) for tag in groups]
+        elif entity[0] >= dim - 1:
+            names[entity] = [own if entity[0] <= dim else ""]
+    return names
+
+
+def mesh_of_entities(gmsh, dim, names):
+    """The mesh that gmsh has, with the elements of the entities that have names, in groups of these names."""
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     if not len(tags):
         raise MeshError("gmsh finds no mesh in it")
@@ -51,19 +65,11 @@ def _from_gmsh(gmsh, dim):
     row[tags] = numpy.arange(len(tags))
     mesh = Mesh(dim, coordinates)
     for entity_dim, entity in gmsh.model.getEntities():
-        names = [gmsh.model.getPhysicalName(entity_dim, abs(tag)).strip() or str(abs(tag))
-                 for tag in gmsh.model.getPhysicalGroupsForEntity(entity_dim, entity)]
-        if not names and entity_dim in (dim, dim - 1):
-            names = [gmsh.model.getEntityName(entity_dim, entity).split("/")[-1] or f"{KINDS[entity_dim]}_{entity}"]
-        if not names and entity_dim > dim:
-            names = [""]
         types, _, nodes = gmsh.model.mesh.getElements(entity_dim, entity)
-        for number, connectivity in zip(types, nodes):
-            if not names:
-                continue
+        for number, connectivity in zip(types, nodes) if (entity_dim, entity) in names else ():
             shape = shape_of_number(number)
             indices = mesh.add_elements(shape, row[connectivity])
-            for name in names:
+            for name in names[entity_dim, entity]:
                 mesh.group(name, entity_dim).add(shape, indices)
     return mesh
 

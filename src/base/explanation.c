@@ -95,6 +95,13 @@ static const Explanation Input[] = {
    "The mesh has wedges, pyramids, elements without their inner nodes, or elements of two orders.",
    "Mesh with triangles, quadrilaterals, tetrahedra or bricks of one order; in gmsh with "
    "`Mesh.SecondOrderIncomplete=0`. `mesh.order` is that of the file."},
+  {"B124",
+   {"' is not taken: "},
+   "a mesh or CAD file of another program is not taken",
+   "The file is broken, holds no solids, has no surface at the point or of the name that the scene gives, or cannot be "
+   "meshed. The message says which.",
+   "Do what the message allows. The names and centres of surfaces are printed by `scripts/convert_mesh.py FILE OUT.msh "
+   "--dim 3 --list`."},
   {"B105",
    {"the mesh has no", "has no volume group", "has no cells of a volume group", "is needed: "},
    "the mesh has no group of this name",

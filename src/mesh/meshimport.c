@@ -5,6 +5,7 @@
 #include "gmshfile.h"
 #include "gmshprocess.h"
 #include "meshdraft.h"
+#include <cJSON.h>
 #include <petsctime.h>
 #include <string.h>
 #include <strings.h>
@@ -12,7 +13,7 @@
 
 #define CONVERTER "convert_mesh.py"
 /* Counts the changes after which the converter makes other meshes of the same files. */
-#define CONVERTER_VERSION "1"
+#define CONVERTER_VERSION "2"
 /* Files that a deck includes may include others. A circle of them would never end. */
 #define DEEPEST_INCLUDE 20
 /* What the converter says of its failure starts so and is repeated up to this length. */
@@ -95,8 +96,37 @@ static PetscErrorCode BodyNames(Scene scene, char **names)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says how CAD geometry is meshed, as the converter's option --cad=TEXT, to be freed with PetscFree(). For other files
+   the text is empty. */
+static PetscErrorCode CadOption(Scene scene, char **option)
+{
+  cJSON *json = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(json, "surfaces");
+  char  *text;
+
+  PetscFunctionBeginUser;
+  if (scene->mesh_size > 0) cJSON_AddNumberToObject(json, "size", scene->mesh_size);
+  cJSON_AddNumberToObject(json, "order", scene->order);
+  for (int i = 0; i < scene->n_cad_surfaces; i++) {
+    const SceneCadSurface *surface = &scene->cad_surfaces[i];
+    cJSON                 *entry   = cJSON_CreateObject();
+
+    cJSON_AddItemToArray(list, entry);
+    cJSON_AddStringToObject(entry, "name", surface->name);
+    if (surface->has_point) cJSON_AddItemToObject(entry, "point", cJSON_CreateDoubleArray(surface->point, scene->dim));
+    if (surface->body) cJSON_AddStringToObject(entry, "body", surface->body);
+    if (surface->size > 0) cJSON_AddNumberToObject(entry, "size", surface->size);
+  }
+  text = cJSON_PrintUnformatted(json);
+  PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the option of the converter");
+  PetscCall(PetscCalloc1(strlen(text) + 7, option));
+  if (scene->cad) snprintf(*option, strlen(text) + 7, "--cad=%s", text);
+  cJSON_free(text);
+  cJSON_Delete(json);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Runs the converter, which may write in the draft's folder only. */
-static PetscErrorCode Convert(Scene scene, const char *names, const char *file, Complaint *complaint)
+static PetscErrorCode Convert(Scene scene, const char *names, const char *cad, const char *file, Complaint *complaint)
 {
   MeshDraft   draft;
   char        python[SCRIPTS_PATH], script[SCRIPTS_PATH], dim[16], *output;
@@ -112,10 +142,12 @@ static PetscErrorCode Convert(Scene scene, const char *names, const char *file, 
   if (!complaint->text[0]) MeshDraftCreate(file, &draft, complaint);
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   snprintf(dim, sizeof(dim), "%d", scene->dim);
-  const char *const arguments[] = {python,     "-B",  script, scene->mesh_file, draft.mesh, "--dim", dim,
-                                   "--bodies", names, NULL};
+  const char *const arguments[] = {python, "-B",       script, scene->mesh_file,  draft.mesh, "--dim",
+                                   dim,    "--bodies", names,  *cad ? cad : NULL, NULL};
   PetscCall(GmshExecute((char *const *)arguments, draft.folder, &output, &status));
   said = strstr(output, SAID);
+  for (size_t n = strlen(output); n && output[n - 1] == '\n'; n--)
+    output[n - 1] = '\0'; /* the code of the message follows */
   if (status == GMSH_NO_PROGRAM)
     Complain(complaint, "%s: '%s' must be converted, and there is no Python here (%s); `make deps` installs one",
              SceneWhere(scene, "mesh", "file"), scene->mesh_file, python);
@@ -143,11 +175,11 @@ static PetscErrorCode Convert(Scene scene, const char *names, const char *file, 
 
   Note:
   This is meant for one rank. HASH stands for the contents of the file and of what it includes, the names of the bodies,
-  the dimension and the version of the converter. The converter is found by ScriptsFind().
+  the dimension, the options for CAD geometry and the version of the converter. The converter is found by ScriptsFind().
 @*/
 PetscErrorCode MeshImport(Scene scene, const char *directory, char *file, PetscReal *seconds, Complaint *complaint)
 {
-  char          *names, text[16];
+  char          *names, *cad, text[16];
   uint64_t       hash = HASH_START;
   PetscLogDouble start, end;
   struct stat    there;
@@ -159,15 +191,18 @@ PetscErrorCode MeshImport(Scene scene, const char *directory, char *file, PetscR
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(HashFile(scene->mesh_file, 0, &hash));
   PetscCall(BodyNames(scene, &names));
+  PetscCall(CadOption(scene, &cad));
+  hash = HashBytes(hash, cad, strlen(cad) + 1);
   snprintf(text, sizeof(text), "%d " CONVERTER_VERSION, scene->dim);
   hash = HashFinish(HashBytes(HashBytes(hash, names, strlen(names) + 1), text, strlen(text)));
   snprintf(file, PETSC_MAX_PATH_LEN, "%s/mesh-%016llx.msh", directory, (unsigned long long)hash);
   if (stat(file, &there)) {
     PetscCall(PetscTime(&start));
-    PetscCall(Convert(scene, names, file, complaint));
+    PetscCall(Convert(scene, names, cad, file, complaint));
     PetscCall(PetscTime(&end));
     *seconds = (PetscReal)(end - start);
   }
+  PetscCall(PetscFree(cad));
   PetscCall(PetscFree(names));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

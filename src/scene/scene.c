@@ -2,6 +2,7 @@
 #include "sceneaccuracy.h"
 #include "scenecontact.h"
 #include "sceneload.h"
+#include "scenemesh.h"
 #include "scenemotion.h"
 #include "sceneprobe.h"
 #include "scenematerial.h"
@@ -11,57 +12,6 @@
 #include "scenetable.h"
 #include "base/refusal.h"
 #include <string.h>
-
-/* Tells whether a file has the ending of a mesh file of another program. */
-static PetscBool IsForeignMesh(const char *ending)
-{
-  static const char *const endings[] = {".inp", ".med", ".unv", ".cgns", ".bdf", ".nas", ".vtk", ".vtu"};
-
-  for (size_t i = 0; i < sizeof(endings) / sizeof(*endings); i++)
-    if (!strcmp(ending, endings[i])) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-/* Reads the name of a file below mesh: where the process can open it. */
-static PetscErrorCode SceneReadPath(Scene scene, const char *key, char **name)
-{
-  const char *file = SchemaText(SceneDocument(scene), "mesh.%s", key);
-  char        path[PETSC_MAX_PATH_LEN];
-
-  PetscFunctionBeginUser;
-  if (snprintf(path, sizeof path, "%s%s%s", file[0] == '/' ? "" : scene->directory, file[0] == '/' ? "" : "/", file) >=
-      (int)sizeof path)
-    PetscCall(SceneRefuse(scene, "mesh", key, "the path is too long", NULL));
-  PetscCall(PetscStrallocpy(path, name));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode SceneReadMesh(Scene scene)
-{
-  const char *file = SchemaText(SceneDocument(scene), "mesh.file"), *dot = strrchr(file, '.');
-  const int   geo = dot && !strcmp(dot, ".geo");
-
-  PetscFunctionBeginUser;
-  scene->foreign_mesh = dot ? IsForeignMesh(dot) : PETSC_FALSE;
-  if (!geo && !scene->foreign_mesh && (!dot || strcmp(dot, ".msh")))
-    PetscCall(SceneRefuse(scene, "mesh", "file",
-                          "is no mesh file; allowed: .geo, .msh, .inp, .med, .unv, .cgns, .bdf, .nas, .vtk, .vtu",
-                          file));
-  PetscCall(SceneReadPath(scene, "file", &scene->mesh_file));
-  if (SceneHas(scene, "mesh", "sizes")) {
-    if (!geo) PetscCall(SceneRefuse(scene, "mesh", "sizes", "needs a geometry; allowed with a .geo file", NULL));
-    PetscCall(SceneReadPath(scene, "sizes", &scene->sizes));
-  }
-  scene->order =
-    SchemaHas(SceneDocument(scene), "mesh.order") ? SchemaInteger(SceneDocument(scene), "mesh.order") : geo;
-  PetscCall(SceneReadPairs(scene, "mesh.parameters", &scene->n_parameters, &scene->parameters));
-  for (int i = 0; i < scene->n_parameters; i++) {
-    if (!scene->parameters[i].value[0])
-      PetscCall(SceneRefuse(scene, "mesh.parameters", scene->parameters[i].key,
-                            "has no value; allowed: a number or a text", NULL));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Bulk modulus over shear modulus from which elements with full integration lock noticeably (nu = 0.475), so that
    `auto` takes mixed ones. */
@@ -479,17 +429,6 @@ PetscErrorCode SceneReadAgain(MPI_Comm comm, const char *file, const char *where
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PairsDestroy(int n, ScenePair **pairs)
-{
-  PetscFunctionBeginUser;
-  for (int i = 0; i < n; i++) {
-    PetscCall(PetscFree((*pairs)[i].key));
-    PetscCall(PetscFree((*pairs)[i].value));
-  }
-  PetscCall(PetscFree(*pairs));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode SceneDestroyBodies(Scene scene)
 {
   PetscFunctionBeginUser;
@@ -548,15 +487,13 @@ PetscErrorCode SceneDestroy(Scene *scene)
   PetscCall(PetscFree(s->units.stress));
   PetscCall(PetscFree(s->stepping.at));
   PetscCall(SceneDestroySteps(s));
-  PetscCall(PairsDestroy(s->n_parameters, &s->parameters));
-  PetscCall(PairsDestroy(s->n_petsc, &s->petsc));
-  PetscCall(PairsDestroy(s->accuracy.n_densities, &s->accuracy.densities));
+  PetscCall(SceneMeshDestroy(s));
+  PetscCall(ScenePairsDestroy(s->n_petsc, &s->petsc));
+  PetscCall(ScenePairsDestroy(s->accuracy.n_densities, &s->accuracy.densities));
   PetscCall(PetscFree(s->file));
   PetscCall(PetscFree(s->directory));
   PetscCall(PetscFree(s->text));
   PetscCall(PetscFree(s->name));
-  PetscCall(PetscFree(s->mesh_file));
-  PetscCall(PetscFree(s->sizes));
   PetscCall(DocumentDestroy(SceneDocument(s)));
   PetscCall(PetscFree(*scene));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -185,6 +185,14 @@ typedef struct {
 typedef enum { DENSITY_COUNT, DENSITY_SIZE, DENSITY_DIVISOR, DENSITY_KINDS } DensityKind;
 extern const char *const DensityKinds[]; /* their words */
 
+/* A surface of CAD geometry that the scene names by a point on it, or whose elements get a size of their own. */
+typedef struct {
+  char  *name, *body; /* body: the body whose surface is meant, or NULL */
+  int    has_point;
+  double point[3];
+  double size; /* of its elements; 0: that of the body */
+} SceneCadSurface;
+
 /* The accuracy that a run is to reach on meshes of its own choice */
 typedef struct {
   int        probe;       /* whose error counts; -1: none is asked for */
@@ -201,7 +209,11 @@ typedef struct {
   char      *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
   char      *name;
   char      *mesh_file;    /* path with which the process can open the file */
-  PetscBool  foreign_mesh; /* the mesh file is one of another program, by its ending */
+  PetscBool  foreign_mesh; /* the mesh file is one of another program, by its ending; CAD geometry too */
+  PetscBool  cad;          /* the file is geometry of a CAD program, by its ending */
+  double     mesh_size;    /* of the elements of CAD geometry; 0: by the size of each body */
+  int        n_cad_surfaces;
+  SceneCadSurface *cad_surfaces;
   int        order;        /* of the elements, 1 or 2; 0 stands for that of the .msh file */
   char      *sizes;        /* view of gmsh with the sizes of elements; NULL: those of the .geo file */
   int        n_parameters;

@@ -287,6 +287,26 @@ PetscErrorCode SceneReadPairs(Scene scene, const char *key, int *n, ScenePair **
 }
 
 /*@
+  ScenePairsDestroy - frees pairs of keys and values.
+
+  Not collective
+
+  Input Parameters:
++ n     - number of pairs
+- pairs - from SceneReadPairs()
+@*/
+PetscErrorCode ScenePairsDestroy(int n, ScenePair **pairs)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < n; i++) {
+    PetscCall(PetscFree((*pairs)[i].key));
+    PetscCall(PetscFree((*pairs)[i].value));
+  }
+  PetscCall(PetscFree(*pairs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   SceneRefuseRigid - refuses a surface that belongs to a rigid tool.
 
   Not collective

@@ -47,10 +47,26 @@ const SchemaKey SchemaKeys[] = {
   {"name", NAME, .help = "name of the run and of its results; the default is the name of the scene file"},
   {"mesh", MAP, REQUIRED, .help = "the mesh and its source"},
   {"mesh.file", FILENAME, REQUIRED,
-   .help = "a .geo file, from which gmsh makes the mesh; a .msh file; or a mesh of another program (.inp, .med, .unv, "
-           ".cgns, .bdf, .nas, .vtk, .vtu), which is converted once"},
+   .help = "a .geo file, from which gmsh makes the mesh; geometry of a CAD program (.step, .stp, .brep, .igs, .iges), "
+           "which is meshed once; a .msh file; or a mesh of another program (.inp, .med, .unv, .cgns, .bdf, .nas, .vtk, "
+           ".vtu), which is converted once"},
   {"mesh.order", INTEGER, .range = "[1, 2]",
-   .help = "order of the elements; the default is 1 for a .geo file, and that of the file for the others"},
+   .help = "order of the elements; the default is 1 for a .geo file, 2 for CAD geometry, and that of the file for the "
+           "others"},
+  {"mesh.size", REAL, .range = "(0, inf)", .unit = "length",
+   .help = "of CAD geometry: size of the elements, which are smaller on strongly curved faces; the default is a fifteenth "
+           "of the diagonal of each body"},
+  {"mesh.surfaces", LIST,
+   .help = "of CAD geometry: surfaces (in the plane curves) that are named or meshed more finely"},
+  {"mesh.surfaces.*", MAP, .help = "a surface with a point, a size, or both"},
+  {"mesh.surfaces.*.name", TEXT, REQUIRED,
+   .help = "name that the scene gives to the surface, or without point a name that it has"},
+  {"mesh.surfaces.*.point", POINT, .unit = "length",
+   .help = "point on the surface, not on its edge; entries of the same name make one surface of several"},
+  {"mesh.surfaces.*.body", TEXT,
+   .help = "body whose surface is meant, where surfaces of two bodies have the point"},
+  {"mesh.surfaces.*.size", REAL, .range = "(0, inf)", .unit = "length",
+   .help = "size of the elements on the surface; they grow away from it"},
   {"mesh.parameters", FREE, .help = "numbers and texts that are passed to the .geo file"},
   {"mesh.sizes", FILENAME,
    .help = "a view of gmsh (.pos) with element sizes that take the place of those of the .geo file; curves and surfaces "

@@ -131,7 +131,11 @@ static PetscErrorCode Print(ElementType type, const char *what, double microseco
 
 static PetscErrorCode TimeOurs(ElementType type, PetscInt n)
 {
-  const KernelCase kernel = {type, GEOMETRY_SOLID, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_FULL, 0, NULL, 0, 0, 0};
+  const KernelCase kernel = {.type        = type,
+                             .geometry    = GEOMETRY_SOLID,
+                             .kinematics  = KINEMATICS_FINITE,
+                             .law         = MATERIAL_SVK,
+                             .formulation = FORMULATION_FULL};
   const struct {
     const char *what;
     PetscErrorCode (*call)(Work *);

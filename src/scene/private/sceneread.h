@@ -1,7 +1,8 @@
 /* Functions that the readers of a scene share. They address a value by the path of a part of the scene ("contact.0")
    and a key below it.
 
-   SceneNode(), SceneHas(), SceneReals(), SceneReadText(), SceneReadPairs() and SceneReadValue() give the value. SceneReadFactors() and
+   SceneNode(), SceneHas(), SceneReals(), SceneReadText(), SceneReadPairs() and SceneReadValue() give the value.
+   ScenePairsDestroy() frees pairs. SceneReadFactors() and
    SceneReadHistory() give factors over the load parameter. SceneFindBody() finds a body by its name. SceneRefuse()
    refuses a value, SceneRefuseRigid() a surface of a rigid tool. ScenePath() makes the path of a list's entry. scene.c
    reads the whole scene with these functions, and the files of its parts use them. No file outside this folder needs
@@ -19,6 +20,7 @@ PetscErrorCode   SceneReadText(Scene, const char *path, const char *key, char **
 PetscErrorCode   SceneReadValue(Scene, const char *path, const char *key, double *value, Expression *);
 PetscErrorCode   SceneReadFactors(Scene, const char *path, const char *key, History *);
 PetscErrorCode   SceneReadPairs(Scene, const char *key, int *n, ScenePair **);
+PetscErrorCode   ScenePairsDestroy(int n, ScenePair **);
 PetscErrorCode   SceneReadHistory(Scene, const char *path, History *);
 PetscErrorCode   ScenePath(char **path, const char *list, int i);
 const SceneBody *SceneFindBody(Scene, const char *name, int rigid);
