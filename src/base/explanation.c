@@ -100,8 +100,8 @@ static const Explanation Input[] = {
    "a mesh or CAD file of another program is not taken",
    "The file is broken, holds no solids, has no surface at the point or of the name that the scene gives, or cannot be "
    "meshed. The message says which.",
-   "Do what the message allows. The names and centres of surfaces are printed by `scripts/convert_mesh.py FILE OUT.msh "
-   "--dim 3 --list`."},
+   "Do what the message allows. The option `--list` of the script convert_mesh.py prints names and centres of "
+   "surfaces."},
   {"B105",
    {"the mesh has no", "has no volume group", "has no cells of a volume group", "is needed: "},
    "the mesh has no group of this name",
