@@ -6,10 +6,10 @@
 
      r = s E^(-1 / (2p + d)),
 
-   with one factor s for all cells, so that the errors of the new cells are equal (equidistribution). r is bounded, since
-   the errors far from those of the present mesh are guesses. Cells at surfaces that may meet do not become larger: how
-   well these surfaces are resolved is in no cell's error. Sources: Zienkiewicz and Zhu (1987); Coorevits, Hild and
-   Hjiaj, Computer Methods in Applied Mechanics and Engineering 190 (2001). */
+   with one factor s for all cells, so that the errors of the new cells are equal (equidistribution). r is bounded,
+   since the errors far from those of the present mesh are guesses. Cells at surfaces that may meet do not become
+   larger: how well these surfaces are resolved is in no cell's error. Sources: Zienkiewicz and Zhu (1987); Coorevits,
+   Hild and Hjiaj, Computer Methods in Applied Mechanics and Engineering 190 (2001). */
 #pragma once
 #include "solve/model.h"
 

@@ -4,9 +4,9 @@
    and no right-hand sides with few entries. A MUMPS without METIS cuts graphs so unevenly that a second rank gains
    little.
 
-   Create a Factor, make it with FactorMake() for each new matrix, and solve with FactorSolve(),
-   FactorSolveTransposed() or FactorSolveColumns(). FactorAnalyse() alone finds what a factor would cost. FactorPrepareBorder() and FactorSetBorder() add a sum of few
-   v v^T to the matrix without a change of its ordering (borderedfactor.h). */
+   Create a Factor, make it with FactorMake() for each new matrix, and solve with FactorSolve(), FactorSolveTransposed()
+   or FactorSolveColumns(). FactorAnalyse() alone finds what a factor would cost. FactorPrepareBorder() and
+   FactorSetBorder() add a sum of few v v^T to the matrix without a change of its ordering (borderedfactor.h). */
 #pragma once
 #include "linear/borderedfactor.h"
 

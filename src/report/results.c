@@ -419,7 +419,8 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   }
   TimingBegin(TIMING_OUTPUT);
   if (results->stepped && !results->written) PetscCall(ResultsWriteFields(results));
-  if (results->written) PetscCall(ErrorFieldsWrite(results->model->mesh, results->scene, results->errors, results->directory));
+  if (results->written)
+    PetscCall(ErrorFieldsWrite(results->model->mesh, results->scene, results->errors, results->directory));
   TimingEnd(TIMING_OUTPUT);
   PetscCall(ResultsGetUsage(results, &usage));
   usage.wall_s = results->before.wall_s + run->wall_s;

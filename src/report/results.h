@@ -1,10 +1,10 @@
-/* The results of a run: its directory with results.vtkhdf, results.xdmf, steps.csv and summary.json, and the progress on
-   the terminal. Ties the parts that write them; does not know how values were computed.
+/* The results of a run: its directory with results.vtkhdf, results.xdmf, steps.csv and summary.json, and the progress
+   on the terminal. Ties the parts that write them; does not know how values were computed.
 
    ResultsCreate() touches no file. ResultsStart() makes the directory and prints the first lines, ResultsStep() writes
    each accepted step, ResultsLastSolution() comes before the last one is accepted, ResultsFinish() ends the run however
-   it went. ResultsArchive() keeps the state of all this in a checkpoint; loaded before ResultsStart(), it lets the run go on in the same files. Which directory may be used is
-   decided before, by rundirectory.h. */
+   it went. ResultsArchive() keeps the state of all this in a checkpoint; loaded before ResultsStart(), it lets the run
+   go on in the same files. Which directory may be used is decided before, by rundirectory.h. */
 #pragma once
 #include "errors/quantityerror.h"
 #include "solve/model.h"

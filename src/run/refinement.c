@@ -28,23 +28,23 @@ typedef struct {
 } SolvedMesh;
 
 typedef struct {
-  Run           *run;
-  RunInput       input; /* of the next mesh */
-  SceneAccuracy  wish;
-  const char    *probe;
-  char           directory[PETSC_MAX_PATH_LEN];
-  int            dim, order, n_densities, n_given; /* edits that the user gave */
-  MeshDensity   *density;
-  PetscBool      structured; /* meshes follow densities, else sizes of elements in a file */
-  PetscReal     *size;       /* wanted of the next mesh at each local cell of the last one */
-  int            n_edits;
-  char         **edit; /* of each density, or of the file of sizes */
-  int            n;
-  MeshFigures   *figures; /* of each mesh */
-  SolvedMesh    *mesh;
-  double         cpu_s; /* spent before the present mesh */
-  PetscMPIInt    rank;
-  const char    *why; /* it ends without the accuracy */
+  Run          *run;
+  RunInput      input; /* of the next mesh */
+  SceneAccuracy wish;
+  const char   *probe;
+  char          directory[PETSC_MAX_PATH_LEN];
+  int           dim, order, n_densities, n_given; /* edits that the user gave */
+  MeshDensity  *density;
+  PetscBool     structured; /* meshes follow densities, else sizes of elements in a file */
+  PetscReal    *size;       /* wanted of the next mesh at each local cell of the last one */
+  int           n_edits;
+  char        **edit; /* of each density, or of the file of sizes */
+  int           n;
+  MeshFigures  *figures; /* of each mesh */
+  SolvedMesh   *mesh;
+  double        cpu_s; /* spent before the present mesh */
+  PetscMPIInt   rank;
+  const char   *why; /* it ends without the accuracy */
 } Refinement;
 
 static void Say(const Refinement *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -81,7 +81,8 @@ static PetscReal MeshError(const QuantityError *error)
 static PetscReal WantedMeshError(const Refinement *r)
 {
   const SolvedMesh *mesh    = &r->mesh[r->n - 1];
-  const PetscReal   allowed = r->wish.to * PetscAbsReal(mesh->value), others = mesh->error.magnitude - MeshError(&mesh->error);
+  const PetscReal   allowed = r->wish.to * PetscAbsReal(mesh->value),
+                  others    = mesh->error.magnitude - MeshError(&mesh->error);
 
   return REFINEMENT_AIM * PetscMax(allowed - others, REFINEMENT_LEAST_SHARE * allowed);
 }
@@ -103,8 +104,9 @@ static PetscErrorCode Begin(Run *run, const RunInput *input, Refinement *r)
   *strrchr(r->directory, '/') = '\0';
   PetscCall(MeshDensitiesFind(run->comm, run->scene, input->trust, &r->n_densities, &r->density, &r->structured));
   if (r->structured && !r->n_densities)
-    PetscCall(RefuseInput(run->comm, "%s: '%s' declares no parameter that refines its mesh; allowed: names of them in "
-                                     "accuracy.densities",
+    PetscCall(RefuseInput(run->comm,
+                          "%s: '%s' declares no parameter that refines its mesh; allowed: names of them in "
+                          "accuracy.densities",
                           SceneWhere(run->scene, "accuracy", NULL), run->scene->mesh_file));
   r->n_edits = r->structured ? r->n_densities : 1;
   PetscCall(PetscCalloc1(r->n_edits, &r->edit));
@@ -145,12 +147,12 @@ static PetscErrorCode Record(Refinement *r, double factor)
   mesh->error       = *error;
   mesh->error.cells = NULL; /* they go with the run */
   mesh->mesh_s      = r->run->mesh_s;
-  r->figures[r->n] = (MeshFigures){.factor   = factor,
-                                   .unknowns = (double)mesh->dofs,
-                                   .error    = (double)MeshError(error),
-                                   .cpu_s    = (double)usage.cpu_s - r->cpu_s,
-                                   .rss_mb   = (double)usage.peak_rss_mb};
-  r->cpu_s         = (double)usage.cpu_s;
+  r->figures[r->n]  = (MeshFigures){.factor   = factor,
+                                    .unknowns = (double)mesh->dofs,
+                                    .error    = (double)MeshError(error),
+                                    .cpu_s    = (double)usage.cpu_s - r->cpu_s,
+                                    .rss_mb   = (double)usage.peak_rss_mb};
+  r->cpu_s          = (double)usage.cpu_s;
   r->n++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -216,10 +218,10 @@ static PetscErrorCode PlanSizes(Refinement *r, MeshFigures *next)
   PetscCall(ResultsGetError(r->run->results, r->wish.probe, &value, &why, &error));
   PetscCall(PetscFree(r->size));
   PetscCall(PetscMalloc1(mesh->n_cells, &r->size));
-  PetscCall(ElementSizesFind(r->run->model, error->cells, PetscMin(wanted, REFINEMENT_PART), REFINEMENT_MOST_ELEMENTS, r->size,
-                             &forecast));
-  *next       = MeshPlanForecast(r->n, r->figures, r->dim, r->order,
-                                 last->factor * pow((double)forecast.elements, 1.0 / r->dim));
+  PetscCall(ElementSizesFind(r->run->model, error->cells, PetscMin(wanted, REFINEMENT_PART), REFINEMENT_MOST_ELEMENTS,
+                             r->size, &forecast));
+  *next =
+    MeshPlanForecast(r->n, r->figures, r->dim, r->order, last->factor * pow((double)forecast.elements, 1.0 / r->dim));
   next->error = last->error * (double)forecast.error;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -294,8 +296,10 @@ static PetscErrorCode SolveNext(Refinement *r, const MeshFigures *next, BurnishS
   PetscFunctionBeginUser;
   PetscCall(Edit(r, next->factor));
   Say(r, "next    ");
-  for (int i = 0; r->structured && i < r->n_edits; i++) Say(r, " %s,", strchr(r->edit[i], '.') + strlen(".parameters."));
-  Say(r, " some %.0f unknowns, error by the mesh %.2g %%, CPU %.2g s\n", next->unknowns, part * next->error, next->cpu_s);
+  for (int i = 0; r->structured && i < r->n_edits; i++)
+    Say(r, " %s,", strchr(r->edit[i], '.') + strlen(".parameters."));
+  Say(r, " some %.0f unknowns, error by the mesh %.2g %%, CPU %.2g s\n", next->unknowns, part * next->error,
+      next->cpu_s);
   PetscCall(RunDestroy(r->run));
   *r->run = (Run){.comm = comm};
   PetscCall(RunScene(r->run, &r->input, status));
@@ -308,16 +312,17 @@ static void Conclude(Refinement *r, BurnishStatus *status)
 {
   if (r->why) {
     if (*status == BURNISH_DONE || *status == BURNISH_NOT_CONVERGED) *status = BURNISH_INACCURATE;
-    snprintf(r->run->message, sizeof(r->run->message),
-             "the accuracy of %g %% is not reached: %s; the best is %s %.6g with an error of %.3g %%, in %.600s/mesh-%d",
-             100 * (double)r->wish.to, r->why, r->probe, (double)r->mesh[r->n - 1].value, 100 * (double)Error(r),
-             r->directory, r->n);
+    snprintf(
+      r->run->message, sizeof(r->run->message),
+      "the accuracy of %g %% is not reached: %s; the best is %s %.6g with an error of %.3g %%, in %.600s/mesh-%d",
+      100 * (double)r->wish.to, r->why, r->probe, (double)r->mesh[r->n - 1].value, 100 * (double)Error(r), r->directory,
+      r->n);
     if (!r->rank) fprintf(stderr, "burnish: %s\n", r->run->message);
   } else
-    Say(r, "done: %s %.6g with an estimated error of %.3g %%%s, %d meshes, %.1f s of CPU; results in %s/mesh-%d\n", r->probe,
-        (double)r->mesh[r->n - 1].value, 100 * (double)Error(r),
-        isnan((double)r->mesh[r->n - 1].error.part[ERROR_GEOMETRY]) ? " besides that of the contact surfaces" : "", r->n,
-        r->cpu_s, r->directory, r->n);
+    Say(r, "done: %s %.6g with an estimated error of %.3g %%%s, %d meshes, %.1f s of CPU; results in %s/mesh-%d\n",
+        r->probe, (double)r->mesh[r->n - 1].value, 100 * (double)Error(r),
+        isnan((double)r->mesh[r->n - 1].error.part[ERROR_GEOMETRY]) ? " besides that of the contact surfaces" : "",
+        r->n, r->cpu_s, r->directory, r->n);
 }
 
 /* Solves meshes until the last one is accurate enough. */

@@ -63,7 +63,8 @@ static PetscErrorCode RunOpen(Run *run, const RunInput *input)
   if (run->refines) {
     const size_t used = strlen(run->directory);
 
-    PetscCall(PetscSNPrintf(run->directory + used, sizeof(run->directory) - used, "/mesh-%d", PetscMax(input->mesh, 1)));
+    PetscCall(
+      PetscSNPrintf(run->directory + used, sizeof(run->directory) - used, "/mesh-%d", PetscMax(input->mesh, 1)));
   }
   if (input->task != RUN_MESH) PetscCall(RunDirectoryCheckPath(run->comm, run->directory));
   PetscCall(ErrorLogSetDirectory(run->directory));
@@ -149,8 +150,8 @@ static PetscErrorCode RunLastSolution(void *context)
 static PetscErrorCode RunCreateStepper(Run *run, const RunInput *input)
 {
   PetscFunctionBeginUser;
-  PetscCall(ResultsCreate(run->model, run->probes, run->scene, run->directory, input->quiet || run->refines,
-                          &run->results));
+  PetscCall(
+    ResultsCreate(run->model, run->probes, run->scene, run->directory, input->quiet || run->refines, &run->results));
   PetscCall(LoadStepperCreate(run->comm, &run->stepper));
   PetscCall(LoadStepperSetModel(run->stepper, run->model));
   PetscCall(LoadStepperSetFromScene(run->stepper, run->scene));

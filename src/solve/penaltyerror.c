@@ -16,7 +16,7 @@
    not count for this. Where the slave's nodes are denser than the master's, pressures scatter, and stiffer penalties
    only let them scatter more. */
 #define PENALTY_ERROR_LARGE 0.004
-/* Where the scene asks for an accuracy, it is at most this part of the error that is allowed: the rest is for the mesh. */
+/* Where the scene asks for an accuracy, it is at most this part of the allowed error: the rest is for the mesh. */
 #define PENALTY_ERROR_SHARE 0.3
 /* They are made so stiff that this part of it is to be expected. */
 #define PENALTY_ERROR_WANTED 0.5

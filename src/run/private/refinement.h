@@ -3,8 +3,8 @@
 
    RunScene() has solved the first mesh when RefinementRun() is called. Each mesh is a run of its own, with its results
    in DIR/mesh-1, DIR/mesh-2 and so on; DIR/accuracy.csv has a row for each. The error that counts is the sum of the
-   magnitudes of all parts (errors/quantityerror.h). The mesh's parts, those of bodies and contact surfaces, get what the
-   other parts leave of it. */
+   magnitudes of all parts (errors/quantityerror.h). The mesh's parts, those of bodies and contact surfaces, get what
+   the other parts leave of it. */
 #pragma once
 #include "run.h"
 
