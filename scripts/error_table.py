@@ -7,7 +7,7 @@ the reference as estimated, are listed apart: they say nothing of the estimate."
 import shutil
 import subprocess
 
-from launch import ROOT, command, environment, read_records, read_summary, table_parser, write_records
+from launch import ROOT, command, environment, fill_scenes, read_summary
 
 SMALL, TIMES = 0.05, 4  # per cent; of the reference's own error
 COLUMNS = ("scene", "order", "mesh", "probe", "status", "dofs", "cpu_s", "value", "estimate", "bodies", "penetration",
@@ -124,15 +124,5 @@ def table(rows):
           f"the largest {max(ratios, default=0):.2f}; {len(rows) - len(judged)} apart")
 
 
-def main():
-    parser = table_parser(__doc__, "error")
-    parser.add_argument("--only", nargs="*", default=list(CASES), metavar="NAME", help="of these scenes")
-    args = parser.parse_args()
-    if not args.only_print:
-        args.out.mkdir(parents=True, exist_ok=True)
-        write_records(args.record, COLUMNS, lambda name: records(args, name), args.only, 1)
-    table(read_records(args.record))
-
-
 if __name__ == "__main__":
-    main()
+    fill_scenes(__doc__, "error", COLUMNS, records, CASES, table)

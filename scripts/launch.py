@@ -126,6 +126,27 @@ def fill_table(args, columns, solve, cases, print_table):
     print_table(read_records(args.record))
 
 
+def fill_scenes(description, name, columns, solve, scenes, print_table):
+    """A script that runs scenes into a record and prints its table; solve gives the list of records of a scene."""
+    parser = table_parser(description, name)
+    parser.add_argument("--only", nargs="*", default=list(scenes), metavar="NAME", help="of these scenes")
+    args = parser.parse_args()
+    if not args.only_print:
+        args.out.mkdir(parents=True, exist_ok=True)
+        write_records(args.record, columns, lambda scene: solve(args, scene), args.only, 1)
+    print_table(read_records(args.record))
+
+
+def fill_row(row, columns, summary):
+    """Adds to a row the columns that it lacks: seconds_*, probes and other values of summary.json."""
+    for name in columns:
+        if name.startswith("seconds_"):
+            row[name] = summary["seconds"][name.removeprefix("seconds_")]
+        elif name not in row:
+            row[name] = summary["probes"][name] if name in summary["probes"] else summary[name]
+    return row
+
+
 def read_records(path):
     """The records of a CSV file; none where there is no file yet."""
     if not pathlib.Path(path).exists():

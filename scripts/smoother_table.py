@@ -4,15 +4,14 @@ go to a CSV file, the table (iterations, failed steps, CPU seconds) is printed f
     --table FILE                                               prints only
 Runs of the smoothers alternate, so that whatever else the machine does meets all of them; CPU seconds are medians."""
 import argparse
-import csv
-import json
+import itertools
 import pathlib
 import shutil
 import statistics
 import subprocess
 import sys
 
-from launch import ROOT, environment
+from launch import ROOT, command, environment, fill_row, read_records, read_summary, write_records
 
 SCENE = ROOT / "runs" / "pipe_pinch.yaml"
 MESHES = ((12, 5), (18, 8), (24, 10))  # elements around the quarter, along the length
@@ -27,54 +26,34 @@ COLUMNS = ("mesh", "smoother", "repeat", "ranks", "dofs", "status", "steps", "st
 CONTACT_SECONDS = ("seconds_search", "seconds_fit", "seconds_assembly_contact")
 
 
-def record(args, mesh, smoother, repeat):
+def record(args, mesh, repeat, smoother):
     """One run, as a row of the CSV file."""
     n_arc, n_len = mesh
     directory = args.out / f"{n_arc}x{n_len}_{smoother.replace(' ', '_')}"
     shutil.rmtree(directory, ignore_errors=True)
-    command = ["mpirun", "-n", str(args.ranks), str(args.burnish), str(SCENE), "-quiet", "-o", str(directory)]
-    for override in (f"mesh.parameters.n_arc={n_arc}", f"mesh.parameters.n_len={n_len}", "output.every=0",
-                     *SMOOTHERS[smoother]):
-        command += ["-set", override]
-    finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    overrides = (f"mesh.parameters.n_arc={n_arc}", f"mesh.parameters.n_len={n_len}", "output.every=0",
+                 *SMOOTHERS[smoother])
+    line = command(args.burnish, args.ranks, SCENE, directory, overrides, "-quiet")
+    finished = subprocess.run(line, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               text=True)
     if finished.returncode not in (0, 2):  # 2: did not converge; the summary says how far it came
-        sys.exit(f"{' '.join(command)}\n{finished.stdout}")
-    summary = json.loads((directory / "summary.json").read_text())
-    row = {
-        "mesh": f"{n_arc}x{n_len}",
-        "smoother": smoother,
-        "repeat": repeat,
-        "fall_backs": summary["contact"][0]["fall_backs"]
-    }
-    for name in COLUMNS:
-        if name.startswith("seconds_"):
-            row[name] = summary["seconds"][name.removeprefix("seconds_")]
-        elif name in summary["probes"]:
-            row[name] = summary["probes"][name]
-        elif name not in row:
-            row[name] = summary[name]
-    return row
+        sys.exit(f"{' '.join(line)}\n{finished.stdout}")
+    summary = read_summary(directory)
+    return fill_row({"mesh": f"{n_arc}x{n_len}", "smoother": smoother, "repeat": repeat,
+                     "fall_backs": summary["contact"][0]["fall_backs"]}, COLUMNS, summary)
 
 
 def measure(args):
     """All runs; returns the CSV file."""
     args.out.mkdir(parents=True, exist_ok=True)
     path = args.out / "smoothers.csv"
-    with open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS)
-        writer.writeheader()
-        for mesh in MESHES:
-            for repeat in range(args.repeats):
-                for smoother in SMOOTHERS:
-                    writer.writerow(record(args, mesh, smoother, repeat))
-                    file.flush()
+    cases = itertools.product(MESHES, range(args.repeats), SMOOTHERS)
+    write_records(path, COLUMNS, lambda case: [record(args, *case)], cases, 1)
     return path
 
 
 def table(path):
-    with open(path, newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = read_records(path)
     print(
         f"{'mesh':>8} {'dofs':>7} {'smoother':<10} {'steps':>5} {'failed':>6} {'iterations':>10} {'CPU s':>7} "
         f"{'to facet':>8} {'contact':>7} {'wall s':>7} {'plate force':>11}"

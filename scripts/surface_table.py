@@ -5,15 +5,14 @@ records of every run go to a CSV file, the table (iterations, CPU seconds, ratio
 With several binaries, such as one before a change and one after it, each has its rows. Runs of formulations and
 binaries alternate, so that whatever else the machine does meets all of them; CPU seconds are medians."""
 import argparse
-import csv
-import json
+import itertools
 import pathlib
 import shutil
 import statistics
 import subprocess
 import sys
 
-from launch import ROOT, environment
+from launch import ROOT, command, environment, fill_row, read_records, read_summary, write_records
 
 SCENES = {  # scene in runs, with what is set besides
     "pipe 24x10": ("pipe_pinch.yaml", []),
@@ -27,52 +26,36 @@ SCENES = {  # scene in runs, with what is set besides
 }
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
 COLUMNS = ("scene", "binary", "formulation", "repeat", "dofs", "status", "steps", "newton_iterations", "cpu_s",
-           "seconds_search", "seconds_fit", "seconds_assembly_contact", "seconds_linear_solve", "lists_made_anew")
+           "seconds_search", "seconds_fit", "seconds_assembly_contact", "lists_made_anew")
 
 
-def record(args, scene, binary, formulation, repeat):
+def record(args, scene, repeat, binary, formulation):
     """One run, as a row of the CSV file."""
     file, settings = SCENES[scene]
     directory = args.out / f"{scene}_{formulation}".replace(" ", "_")
     shutil.rmtree(directory, ignore_errors=True)
-    command = ["mpirun", "-n", "1", str(args.burnish[binary]), str(ROOT / "runs" / file), "-quiet"]
-    command += ["-o", str(directory)]
-    for override in ("output.every=0", "contact.0.smoother=diffuse", f"contact.0.formulation={formulation}", *settings):
-        command += ["-set", override]
-    finished = subprocess.run(command, env=environment(args.burnish[binary]), stdout=subprocess.PIPE,
+    overrides = ("output.every=0", "contact.0.smoother=diffuse", f"contact.0.formulation={formulation}", *settings)
+    line = command(args.burnish[binary], 1, ROOT / "runs" / file, directory, overrides, "-quiet")
+    finished = subprocess.run(line, env=environment(args.burnish[binary]), stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True)
     if finished.returncode not in (0, 2):  # 2: did not converge; the summary says how far it came
-        sys.exit(f"{' '.join(command)}\n{finished.stdout}")
-    summary = json.loads((directory / "summary.json").read_text())
-    row = {"scene": scene, "binary": args.names[binary], "formulation": formulation, "repeat": repeat,
-           "lists_made_anew": summary["guards"]["lists_made_anew"]}
-    for name in COLUMNS:
-        if name.startswith("seconds_"):
-            row[name] = summary["seconds"].get(name.removeprefix("seconds_"))
-        elif name not in row:
-            row[name] = summary[name]
-    return row
+        sys.exit(f"{' '.join(line)}\n{finished.stdout}")
+    summary = read_summary(directory)
+    return fill_row({"scene": scene, "binary": args.names[binary], "formulation": formulation, "repeat": repeat,
+                     "lists_made_anew": summary["guards"]["lists_made_anew"]}, COLUMNS, summary)
 
 
 def measure(args):
     """All runs; returns the CSV file."""
     args.out.mkdir(parents=True, exist_ok=True)
     path = args.out / "surface.csv"
-    with open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS)
-        writer.writeheader()
-        for scene in args.scenes:
-            for repeat in range(args.repeats):
-                for binary in range(len(args.burnish)):
-                    for formulation in FORMULATIONS:
-                        writer.writerow(record(args, scene, binary, formulation, repeat))
-                        file.flush()
+    cases = itertools.product(args.scenes, range(args.repeats), range(len(args.burnish)), FORMULATIONS)
+    write_records(path, COLUMNS, lambda case: [record(args, *case)], cases, 1)
     return path
 
 
 def table(path):
-    with open(path, newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = read_records(path)
     print("| scene | binary | dofs | iterations, node | iterations, surface | CPU s, node | CPU s, surface | ratio |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for scene, binary in dict.fromkeys((row["scene"], row["binary"]) for row in rows):

@@ -7,7 +7,7 @@ import csv
 import shutil
 import subprocess
 
-from launch import ROOT, command, environment, read_records, table_parser, write_records
+from launch import ROOT, command, environment, fill_scenes, read_records
 
 WISHES = (5, 1, 0.2)  # per cent
 LIMIT = "accuracy.limit.time=20"  # CPU seconds of one wish
@@ -78,15 +78,5 @@ def table(rows):
     print(f"\n{met} of {len(rows)} met")
 
 
-def main():
-    parser = table_parser(__doc__, "wish")
-    parser.add_argument("--only", nargs="*", default=list(CASES), metavar="NAME", help="of these scenes")
-    args = parser.parse_args()
-    if not args.only_print:
-        args.out.mkdir(parents=True, exist_ok=True)
-        write_records(args.record, COLUMNS, lambda name: records(args, name), args.only, 1)
-    table(read_records(args.record))
-
-
 if __name__ == "__main__":
-    main()
+    fill_scenes(__doc__, "wish", COLUMNS, records, CASES, table)

@@ -23,12 +23,6 @@ static PetscBool HasSpring(const SceneSupport *support)
   return (PetscBool)(support->spring[0] > 0 || support->spring[1] > 0 || support->spring[2] > 0);
 }
 
-/* Factor on the stiffness of the springs of a surface. */
-static PetscReal SpringFactor(const SpringSurface *surface, PetscReal t)
-{
-  return surface->history ? HistoryValue(surface->history, t) : 1;
-}
-
 /* Marks the dofs of a surface that its springs hold. */
 static void MarkHeld(Foundation foundation, const SpringSurface *surface)
 {
@@ -159,8 +153,8 @@ PetscErrorCode FoundationResidual(Foundation foundation, PetscReal t, const Pets
   PetscCall(PetscArrayzero(foundation->force, foundation->mesh->n_nodes * foundation->mesh->dim));
   for (int s = 0; s < foundation->n; s++)
     for (PetscInt face = 0; face < foundation->surfaces[s].group->n_faces; face++)
-      FaceForces(foundation, &foundation->surfaces[s], SpringFactor(&foundation->surfaces[s], t), face, u, energy,
-                 force2);
+      FaceForces(foundation, &foundation->surfaces[s], HistoryFactor(foundation->surfaces[s].history, t), face, u,
+                 energy, force2);
   for (PetscInt i = 0; f && i < foundation->mesh->n_nodes * foundation->mesh->dim; i++) f[i] -= foundation->force[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -183,7 +177,7 @@ PetscErrorCode FoundationTangent(Foundation foundation, PetscReal t, Elasticity 
   PetscFunctionBeginUser;
   for (int s = 0; foundation && s < foundation->n; s++) {
     const SpringSurface *surface = &foundation->surfaces[s];
-    const PetscReal      factor  = SpringFactor(surface, t);
+    const PetscReal      factor  = HistoryFactor(surface->history, t);
     const int            dim     = foundation->mesh->dim;
 
     for (PetscInt f = 0; f < surface->group->n_faces; f++) {

@@ -76,11 +76,6 @@ struct _n_Loads {
   PetscReal    *dense;          /* nodal forces of one load: while it is made, or all the time if some load changes */
 };
 
-static PetscReal HistoryFactor(const History *history, PetscReal t)
-{
-  return history ? HistoryValue(history, t) : 1;
-}
-
 /* Returns the value of a rule at any t. */
 static PetscReal PrescribedAt(Loads loads, const Prescribed *p, PetscReal t)
 {

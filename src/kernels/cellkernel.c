@@ -1,6 +1,7 @@
 /* Integrals over one cell at a time: volume, quality, body force and stress. They are called once for each step or run,
    not for each iteration, so they are not batched. */
 #include "elementbatch.h"
+#include "lawconstants.h"
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
@@ -81,8 +82,19 @@ static void PlasticStress(const KernelCase *kernel, const double *X, const doubl
   for (int r = 0; r < 9; r++) P[r] = lanes_P[r][0];
 }
 
-/* Takes the constants with which a law gives the stress at a point. Returns their number. */
-static int StressConstants(const KernelCase *kernel, const double *constants, double used[MATERIAL_MAX_CONSTANTS])
+/*@
+  ElementLawConstants - takes the constants with which a law is evaluated at one point, and returns their number.
+
+  Not collective
+
+  Input Parameters:
++ kernel    - of the element
+- constants - of the law
+
+  Output Parameter:
+. used - the constants; in a mixed element without the bulk modulus, as the pressure takes its place
+@*/
+int ElementLawConstants(const KernelCase *kernel, const double *constants, double used[MATERIAL_MAX_CONSTANTS])
 {
   const int n = kernel->n_constants ? kernel->n_constants : MaterialGetLaw(kernel->law)->constants;
 
@@ -92,7 +104,7 @@ static int StressConstants(const KernelCase *kernel, const double *constants, do
 }
 
 /* First Piola-Kirchhoff stress of the law at one point, without the pressure of a mixed element. used: n constants of
-   StressConstants(). */
+   ElementLawConstants(). */
 static void LawStress(const KernelCase *kernel, const double *X, const double *u, int n, const double *used, int p,
                       const double H[9], double P[9])
 {
@@ -124,7 +136,7 @@ void ElementPointStress(const KernelCase *kernel, const double *X, const double 
   const Element *e      = ElementGet(kernel->type);
   const int      finite = kernel->kinematics == KINEMATICS_FINITE;
   double         H[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS], used[MATERIAL_MAX_CONSTANTS];
-  const int      n = StressConstants(kernel, constants, used);
+  const int      n = ElementLawConstants(kernel, constants, used);
 
   ElementPointState(kernel, X, u, constants, multiplier, H, pressure);
   for (int p = 0; p < e->points; p++) {
@@ -142,8 +154,8 @@ static void AddPressureStress(const double H[9], double pressure, int finite, do
   double F[9], determinant = 0;
 
   for (int r = 0; r < 9; r++) F[r] = (finite ? H[r] : 0) + (r % 4 == 0);
-  for (int J = 0; J < 3; J++) determinant += F[J] * (F[3 + (J + 1) % 3] * F[6 + (J + 2) % 3] -
-                                                     F[3 + (J + 2) % 3] * F[6 + (J + 1) % 3]);
+  for (int J = 0; J < 3; J++)
+    determinant += F[J] * (F[3 + (J + 1) % 3] * F[6 + (J + 2) % 3] - F[3 + (J + 2) % 3] * F[6 + (J + 1) % 3]);
   for (int i = 0; i < 3; i++) {
     for (int J = 0; J < 3; J++) {
       const int i1 = 3 * ((i + 1) % 3), i2 = 3 * ((i + 2) % 3), J1 = (J + 1) % 3, J2 = (J + 2) % 3;
@@ -177,7 +189,7 @@ void ElementPointNominal(const KernelCase *kernel, const double *X, const double
   const Element *e      = ElementGet(kernel->type);
   const int      finite = kernel->kinematics == KINEMATICS_FINITE;
   double         used[MATERIAL_MAX_CONSTANTS];
-  const int      n = StressConstants(kernel, constants, used);
+  const int      n = ElementLawConstants(kernel, constants, used);
 
   ElementPointState(kernel, X, u, constants, multiplier, H, pressure);
   for (int p = 0; p < e->points && P; p++) {

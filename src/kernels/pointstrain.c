@@ -1,5 +1,6 @@
 /* Strains at points and principal values, see pointstrain.h. */
 #include "kernels/pointstrain.h"
+#include "lawconstants.h"
 #include "principal.h"
 #include <math.h>
 #include <stddef.h>
@@ -87,14 +88,11 @@ void StrainOfGradient(int finite, const double H[9], double strain[6])
 /* Energy per reference volume of an elastic law at a point. */
 static double PointEnergy(const KernelCase *kernel, const double *constants, const double H[9], double pressure)
 {
-  const int n     = kernel->n_constants ? kernel->n_constants : MaterialGetLaw(kernel->law)->constants;
   const int mixed = kernel->formulation == FORMULATION_MIXED;
   double    used[MATERIAL_MAX_CONSTANTS], P[9], W;
 
   if (kernel->plastic) return NAN;
-  for (int k = 0; k < n; k++) used[k] = constants[k];
-  if (mixed) used[0] = 0; /* the pressure takes the place of this part */
-  MaterialEvaluate(kernel->law, n, used, H, &W, P, NULL);
+  MaterialEvaluate(kernel->law, ElementLawConstants(kernel, constants, used), used, H, &W, P, NULL);
   return W + (mixed && isfinite(constants[0]) && constants[0] > 0 ? pressure * pressure / (2 * constants[0]) : 0);
 }
 

@@ -1,6 +1,7 @@
 /* Sizes of elements, see meshsizes.h. */
 #include "mesh/meshsizes.h"
 #include "mesh/mesh.h"
+#include "kernels/elementkernel.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -11,23 +12,11 @@ enum { SIZES_SWEEPS = 50 };
 
 enum { CORNERS = 8, CORNER_WIDTH = 4 /* node and place */, RECORD = 3 + CORNERS * CORNER_WIDTH };
 
-static PetscReal Volume(const PetscReal *x, int a, int b, int c, int d)
+/* The first-order type of a cell, whose nodes are its corners */
+static ElementType CornerType(int dim, int corners)
 {
-  PetscReal e[3][3];
-
-  for (int i = 0; i < 3; i++) {
-    e[0][i] = x[3 * b + i] - x[3 * a + i];
-    e[1][i] = x[3 * c + i] - x[3 * a + i];
-    e[2][i] = x[3 * d + i] - x[3 * a + i];
-  }
-  return PetscAbsReal(e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
-                      e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) / 6;
-}
-
-static PetscReal Area(const PetscReal *x, int a, int b, int c)
-{
-  return PetscAbsReal((x[2 * b] - x[2 * a]) * (x[2 * c + 1] - x[2 * a + 1]) -
-                      (x[2 * c] - x[2 * a]) * (x[2 * b + 1] - x[2 * a + 1])) / 2;
+  if (dim == 2) return corners == 3 ? ELEMENT_TRI3 : ELEMENT_QUAD4;
+  return corners == 4 ? ELEMENT_TET4 : ELEMENT_HEX8;
 }
 
 /*@
@@ -44,24 +33,20 @@ static PetscReal Area(const PetscReal *x, int a, int b, int c)
 @*/
 void MeshCellSizes(Mesh mesh, PetscReal *size, PetscReal *measure)
 {
-  static const int tets[5][4] = {{0, 1, 2, 5}, {0, 2, 3, 7}, {0, 5, 7, 4}, {2, 5, 6, 7}, {0, 2, 5, 7}};
+  const Geometry flat = mesh->dim == 2 ? GEOMETRY_PLANE_STRAIN : GEOMETRY_SOLID;
 
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const int corners = ElementGet(mesh->cell_type[c])->corners;
-    PetscReal x[ELEMENT_MAX_NODES * 3], v = 0;
+    const ElementType type = CornerType(mesh->dim, ElementGet(mesh->cell_type[c])->corners);
+    PetscReal         x[ELEMENT_MAX_NODES * 3];
 
     MeshCellCoordinates(mesh, c, x);
-    if (mesh->dim == 2) {
-      v       = Area(x, 0, 1, 2) + (corners == 4 ? Area(x, 0, 2, 3) : 0);
-      size[c] = PetscSqrtReal(corners == 4 ? v : 4 * v / PetscSqrtReal(3));
-    } else if (corners == 4) {
-      v       = Volume(x, 0, 1, 2, 3);
-      size[c] = PetscPowReal(6 * PetscSqrtReal(2) * v, 1 / 3.0);
-    } else {
-      for (int k = 0; k < 5; k++) v += Volume(x, tets[k][0], tets[k][1], tets[k][2], tets[k][3]);
-      size[c] = PetscPowReal(v, 1 / 3.0);
-    }
-    measure[c] = v;
+    measure[c] = CellVolume(type, mesh->dim, flat, x);
+    if (type == ELEMENT_TRI3)
+      size[c] = PetscSqrtReal(4 * measure[c] / PetscSqrtReal(3));
+    else if (type == ELEMENT_TET4)
+      size[c] = PetscPowReal(6 * PetscSqrtReal(2) * measure[c], 1 / 3.0);
+    else
+      size[c] = mesh->dim == 2 ? PetscSqrtReal(measure[c]) : PetscPowReal(measure[c], 1 / 3.0);
   }
 }
 
@@ -79,7 +64,8 @@ static void Describe(Mesh mesh, const PetscReal *size, double *record)
       double        *at   = &record[3 + CORNER_WIDTH * k];
 
       at[0] = (double)mesh->node_id[node];
-      for (int i = 0; i < 3; i++) at[1 + i] = i < mesh->dim ? (double)(mesh->coords[node * mesh->dim + i] + mesh->centre[i]) : 0;
+      for (int i = 0; i < 3; i++)
+        at[1 + i] = i < mesh->dim ? (double)(mesh->coords[node * mesh->dim + i] + mesh->centre[i]) : 0;
     }
   }
 }

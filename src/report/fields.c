@@ -421,6 +421,16 @@ static PetscErrorCode FieldsWritePrincipal(Fields fields, hid_t file, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Makes nodal values of shares of cells: adds them up over the ranks and divides them by the weights. */
+static PetscErrorCode AverageNodes(Mesh mesh, int width, PetscReal *values, PetscReal *weight)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MeshSumNodes(mesh, width, values));
+  PetscCall(MeshSumNodes(mesh, 1, weight));
+  for (PetscInt k = 0; k < mesh->n_body_nodes * width; k++) values[k] /= weight[k / width];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode FieldsWriteStrain(Fields fields, hid_t file)
 {
   const Mesh mesh = fields->model->mesh;
@@ -429,9 +439,7 @@ static PetscErrorCode FieldsWriteStrain(Fields fields, hid_t file)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(mesh->n_nodes * STRAIN_FIELDS, &strain, mesh->n_nodes, &weight));
   PetscCall(ElasticityNodalStrain(fields->model->problem->elasticity, fields->model->u, strain, weight));
-  PetscCall(MeshSumNodes(mesh, STRAIN_FIELDS, strain));
-  PetscCall(MeshSumNodes(mesh, 1, weight));
-  for (PetscInt k = 0; k < mesh->n_body_nodes * STRAIN_FIELDS; k++) strain[k] /= weight[k / STRAIN_FIELDS];
+  PetscCall(AverageNodes(mesh, STRAIN_FIELDS, strain, weight));
   PetscCall(FieldsWriteNodal(fields, file, "strain", strain, STRAIN_FIELDS, 0, 6));
   PetscCall(FieldsWriteNodal(fields, file, "energy_density", strain, STRAIN_FIELDS, 6, 1));
   PetscCall(PetscFree2(strain, weight));
@@ -449,10 +457,8 @@ static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
   PetscCall(PetscCalloc4(mesh->n_nodes * 6, &stress, mesh->n_nodes, &weight, mesh->n_nodes, &equivalent, mesh->n_nodes,
                          &pressure));
   PetscCall(ElasticityNodalStress(fields->model->problem->elasticity, fields->model->u, stress, weight));
-  PetscCall(MeshSumNodes(mesh, 6, stress));
-  PetscCall(MeshSumNodes(mesh, 1, weight));
+  PetscCall(AverageNodes(mesh, 6, stress, weight));
   for (PetscInt n = 0; n < mesh->n_body_nodes; n++) {
-    for (int i = 0; i < 6; i++) stress[n * 6 + i] /= weight[n];
     equivalent[n] = VonMises(&stress[n * 6]);
     pressure[n]   = -(stress[n * 6] + stress[n * 6 + 1] + stress[n * 6 + 2]) / 3;
   }
@@ -473,9 +479,7 @@ static PetscErrorCode FieldsWritePlasticStrain(Fields fields, hid_t file)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(mesh->n_nodes * PLASTIC_FIELDS, &strain, mesh->n_nodes, &weight));
   PetscCall(ElasticityNodalPlasticStrain(fields->model->problem->elasticity, strain, weight));
-  PetscCall(MeshSumNodes(mesh, PLASTIC_FIELDS, strain));
-  PetscCall(MeshSumNodes(mesh, 1, weight));
-  for (PetscInt k = 0; k < mesh->n_body_nodes * PLASTIC_FIELDS; k++) strain[k] /= weight[k / PLASTIC_FIELDS];
+  PetscCall(AverageNodes(mesh, PLASTIC_FIELDS, strain, weight));
   PetscCall(FieldsWriteNodal(fields, file, "plastic_strain", strain, PLASTIC_FIELDS, 0, 1));
   PetscCall(FieldsWriteNodal(fields, file, "plastic_strain_tensor", strain, PLASTIC_FIELDS, 1, 6));
   PetscCall(PetscFree2(strain, weight));

@@ -66,7 +66,7 @@ static void PrintUnits(Scene scene, FILE *stream)
 {
   char stress[UNITS_TEXT], forces[UNITS_TEXT];
 
-  if (!scene->units.length || !scene->units.force) return;
+  if (!UnitsNamed(scene)) return;
   UnitsStress(scene, stress);
   UnitsForces(scene, forces);
   fprintf(stream, "units    length %s, force %s, stress %s; forces %s\n", scene->units.length, scene->units.force,

@@ -202,11 +202,11 @@ static void AddUnits(cJSON *json, Scene scene)
   cJSON *map = cJSON_AddObjectToObject(json, "units"), *probes;
   char   text[UNITS_TEXT];
 
-  cJSON_AddStringToObject(map, "length", scene->units.length ? scene->units.length : "length");
-  cJSON_AddStringToObject(map, "force", scene->units.force ? scene->units.force : "force");
+  cJSON_AddStringToObject(map, "length", UnitsLength(scene));
+  cJSON_AddStringToObject(map, "force", UnitsForce(scene));
   UnitsStress(scene, text);
   cJSON_AddStringToObject(map, "stress", text);
-  cJSON_AddBoolToObject(map, "named", scene->units.length && scene->units.force);
+  cJSON_AddBoolToObject(map, "named", UnitsNamed(scene));
   UnitsForces(scene, text);
   cJSON_AddStringToObject(map, "forces", text);
   probes = cJSON_AddObjectToObject(map, "probes");

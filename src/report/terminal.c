@@ -364,8 +364,7 @@ static PetscErrorCode PrintProbes(Terminal terminal, const PetscReal *values)
     else
       printf("no value");
     UnitsProbe(terminal->scene, &terminal->scene->probes[i], unit);
-    if (isfinite((double)values[i]) && terminal->scene->units.length && terminal->scene->units.force && *unit)
-      printf(" %s", unit);
+    if (isfinite((double)values[i]) && UnitsNamed(terminal->scene) && *unit) printf(" %s", unit);
     if (isfinite((double)spacing)) printf(" (node spacing %.3g)", (double)spacing);
     printf("\n");
   }

@@ -2,12 +2,41 @@
 #include "units.h"
 #include <stdio.h>
 
-static const char *Length(Scene scene)
+/*@
+  UnitsNamed - tells whether the scene names its units.
+
+  Not collective
+
+  Input Parameter:
+. scene - the scene
+@*/
+PetscBool UnitsNamed(Scene scene)
+{
+  return (PetscBool)(scene->units.length && scene->units.force);
+}
+
+/*@
+  UnitsLength - returns the unit of lengths.
+
+  Not collective
+
+  Input Parameter:
+. scene - the scene
+@*/
+const char *UnitsLength(Scene scene)
 {
   return scene->units.length ? scene->units.length : "length";
 }
 
-static const char *Force(Scene scene)
+/*@
+  UnitsForce - returns the unit of forces.
+
+  Not collective
+
+  Input Parameter:
+. scene - the scene
+@*/
+const char *UnitsForce(Scene scene)
 {
   return scene->units.force ? scene->units.force : "force";
 }
@@ -15,7 +44,8 @@ static const char *Force(Scene scene)
 /* What forces are divided by in the plane without a thickness. */
 static const char *PerThickness(Scene scene, char text[UNITS_TEXT])
 {
-  snprintf(text, UNITS_TEXT, "%s%.60s", scene->per_thickness ? "/" : "", scene->per_thickness ? Length(scene) : "");
+  snprintf(text, UNITS_TEXT, "%s%.60s", scene->per_thickness ? "/" : "",
+           scene->per_thickness ? UnitsLength(scene) : "");
   return text;
 }
 
@@ -32,10 +62,10 @@ static const char *PerThickness(Scene scene, char text[UNITS_TEXT])
 @*/
 void UnitsStress(Scene scene, char text[UNITS_TEXT])
 {
-  if (scene->units.stress || !scene->units.force || !scene->units.length)
+  if (scene->units.stress || !UnitsNamed(scene))
     snprintf(text, UNITS_TEXT, "%.60s", scene->units.stress ? scene->units.stress : "stress");
   else
-    snprintf(text, UNITS_TEXT, "%.60s/%.60s^2", Force(scene), Length(scene));
+    snprintf(text, UNITS_TEXT, "%.60s/%.60s^2", UnitsForce(scene), UnitsLength(scene));
 }
 
 /*@
@@ -58,16 +88,18 @@ void UnitsProbe(Scene scene, const SceneProbe *probe, char text[UNITS_TEXT])
   switch (probe->kind) {
   case PROBE_REACTION:
   case PROBE_CONTACT_FORCE:
-  case PROBE_FRICTION_FORCE: snprintf(text, UNITS_TEXT, "%.60s%.70s", Force(scene), per); break;
-  case PROBE_FRICTION_TORQUE: snprintf(text, UNITS_TEXT, "%.60s %.60s%.70s", Force(scene), Length(scene), per); break;
-  case PROBE_SLIPPED_AREA: snprintf(text, UNITS_TEXT, "%.60s%s", Length(scene), *per ? "" : "^2"); break;
+  case PROBE_FRICTION_FORCE: snprintf(text, UNITS_TEXT, "%.60s%.70s", UnitsForce(scene), per); break;
+  case PROBE_FRICTION_TORQUE:
+    snprintf(text, UNITS_TEXT, "%.60s %.60s%.70s", UnitsForce(scene), UnitsLength(scene), per);
+    break;
+  case PROBE_SLIPPED_AREA: snprintf(text, UNITS_TEXT, "%.60s%s", UnitsLength(scene), *per ? "" : "^2"); break;
   case PROBE_PRESSURE_MAX:
   case PROBE_PRESSURE_MEAN:
   case PROBE_SEAL_PRESSURE: UnitsStress(scene, text); break;
   case PROBE_PRESSURE_DEVIATION: snprintf(text, UNITS_TEXT, "per cent"); break;
   case PROBE_TOOL_ROTATION: snprintf(text, UNITS_TEXT, "degrees"); break;
   case PROBE_FLUID_AREA: *text = 0; break;
-  default: snprintf(text, UNITS_TEXT, "%.60s", Length(scene));
+  default: snprintf(text, UNITS_TEXT, "%.60s", UnitsLength(scene));
   }
 }
 
@@ -89,7 +121,7 @@ void UnitsForces(Scene scene, char text[UNITS_TEXT])
   else if (scene->geometry == GEOMETRY_SOLID)
     snprintf(text, UNITS_TEXT, "of the model");
   else if (scene->per_thickness)
-    snprintf(text, UNITS_TEXT, "per %.60s of thickness", Length(scene));
+    snprintf(text, UNITS_TEXT, "per %.60s of thickness", UnitsLength(scene));
   else
     snprintf(text, UNITS_TEXT, "on a thickness of %g%s%.60s", scene->thickness, scene->units.length ? " " : "",
              scene->units.length ? scene->units.length : "");

@@ -59,6 +59,20 @@ double HistoryValue(const History *history, double t)
 }
 
 /*@
+  HistoryFactor - returns the factor of a history, or 1 where there is none (no unit).
+
+  Not collective
+
+  Input Parameters:
++ history - the factor over the load parameter, or NULL
+- t       - load parameter
+@*/
+double HistoryFactor(const History *history, double t)
+{
+  return history ? HistoryValue(history, t) : 1;
+}
+
+/*@
   HistorySlope - returns the slope of a history at t, to the right of it (1 over the unit of t).
 
   Not collective
@@ -154,8 +168,8 @@ void MotionAccept(Motion *motion, double t, const double q[MOTION_COMPONENTS])
 }
 
 /*@
-  MotionForce - returns the force (or moment) on a rigid body along a component of its motion at the load parameter t; in
-  the plane per thickness.
+  MotionForce - returns the force (or moment) on a rigid body along a component of its motion at the load parameter t;
+in the plane per thickness.
 
   Not collective
 
@@ -169,7 +183,7 @@ double MotionForce(const Motion *motion, double t, int component)
   const double     origin[3] = {0, 0, 0};
   const Expression formula   = motion->force_expression[component];
 
-  const double     part   = motion->thickness > 0 ? 1 / motion->thickness : 1;
+  const double part = motion->thickness > 0 ? 1 / motion->thickness : 1;
 
   if (formula) return part * ExpressionValue(formula, origin, t);
   return part * motion->force[component] * (motion->history.n ? HistoryValue(&motion->history, t) : 0);

@@ -1,9 +1,10 @@
 /* Factors over the load parameter t, and the motions of rigid bodies that are built from them. Plain C.
 
-   A History is a piecewise linear factor. HistoryValue() gives its value at t, HistorySlope() its slope;
-   HistoryBreaks() tells where its slope may change. A Motion is a translation of the point and a rotation about it by
-   the vector (rx, ry, rz); each of its components is a value times a history, or an expression of t. MotionComponents()
-   gives the six numbers at t, MotionPlace() moves a point with the body, MotionTurn() a direction.
+   A History is a piecewise linear factor. HistoryValue() gives its value at t, HistoryFactor() does so too, and gives 1
+   where there is none. HistorySlope() gives its slope; HistoryBreaks() tells where this may change. A Motion is a
+   translation of the point and a rotation about it by the vector (rx, ry, rz); each of its components is a value times
+   a history, or an expression of t. MotionComponents() gives the six numbers at t, MotionPlace() moves a point with the
+   body, MotionTurn() a direction.
 
    Components of a motion may be free: they are unknowns of the problem. MotionSet() tells their values at the iterate,
    MotionAccept() those of the accepted state. */
@@ -44,6 +45,7 @@ typedef struct {
 } Motion;
 
 double HistoryValue(const History *, double t);
+double HistoryFactor(const History *, double t);
 double HistorySlope(const History *, double t);
 int    HistoryBreaks(const History *, double t);
 void   MotionComponents(const Motion *, double t, double q[MOTION_COMPONENTS]);

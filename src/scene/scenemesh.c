@@ -61,12 +61,10 @@ static PetscErrorCode SceneReadCad(Scene scene)
 /* Reads the name of a file below mesh: where the process can open it. */
 static PetscErrorCode SceneReadPath(Scene scene, const char *key, char **name)
 {
-  const char *file = SchemaText(SceneDocument(scene), "mesh.%s", key);
-  char        path[PETSC_MAX_PATH_LEN];
+  char path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
-  if (snprintf(path, sizeof path, "%s%s%s", file[0] == '/' ? "" : scene->directory, file[0] == '/' ? "" : "/", file) >=
-      (int)sizeof path)
+  if (!SceneFilePath(scene, SchemaText(SceneDocument(scene), "mesh.%s", key), path, sizeof path))
     PetscCall(SceneRefuse(scene, "mesh", key, "the path is too long", NULL));
   PetscCall(PetscStrallocpy(path, name));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -136,13 +136,10 @@ static PetscErrorCode SceneReadConstants(Scene scene, const SceneBody *body, int
 static const char *const routine_keys[] = {"material.library", "material.constants", "material.states",
                                            "material.unsymmetric"};
 
-/* Writes the path of the library that a body names. It counts from the folder of the scene. Tells whether it fits. */
+/* Writes the path of the library that a body names. Tells whether it fits. */
 static PetscBool SceneLibraryPath(Scene scene, const SceneBody *body, char *path, size_t size)
 {
-  const char *file = SchemaText(SceneDocument(scene), "%s.%s", body->path, routine_keys[0]);
-
-  return (PetscBool)((size_t)snprintf(path, size, "%s%s%s", file[0] == '/' ? "" : scene->directory,
-                                      file[0] == '/' ? "" : "/", file) < size);
+  return SceneFilePath(scene, SchemaText(SceneDocument(scene), "%s.%s", body->path, routine_keys[0]), path, size);
 }
 
 /*@

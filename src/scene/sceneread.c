@@ -256,6 +256,26 @@ PetscErrorCode SceneReadHistory(Scene scene, const char *path, History *history)
 }
 
 /*@
+  SceneFilePath - writes the path with which the process can open a file that the scene names; relative names count from
+  the folder of the scene. Tells whether it fits.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+. file  - its name in the scene
+- size  - of path
+
+  Output Parameter:
+. path - the path
+@*/
+PetscBool SceneFilePath(Scene scene, const char *file, char *path, size_t size)
+{
+  return (PetscBool)((size_t)snprintf(path, size, "%s%s%s", file[0] == '/' ? "" : scene->directory,
+                                      file[0] == '/' ? "" : "/", file) < size);
+}
+
+/*@
   SceneReadPairs - reads a map of keys and values that are not in the schema.
 
   Not collective

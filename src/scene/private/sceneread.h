@@ -2,7 +2,7 @@
    and a key below it.
 
    SceneNode(), SceneHas(), SceneReals(), SceneReadText(), SceneReadPairs() and SceneReadValue() give the value.
-   ScenePairsDestroy() frees pairs. SceneReadFactors() and
+   ScenePairsDestroy() frees pairs. SceneFilePath() makes the path of a file. SceneReadFactors() and
    SceneReadHistory() give factors over the load parameter. SceneFindBody() finds a body by its name. SceneRefuse()
    refuses a value, SceneRefuseRigid() a surface of a rigid tool. ScenePath() makes the path of a list's entry. scene.c
    reads the whole scene with these functions, and the files of its parts use them. No file outside this folder needs
@@ -22,6 +22,7 @@ PetscErrorCode   SceneReadFactors(Scene, const char *path, const char *key, Hist
 PetscErrorCode   SceneReadPairs(Scene, const char *key, int *n, ScenePair **);
 PetscErrorCode   ScenePairsDestroy(int n, ScenePair **);
 PetscErrorCode   SceneReadHistory(Scene, const char *path, History *);
+PetscBool        SceneFilePath(Scene, const char *file, char *path, size_t size);
 PetscErrorCode   ScenePath(char **path, const char *list, int i);
 const SceneBody *SceneFindBody(Scene, const char *name, int rigid);
 PetscErrorCode   SceneRefuse(Scene, const char *path, const char *key, const char *what, const char *about);
