@@ -25,6 +25,17 @@ static PetscErrorCode StepControlNext_Fixed(Model model, PetscReal dt, PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The next dt after a step of dt and n iterations, where a longer step has failed before: dt grows again to what that
+   was. A step may fail at a first touch or where a body jumps, and what lies behind that does not ask for short steps.
+   Steps of STEP_FEW_ITERATIONS to STEP_MANY_ITERATIONS would keep the length that the failure left. */
+static PetscReal Recover(PetscReal dt, PetscReal n, StepSize *size)
+{
+  const PetscReal grown = dt * PetscMin(size->growth, PetscSqrtReal(STEP_MANY_ITERATIONS / n));
+
+  if (dt >= size->failed_dt) size->failed_dt = 0;
+  return PetscMin(size->failed_dt, grown);
+}
+
 /* dt by the Newton iterations of the last step, and whether it was worth while to shorten that. */
 static PetscErrorCode StepControlNext_Iterations(Model model, PetscReal dt, PetscBool clipped, PetscInt newton,
                                                  StepSize *size)
@@ -39,6 +50,7 @@ static PetscErrorCode StepControlNext_Iterations(Model model, PetscReal dt, Pets
     size->dt = PetscMin(size->growth * dt, size->last_dt);
   else
     size->dt = dt * PetscMax(STEP_SHRINK, PetscMin(size->growth, factor));
+  size->dt              = PetscMax(size->dt, Recover(dt, n, size));
   size->last_dt         = dt;
   size->last_iterations = n;
   PetscFunctionReturn(PETSC_SUCCESS);

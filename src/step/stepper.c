@@ -342,7 +342,7 @@ static PetscErrorCode LoadStepperMeetFluid(Model model, StepSize *size)
   if (SceneBreaks(model->scene, model->t)) PetscCall(FluidBegins(model->problem->fluids, model->t, &begins));
   if (!begins) PetscFunctionReturn(PETSC_SUCCESS);
   size->dt      = PetscMin(size->dt, size->initial);
-  size->last_dt = 0;
+  size->last_dt = size->failed_dt = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -528,7 +528,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   StepperReport  *report = &stepper->report;
   const PetscReal t = model->t, first = stepper->size.dt;
   SolveReport     solve;
-  PetscReal       most;
+  PetscReal       most, longest = 0; /* of the attempts that failed */
   PetscBool       clipped, singular;
   PetscInt        failures = 0;
 
@@ -570,6 +570,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     singular = (PetscBool)((solve.result == SOLVE_LINEAR && solve.newton == 1) ||
                            (solve.result == SOLVE_ADRIFT && !solve.newton));
     if (failures >= STEPPER_STATIC && !singular) continue; /* a damped solve of the same dt comes next */
+    if (solve.result != SOLVE_LEAK) stepper->size.failed_dt = longest = PetscMax(longest, dt);
     stepper->size.dt = STEPPER_CUT * dt;
     if (stepper->size.dt < stepper->size.dt_min || singular || BoundIsReached(&solve, dt, end)) {
       PetscCall(ReportFailure(report, t, end, first, dt, stepper->size.dt_min, record->attempts, &solve));
@@ -648,10 +649,13 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   StepperReport *report  = &stepper->report;
   StepSize       size    = ArchiveLoads(archive) ? stepper->size : stepper->start;
   PetscReal      initial = size.initial, dt = size.dt;
-  PetscReal     *real[]    = {&initial,        &dt,           &size.beta,     &size.together,
-                              &size.shortfall, &size.planned, &report->taken, &report->left,
-                              &report->share,  &report->tied, &size.last_dt,  &size.last_iterations,
-                              &report->damping};
+  PetscReal     *real[]    = {&initial,         &dt,
+                              &size.beta,       &size.together,
+                              &size.shortfall,  &size.planned,
+                              &report->taken,   &report->left,
+                              &report->share,   &report->tied,
+                              &size.last_dt,    &size.last_iterations,
+                              &report->damping, &size.failed_dt};
   PetscInt      *integer[] = {&report->steps,
                               &report->steps_failed,
                               &report->steps_repeated,
