@@ -76,8 +76,7 @@ static PetscErrorCode Centres(Mesh mesh, ContactSurface surface, PetscBool faces
     const int      corners = ElementGet(faces ? face->type : mesh->cell_type[c])->corners;
     PetscBool      marked  = PETSC_FALSE;
 
-    for (int a = 0; a < ElementGet(face->type)->nodes; a++)
-      marked = (PetscBool)(marked || mark[face->nodes[a]] > 0);
+    for (int a = 0; a < ElementGet(face->type)->nodes; a++) marked = (PetscBool)(marked || mark[face->nodes[a]] > 0);
     if (marked || (surface->face_marks && surface->face_marks[f])) continue;
     MeshCellCoordinates(mesh, c, X);
     for (int k = 0; k < corners && faces; k++)
@@ -113,38 +112,57 @@ static PetscErrorCode FindImmersed(Mesh mesh, int n_bodies, const int *bodies, C
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says whether most nodes that overlap are deeper than half the wall of the master. A point twice as deep is then
-   beyond the wall. */
-static PetscErrorCode OverlapIsDeep(Contact contact, const ContactPair *pair, const int *bodies, PetscBool *deep)
+/* Places of the nodes of a pair that overlap and of their images, and points that are twice as deep. */
+static void OverlapPoints(Contact contact, const ContactPair *pair, PetscInt *n, PetscReal *x, PetscReal *y)
 {
-  Mesh           mesh = contact->mesh;
-  const int      dim  = mesh->dim;
-  PetscInt       n = 0, beyond = 0;
-  PetscReal     *x;
-  ImmersedPoints all;
+  const Mesh mesh = contact->mesh;
+  const int  dim  = mesh->dim;
 
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(pair->n_nodes * pair->n_images * dim, &x));
+  *n = 0;
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
-    if (!(pair->now.gap[c] < -ContactTouchTolerance(pair, c))) continue;
-    for (int m = 0; m < pair->n_images; m++, n++) {
-      PetscReal y[3];
+    const PetscReal *X = &mesh->coords[pair->node[c] * dim];
 
-      for (int d = 0; d < dim; d++)
-        y[d] = mesh->coords[pair->node[c] * dim + d] + pair->now.gap[c] * pair->normal[3 * c + d];
-      SurfaceReflect(&pair->images[m], dim, y, &x[n * dim]);
+    if (!(pair->now.gap[c] < -ContactTouchTolerance(pair, c))) continue;
+    for (int m = 0; m < pair->n_images; m++, (*n)++) {
+      PetscReal deeper[3];
+
+      for (int d = 0; d < dim; d++) deeper[d] = X[d] + pair->now.gap[c] * pair->normal[3 * c + d];
+      SurfaceReflect(&pair->images[m], dim, X, &x[*n * dim]);
+      SurfaceReflect(&pair->images[m], dim, deeper, &y[*n * dim]);
     }
   }
-  PetscCall(AskBodies(mesh, contact->scene->n_bodies, bodies, IMMERSED_WIDE, n, x, &all));
-  for (PetscInt i = 0; i < all.n; i += pair->n_images) {
-    PetscBool inside = PETSC_FALSE;
+}
 
-    for (int m = 0; m < pair->n_images; m++) inside = (PetscBool)(inside || all.inside[i + m]);
-    beyond += !inside;
+/* Says whether most nodes that overlap are deeper than half the wall of the master. A point twice as deep is then
+   beyond the wall. A node past the end of the master's surface, which the surface goes on to in thought, is in no
+   wall. */
+static PetscErrorCode OverlapIsDeep(Contact contact, const ContactPair *pair, const int *bodies, PetscBool *deep)
+{
+  const Mesh     mesh = contact->mesh;
+  PetscInt       n = 0, beyond = 0, within = 0;
+  PetscReal     *x, *y;
+  ImmersedPoints at, deeper;
+
+  PetscFunctionBeginUser;
+  PetscCall(
+    PetscMalloc2(pair->n_nodes * pair->n_images * mesh->dim, &x, pair->n_nodes * pair->n_images * mesh->dim, &y));
+  OverlapPoints(contact, pair, &n, x, y);
+  PetscCall(AskBodies(mesh, contact->scene->n_bodies, bodies, IMMERSED_WIDE, n, x, &at));
+  PetscCall(AskBodies(mesh, contact->scene->n_bodies, bodies, IMMERSED_WIDE, n, y, &deeper));
+  for (PetscInt i = 0; i < at.n; i += pair->n_images) {
+    PetscBool inside = PETSC_FALSE, node = PETSC_FALSE;
+
+    for (int m = 0; m < pair->n_images; m++) {
+      node   = (PetscBool)(node || at.inside[i + m]);
+      inside = (PetscBool)(inside || deeper.inside[i + m]);
+    }
+    within += node;
+    beyond += node && !inside;
   }
-  *deep = (PetscBool)(2 * beyond * pair->n_images > all.n);
-  PetscCall(PetscFree2(all.x, all.inside));
-  PetscCall(PetscFree(x));
+  *deep = (PetscBool)(2 * beyond > within);
+  PetscCall(PetscFree2(at.x, at.inside));
+  PetscCall(PetscFree2(deeper.x, deeper.inside));
+  PetscCall(PetscFree2(x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -163,6 +163,16 @@ static PetscErrorCode ModelSettle(Model model, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether the load changes its rate at t, or the scene asks for a step. */
+static PetscBool ModelAsked(Model model, PetscReal t)
+{
+  const Scene scene = model->scene;
+  PetscBool   asked = (PetscBool)SceneBreaks(scene, t);
+
+  for (int i = 0; i < scene->stepping.n_at; i++) asked = (PetscBool)(asked || scene->stepping.at[i] == t);
+  return asked;
+}
+
 /* Starts a load step from the accepted state to t: restores its contact state and makes lists for the expected motion.
    That motion is the imposed one, or the one that the rate of the last step predicts if that is larger. */
 static PetscErrorCode ModelDepart(Model model, PetscReal t)
@@ -184,7 +194,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->augmented          = PETSC_FALSE;
   work->cycle[0]           = '\0';
   work->energy             = 0;
-  ModelForgetPenaltyError(model);
+  ModelForgetPenaltyError(model, (PetscBool)(t >= 1 || ModelAsked(model, t)));
   PetscCall(ModelStepFromSolved(model, work->accepted_u));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
@@ -248,16 +258,6 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
     PetscCall(ModelPredict(model, report));
   PetscCall(ModelPredictFar(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Says whether the load changes its rate at t, or the scene asks for a step. */
-static PetscBool ModelAsked(Model model, PetscReal t)
-{
-  const Scene scene = model->scene;
-  PetscBool   asked = (PetscBool)SceneBreaks(scene, t);
-
-  for (int i = 0; i < scene->stepping.n_at; i++) asked = (PetscBool)(asked || scene->stepping.at[i] == t);
-  return asked;
 }
 
 /* Says whether lists are to settle at the solution: friction may rest there, or the load ends and all surfaces in
@@ -468,17 +468,22 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says whether the error that penetration leaves is to be estimated at t: at the end of the load, for the report; and
-   where the load changes its rate or the scene asks for a step, if the run may choose a penalty. */
+/* Says whether the error that penetration leaves is to be estimated at t: at the end of the load, for the report; where
+   the load changes its rate or the scene asks for a step, if the run may choose a penalty; and in every step if it may
+   choose both of a pair with friction. What such a pair has slipped with soft penalties stays, and later solutions
+   depend on it. */
 static PetscBool ModelEstimatesAt(Model model, PetscReal t)
 {
-  PetscBool choice = PETSC_FALSE;
+  PetscBool choice = PETSC_FALSE, path = PETSC_FALSE;
 
   if (t >= 1) return PETSC_TRUE;
-  for (int p = 0; p < ContactPairs(model->contact); p++)
-    choice = (PetscBool)(choice || ContactPairScene(model->contact, p)->penalty_may_stiffen ||
-                         ContactPairScene(model->contact, p)->stick_may_stiffen);
-  return (PetscBool)(choice && ModelAsked(model, t));
+  for (int p = 0; p < ContactPairs(model->contact); p++) {
+    const SceneContact *scene = ContactPairScene(model->contact, p);
+
+    choice = (PetscBool)(choice || scene->penalty_may_stiffen);
+    path   = (PetscBool)(path || scene->stick_may_stiffen);
+  }
+  return (PetscBool)(path || (choice && ModelAsked(model, t)));
 }
 
 /* Goes back to the solution x with the penalties before, as no solution was found with those that are factor[] times as
@@ -708,7 +713,8 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
   are checked and made anew, at most MODEL_MAX_REGATHER times. Then penalties that are adjusted within the step are
   changed, and the step is solved on from there, until the penetrations are in their window or no more can be done. At
   t = 1, at breakpoints of the load and where the scene asks for a step, the error that penetration leaves is estimated,
-  and penalties that no key of the scene sets are made stiffer where it is large.
+  and penalties that no key of the scene sets are made stiffer where it is large. With friction that is done in every
+  step.
 @*/
 PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 {

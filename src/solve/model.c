@@ -102,7 +102,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(PetscFree2(m->u, m->work->accepted_u));
   PetscCall(PetscFree2(m->work->solved, m->work->from));
   PetscCall(PetscFree(m->work->penalty_error));
-  PetscCall(PetscFree2(m->work->stiffened_at, m->work->stiffened_by));
+  PetscCall(PetscFree3(m->work->stiffened_at, m->work->stiffened_by, m->work->accepted_stays));
   PetscCall(PetscFree(m->work));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -263,6 +263,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscCall(FluidAccept(model->problem->fluids, model->u, model->t));
   if (model->contact) {
     PetscCall(ContactAccept(model->contact));
+    ModelAcceptPenaltyError(model);
     if (stepped) PetscCall(ContactAdjustNextPenalty(model->contact));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

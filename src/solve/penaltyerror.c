@@ -49,19 +49,31 @@ PetscErrorCode ModelCreatePenaltyError(Model model)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(ContactPairs(model->contact), &model->work->penalty_error));
-  PetscCall(PetscCalloc2(PENALTY_SOURCES * ContactPairs(model->contact), &model->work->stiffened_at,
-                         PENALTY_SOURCES * ContactPairs(model->contact), &model->work->stiffened_by));
-  ModelForgetPenaltyError(model);
+  PetscCall(PetscCalloc3(PENALTY_SOURCES * ContactPairs(model->contact), &model->work->stiffened_at,
+                         PENALTY_SOURCES * ContactPairs(model->contact), &model->work->stiffened_by,
+                         PENALTY_SOURCES * ContactPairs(model->contact), &model->work->accepted_stays));
+  ModelForgetPenaltyError(model, PETSC_TRUE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forgets the estimates of a solve that was taken back. */
-void ModelForgetPenaltyError(Model model)
+/* Begins a solve without estimates. anew: penalties may be raised, too, that stay because a raise in a step before has
+   brought too little; else they stay. */
+void ModelForgetPenaltyError(Model model, PetscBool anew)
 {
   const int n = ContactPairs(model->contact);
 
-  for (int k = 0; k < PENALTY_SOURCES * n; k++) model->work->stiffened_at[k] = model->work->stiffened_by[k] = 0;
+  for (int k = 0; k < PENALTY_SOURCES * n; k++) {
+    model->work->stiffened_at[k] = 0;
+    model->work->stiffened_by[k] = anew ? 0 : model->work->accepted_stays[k];
+  }
   for (int p = 0; p < n; p++) model->work->penalty_error[p] = unknown;
+}
+
+/* Accepts which penalties stay as they are. */
+void ModelAcceptPenaltyError(Model model)
+{
+  for (int k = 0; k < PENALTY_SOURCES * ContactPairs(model->contact); k++)
+    model->work->accepted_stays[k] = PetscMin(0, model->work->stiffened_by[k]);
 }
 
 /* Saves or loads the estimates with the model. */
@@ -74,6 +86,7 @@ PetscErrorCode ModelArchivePenaltyError(Model model, Archive archive)
   PetscCall(
     ArchiveReals(archive, "model/penalty_error", PENALTY_ERROR_VALUES * n, &model->work->penalty_error[0].force));
   PetscCall(ArchiveReals(archive, "model/penalty_stiffened", PENALTY_SOURCES * n, model->work->stiffened_by));
+  PetscCall(ArchiveReals(archive, "model/penalty_stays", PENALTY_SOURCES * n, model->work->accepted_stays));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -315,6 +315,9 @@ def elastic():
         check.near(f"{probe}: the run's choice and a named elastic slip",
                    ends["default"]["probes"][probe] / ends["named"]["probes"][probe], 1, 0.004)
     friction = {name: end["contact"][0]["friction"] for name, end in ends.items()}
+    sums = {name: numpy.array(figures["force"]) for name, figures in friction.items()}
+    check.near("the sum of friction, by the run's choice and with stiff penalties: what both estimates allow",
+               numpy.linalg.norm(sums["default"] - sums["stiff"]) / numpy.linalg.norm(sums["stiff"]), 0, 0.008)
     check.holds("the run's choice: what is left", friction["default"]["error_force"] < 0.004)
     check.holds("it has raised the penalty", raised["default"] > 10)
     check.holds("penalties of the scene stay", raised["soft"] == raised["stiff"] == raised["named"] == 1)

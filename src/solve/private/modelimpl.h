@@ -71,8 +71,9 @@ typedef struct _n_ModelWork {
 
   PenaltyError *penalty_error; /* of each pair, once the load is at its end */
   /* Of each pair for penetration, then of each for elastic slip: */
-  PetscReal *stiffened_at; /* its worst estimate when this solve stiffened it for it last; 0: it has not */
-  PetscReal *stiffened_by; /* the factor by which it did; negative: that brought too little, and it stays */
+  PetscReal *stiffened_at;   /* its worst estimate when this solve stiffened it for it last; 0: it has not */
+  PetscReal *stiffened_by;   /* the factor by which it did; negative: that brought too little, and it stays */
+  PetscReal *accepted_stays; /* the negative ones of stiffened_by in the accepted state; else 0 */
 
   /* A look-ahead from the accepted state */
   Vec       look_ahead; /* free displacements at look_ahead_t by ModelLookAhead() */
@@ -147,7 +148,8 @@ PetscErrorCode ModelSolveDamped(Model, ModelStage start, ModelStage solve, Solve
 PetscErrorCode ModelRampPenalty(Model, SolveReport *);
 /* penaltyerror.c */
 PetscErrorCode ModelCreatePenaltyError(Model);
-void           ModelForgetPenaltyError(Model);
+void           ModelForgetPenaltyError(Model, PetscBool anew);
+void           ModelAcceptPenaltyError(Model);
 PetscErrorCode ModelArchivePenaltyError(Model, Archive);
 PetscErrorCode ModelEstimatePenalty(Model);
 PetscErrorCode ModelStiffenDeep(Model, PetscReal factor[], PetscBool *stiffened);
