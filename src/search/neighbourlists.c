@@ -500,8 +500,8 @@ static void PlacePoint(ContactSearch s, NeighbourLists lists, PetscInt p)
 
   PointMap(s, lists, p, lists->X, &lists->point_X[p * dim]);
   for (int d = 0; d < dim; d++)
-    lists->point_X[p * dim + d] += image->shift[d] * (d == 0 && lists->point_cosine ? lists->point_cosine[p] : 1) +
-                                   lists->point_offset[p * dim + d];
+    lists->point_X[p * dim + d] +=
+      image->shift[d] * (d == 0 && lists->point_cosine ? lists->point_cosine[p] : 1) + lists->point_offset[p * dim + d];
 }
 
 /* Says whether quadrature points of the master have held offsets that change. All ranks say the same, those too that
