@@ -500,15 +500,22 @@ static void PlacePoint(ContactSearch s, NeighbourLists lists, PetscInt p)
 
   PointMap(s, lists, p, lists->X, &lists->point_X[p * dim]);
   for (int d = 0; d < dim; d++)
-    lists->point_X[p * dim + d] += image->shift[d] * (d == 0 && lists->point_cosine ? lists->point_cosine[p] : 1) +
-                                   lists->point_offset[p * dim + d];
+    lists->point_X[p * dim + d] +=
+      image->shift[d] * (d == 0 && lists->point_cosine ? lists->point_cosine[p] : 1) + lists->point_offset[p * dim + d];
+}
+
+/* Says whether quadrature points of the master have held offsets that change. All ranks say the same, those too that
+   have no face of the master and no offsets of their own. */
+static PetscBool HasHeld(ContactSearch s)
+{
+  return (PetscBool)(s->fit->integral && !s->master->rigid);
 }
 
 /* Notes where the faces live whose quadrature points have held offsets. Those of a rigid tool never change. */
 static PetscErrorCode NoteHeld(ContactSearch s, NeighbourLists lists, const SearchField *field)
 {
   PetscFunctionBeginUser;
-  if (!s->offset || !s->fit->integral || s->master->rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!HasHeld(s)) PetscFunctionReturn(PETSC_SUCCESS);
   lists->n_held = field->n_candidates;
   PetscCall(PetscMalloc2(lists->n_held + 1, &lists->first_held, lists->n_held, &lists->home_held));
   for (PetscInt c = 0; c < lists->n_held; c++) {
@@ -786,7 +793,7 @@ PetscErrorCode NeighbourListsTakeOffsets(ContactSearch s, NeighbourLists lists, 
 
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
-  if (s->offset && s->fit->integral && !s->master->rigid) PetscCall(TakePointOffsets(s, lists, changed));
+  if (HasHeld(s)) PetscCall(TakePointOffsets(s, lists, changed));
   for (PetscInt i = 0; i < n && !s->slaves->maps.ptr; i++) {
     *changed               = (PetscBool)(*changed || lists->slave_offset[i] != s->slaves->offset[i]);
     lists->slave_offset[i] = s->slaves->offset[i];

@@ -169,19 +169,22 @@ static PetscReal NodeVote(const ToolNearest *look, PetscReal touches, const Pets
   return opposed;
 }
 
-/* Sums the votes of this rank's slave nodes on a piece. Near nodes count most. */
+/* Sums the votes of the slave nodes of all ranks on a piece. The nodes that are about as near as the nearest one count
+   most. Those behind them may look away from the tool, as the inner wall of a ring does. */
 static PetscErrorCode PieceVotes(ContactSurface tool, ContactSurface slave, const PetscReal *x, int n, const int *faces,
                                  const PetscReal *normals, PetscReal votes[2])
 {
   Mesh        mesh = slave->mesh;
   const int   dim  = mesh->dim;
-  PetscReal  *lower, *upper;
+  PetscReal  *lower, *upper, *gap, *vote, nearest = PETSC_MAX_REAL;
+  PetscInt    voters = 0;
   PetscMPIInt rank;
   BoxTree     tree;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   PetscCall(PetscMalloc2(n * dim, &lower, n * dim, &upper));
+  PetscCall(PetscMalloc2(slave->group->n_nodes, &gap, slave->group->n_nodes, &vote));
   for (int i = 0; i < n; i++) {
     const Facet *face = &tool->faces[faces[i]];
 
@@ -200,15 +203,24 @@ static PetscErrorCode PieceVotes(ContactSurface tool, ContactSurface slave, cons
     const PetscReal *own   = &normals[3 * node];
     double           bound = PETSC_MAX_REAL;
     ToolNearest      look  = {tool, x, faces, &mesh->coords[node * dim], -1, {0}};
-    PetscReal        weight;
 
     if (mesh->node_owner[node] != rank || (own[0] == 0 && own[1] == 0 && own[2] == 0)) continue;
     BoxTreeClosest(tree, look.point, &bound, VisitFace, &look);
-    weight = 1 / PetscSqr(PetscSqr(1 + PetscAbsReal(look.foot.gap) / slave->mean_size));
-    votes[0] += weight * NodeVote(&look, TOOL_TOUCHES * slave->mean_size, own);
+    gap[voters]    = PetscAbsReal(look.foot.gap);
+    vote[voters++] = NodeVote(&look, TOOL_TOUCHES * slave->mean_size, own);
+    nearest        = PetscMin(nearest, PetscAbsReal(look.foot.gap));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &nearest, 1, MPIU_REAL, MPIU_MIN, mesh->comm));
+  votes[0] = votes[1] = 0;
+  for (PetscInt i = 0; i < voters; i++) {
+    const PetscReal weight = 1 / PetscSqr(PetscSqr(1 + (gap[i] - nearest) / slave->mean_size));
+
+    votes[0] += weight * vote[i];
     votes[1] += weight;
   }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, votes, 2, MPIU_REAL, MPI_SUM, mesh->comm));
   BoxTreeDestroy(&tree);
+  PetscCall(PetscFree2(gap, vote));
   PetscCall(PetscFree2(lower, upper));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -248,7 +260,7 @@ static PetscErrorCode ToolPositions(ContactSurface tool, Loads loads, PetscReal 
 
   Note:
   Faces that share an edge get normals to the same side. Then the slave's nodes vote on each connected piece, the
-nearest ones with most weight.
+  nearest ones with most weight.
 @*/
 PetscErrorCode ToolSideFind(ContactSurface tool, ContactSurface slave, Loads loads, PetscInt *turned,
                             PetscBool *decided)
@@ -270,14 +282,13 @@ PetscErrorCode ToolSideFind(ContactSurface tool, ContactSurface slave, Loads loa
   for (int f = 0; f < (int)tool->n_faces; f++)
     if (turn[f]) TurnFace(&tool->faces[f]);
   for (int root = 0; root < (int)tool->n_faces; root++) {
-    PetscReal votes[2] = {0, 0};
-    int       n        = 0, against;
+    PetscReal votes[2];
+    int       n = 0, against;
 
     if (pieces.parent[root] != root) continue;
     for (int f = root; f < (int)tool->n_faces; f++)
       if (PieceRoot(&pieces, f, &against) == root) faces[n++] = f;
     PetscCall(PieceVotes(tool, slave, x, n, faces, normals, votes));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, votes, 2, MPIU_REAL, MPI_SUM, mesh->comm));
     if (!(PetscAbsReal(votes[0]) >= TOOL_DECIDES * votes[1])) *decided = PETSC_FALSE;
     for (int i = 0; i < n && votes[0] < 0; i++) {
       TurnFace(&tool->faces[faces[i]]);

@@ -176,7 +176,7 @@ PetscErrorCode FreeBodiesCreate(Mesh mesh, Scene scene, Loads loads, Contact con
   PetscCall(Measure(b));
   PetscCall(FindStiffness(b));
   PetscCall(FindCells(b));
-  PetscCall(PetscCalloc1(b->n, &b->state));
+  PetscCall(PetscCalloc2(b->n, &b->state, b->n_pieces, &b->carried));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -197,7 +197,7 @@ PetscErrorCode FreeBodiesDestroy(FreeBodies *b)
   PetscCall(PetscFree((*b)->weight));
   PetscCall(PetscFree((*b)->stiffness));
   PetscCall(PetscFree((*b)->cell));
-  PetscCall(PetscFree((*b)->state));
+  PetscCall(PetscFree2((*b)->state, (*b)->carried));
   PetscCall(PetscFree(*b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

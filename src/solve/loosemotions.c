@@ -30,8 +30,18 @@ static PetscBool Slips(const ActiveSetTerm *term, int dim)
   return (PetscBool)(stiffness < (dim - 1.5) * term->friction.law.stiffness);
 }
 
+/* Adds the force of term i to what the pieces carry that it sees: those whose motions change its gap, by travel[n]. */
+static void Carry(FreeBodies b, PetscInt i, const ActiveSetTerm *term, PetscReal *const travel[])
+{
+  for (int k = 0, last = -1; k < b->n; k++) {
+    if (b->owner[k] == last || travel[k][i] == 0) continue;
+    last = b->owner[k];
+    b->carried[last] += PetscAbsReal(term->pressure) * term->area;
+  }
+}
+
 /* Stiffness gram[n][n] of the terms in contact, or touching, along the motions at (u, t), over the largest diagonal
-   entry. Friction counts as if nothing slipped, unless its kind says otherwise. */
+   entry. Friction counts as if nothing slipped, unless its kind says otherwise. The pieces remember what they carry. */
 static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, GramKind kind,
                                   double gram[])
 {
@@ -46,6 +56,7 @@ static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t,
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(gram, n * n));
+  PetscCall(PetscArrayzero(b->carried, b->n_pieces));
   PetscCall(PetscMalloc1(size, &du));
   PetscCall(PetscMalloc1(n, &travel));
   PetscCall(PetscCalloc1(n, &a));
@@ -61,6 +72,7 @@ static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t,
   }
   for (PetscInt i = 0; i < n_terms; i++) {
     if (terms[i].pressure == 0 && !(touching && terms[i].opening <= FREE_BODIES_TOUCH * b->face)) continue;
+    Carry(b, i, &terms[i], travel);
     for (int k = 0; k < n; k++)
       for (int l = 0; l < n; l++)
         gram[k * n + l] += Together(kind == GRAM_SLIPS && Slips(&terms[i], b->mesh->dim) ? 1 : across,
@@ -154,7 +166,8 @@ PetscErrorCode FreeBodiesBasis(FreeBodies b, const double gram[], PetscReal part
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Norms of the nodal loads at t, summed over each piece, and those of the moments on tools. */
+/* Norms of the nodal loads at t, summed over each piece, and those of the moments on tools. A piece that others press
+   has the force that it carries, if that is more. */
 static PetscErrorCode PieceLoads(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal *load, PetscReal *moment)
 {
   const int  dim = b->mesh->dim;
@@ -174,6 +187,7 @@ static PetscErrorCode PieceLoads(FreeBodies b, const PetscReal *u, PetscReal t, 
     if (tool && i != tool->node) moment[b->piece[i]] += PetscSqrtReal(square);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, load, (PetscMPIInt)b->n_pieces, MPIU_REAL, MPI_SUM, b->mesh->comm));
+  for (PetscInt p = 0; p < b->n_pieces; p++) load[p] = PetscMax(load[p], b->carried[p]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, moment, (PetscMPIInt)b->n_pieces, MPIU_REAL, MPI_SUM, b->mesh->comm));
   PetscCall(PetscFree(f));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -194,7 +208,8 @@ static PetscBool TurnsInPlace(FreeBodies b, PetscInt piece, const PetscReal *u, 
 }
 
 /* Which of the motions free[m][n] at displacements u the loads at t drive: those along which they do more than a part
-   of the work that they could do over the longest way of a node. */
+   of the work that they could do over the longest way of a node. The way of a piece counts with the forces that it
+   carries, too: where it slides far below a loaded one that sinks by its unevenness, nothing drives it. */
 PetscErrorCode FreeBodiesDriven(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal part, int m,
                                 const double free[], PetscBool driven[])
 {

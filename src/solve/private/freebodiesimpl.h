@@ -37,6 +37,7 @@ struct _n_FreeBodies {
   PetscReal       *weight;     /* n_nodes: volume of this rank's cells at the node */
   PetscReal       *stiffness;  /* n_pieces: of the elements below one slave node (force per length) */
   PetscInt        *cell;       /* n_pieces: local cell at the middle of the piece, or -1 */
+  PetscReal       *carried;    /* n_pieces: sum of the forces in its contacts, where ContactGram() saw these last */
   PetscReal        face;       /* size of the slaves' faces, the largest mean of a pair (length) */
   PetscInt        *state;      /* n: what holds each motion in the accepted state, a MotionState */
   char             moved[FREE_BODIES_TEXT];
