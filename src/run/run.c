@@ -106,6 +106,7 @@ static PetscErrorCode RunSetUp(Run *run, const RunInput *input)
     PetscCall(CheckpointCreate(run->comm, run->directory, run->mesh_file, &run->checkpoint));
   PetscCall(MeshCheckFormulations(run->mesh, run->scene));
   PetscCall(ModelCreate(run->scene, run->mesh, &run->model));
+  PetscCall(SensitivitiesCheckModel(run));
   PetscCall(ProbesCreate(run->model, run->scene, &run->probes));
   if (!input->restart) {
     PetscCall(ModelPlace(run->model, input->task == RUN_SOLVE ? run->scene->stepping.initial : 0));

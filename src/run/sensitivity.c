@@ -1,7 +1,6 @@
 /* The derivatives of probes by numbers of the scene, see sensitivity.h. */
 #include "sensitivity.h"
 #include <math.h>
-#include <petsctime.h>
 #include <string.h>
 #include "base/refusal.h"
 #include "files/textfile.h"
@@ -62,6 +61,29 @@ PetscErrorCode SensitivitiesCheck(Run *run)
     PetscCall(SceneReadChanged(run->scene, run->comm, s->key, s->value * (1 - SENSITIVITY_STEP), &changed));
     PetscCall(SceneDestroy(&changed));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SensitivitiesCheckModel - refuses a model whose solution is no function of its displacements.
+
+  Collective
+
+  Input Parameter:
+. run - with its model
+
+  Note:
+  Pressures of elements that keep their volume exactly are multipliers, which follow a number of the scene as
+  displacements do.
+@*/
+PetscErrorCode SensitivitiesCheckModel(Run *run)
+{
+  PetscFunctionBeginUser;
+  if (run->scene->n_sensitivities && ElasticityAugments(run->model->problem->elasticity))
+    PetscCall(RefuseInput(run->comm,
+                          "%s: a body keeps its volume by multipliers of its elements, which have no sensitivity; "
+                          "allowed: nu below 0.499, or elements of second order with pressures at nodes",
+                          SceneWhere(run->scene, "sensitivity", NULL)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -191,6 +213,7 @@ static PetscErrorCode Differentiate(const Sensitivities *all, const SceneSensiti
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
     PetscCall(TwinCreate(all, s->key, (PetscReal)s->value + (k ? -h : h), &twin[k]));
+    PetscCall(ModelTwinGather(twin[k].model, model->x, model->t));
     PetscCall(TwinEvaluate(&twin[k], model->x, model->t, &ok));
   }
   PetscCall(Beside(all, twin, &beside));
@@ -251,31 +274,30 @@ static PetscErrorCode FindAdjoints(Sensitivities *all)
 /* Finds all derivatives: for each number once. */
 static PetscErrorCode FindAll(Sensitivities *all)
 {
-  const Scene    scene = all->run->scene;
-  PetscReal     *derivative;
-  PetscLogDouble begin, end;
+  const Scene scene = all->run->scene;
+  PetscReal  *derivative;
+  RunUsage    begin, end;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(scene->n_probes, &derivative));
   for (int i = 0; i < scene->n_sensitivities; i++) {
-    const SceneSensitivity *s = &scene->sensitivities[i];
+    const SceneSensitivity *s     = &scene->sensitivities[i];
     const char             *why   = NULL;
     int                     first = 0;
 
     while (strcmp(scene->sensitivities[first].key, s->key)) first++;
     if (first < i) continue;
-    PetscCall(PetscGetCPUTime(&begin));
+    PetscCall(ResultsGetUsage(all->run->results, &begin));
     PetscCall(Differentiate(all, s, derivative, &why));
-    PetscCall(PetscGetCPUTime(&end));
+    PetscCall(ResultsGetUsage(all->run->results, &end));
     for (int j = i; j < scene->n_sensitivities; j++) {
       if (strcmp(scene->sensitivities[j].key, s->key)) continue;
       all->derivative[j] = why ? NAN : derivative[scene->sensitivities[j].probe];
       all->why[j]        = why;
-      all->cpu_s[j]      = (PetscReal)(end - begin);
+      all->cpu_s[j]      = end.cpu_s - begin.cpu_s;
     }
   }
   PetscCall(PetscFree(derivative));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all->cpu_s, scene->n_sensitivities, MPIU_REAL, MPIU_SUM, all->run->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

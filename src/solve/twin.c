@@ -30,13 +30,33 @@ PetscErrorCode ModelTwinFollow(Model twin, Model model, PetscBool *same)
 }
 
 /*@
-  ModelTwinEvaluate - puts a twin at free displacements, and gives its residual there.
+  ModelTwinGather - makes the contact lists of a twin.
 
   Collective
 
   Input Parameters:
 + twin - after ModelTwinFollow()
-. x    - free displacements (length)
+. x    - free displacements of the solution of the model (length)
+- t    - load parameter
+@*/
+PetscErrorCode ModelTwinGather(Model twin, Vec x, PetscReal t)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ProblemSetTrial(twin->problem, x, t));
+  ToolsAccept(twin->mesh, twin->problem->trial, t);
+  if (twin->contact) PetscCall(ProblemGatherLists(twin->problem, twin->problem->trial, t, t, 0));
+  PetscCall(ContactSpringsRelax(twin->problem->springs, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelTwinEvaluate - puts a twin at free displacements, and gives its residual there.
+
+  Collective
+
+  Input Parameters:
++ twin - after ModelTwinGather()
+. x    - free displacements (length), hardly different from those for which the lists were made
 - t    - load parameter
 
   Output Parameters:
@@ -52,9 +72,6 @@ PetscErrorCode ModelTwinEvaluate(Model twin, Vec x, PetscReal t, Vec F, PetscBoo
   PetscCall(ProblemSetTrial(problem, twin->x, t));
   PetscCall(PetscArraycpy(twin->u, problem->trial, twin->mesh->n_nodes * twin->mesh->dim));
   twin->t = t;
-  ToolsAccept(twin->mesh, twin->u, t);
-  if (twin->contact) PetscCall(ProblemGatherLists(problem, twin->u, t, t, 0));
-  PetscCall(ContactSpringsRelax(problem->springs, twin->x));
   PetscCall(ProblemResidual(problem, problem->trial, t, t, ok));
   PetscCall(ProblemCollectResidual(problem, twin->x, F));
   PetscFunctionReturn(PETSC_SUCCESS);

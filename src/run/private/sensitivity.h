@@ -10,11 +10,12 @@
    from a twin of the model (solve/twin.h). A parameter of the mesh moves its nodes: gmsh makes the twin's mesh, which
    must have the same nodes and cells.
 
-   Factors by which the run has made penalties stiffer are held. SensitivitiesCheck() refuses what cannot be done before
-   the run begins, SensitivitiesFind() writes sensitivity.csv before the last solution is accepted. Source: Choi and
-   Kim, Structural Sensitivity Analysis and Optimization 1 and 2 (Springer, 2005). */
+   Factors by which the run has made penalties stiffer are held. SensitivitiesCheck() and SensitivitiesCheckModel()
+   refuse what cannot be done before the run begins, SensitivitiesFind() writes sensitivity.csv before the last solution
+   is accepted. Source: Choi and Kim, Structural Sensitivity Analysis and Optimization 1 and 2 (Springer, 2005). */
 #pragma once
 #include "run.h"
 
 PetscErrorCode SensitivitiesCheck(Run *);
+PetscErrorCode SensitivitiesCheckModel(Run *);
 PetscErrorCode SensitivitiesFind(Run *, const RunInput *);
