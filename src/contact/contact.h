@@ -142,6 +142,7 @@ PetscErrorCode ContactAccept(Contact);
 PetscErrorCode ContactRestore(Contact);
 PetscErrorCode ContactTangentRestore(Contact);
 PetscErrorCode ContactArchive(Contact, Archive, const PetscReal *u, PetscReal t);
+PetscErrorCode ContactFollow(Contact, Contact leader, PetscBool *same);
 /* Lists */
 PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion);
 PetscErrorCode ContactListsReach(Contact, PetscBool *within);

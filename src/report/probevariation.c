@@ -1,5 +1,6 @@
 /* First variations of probes, see probevariation.h. */
-#include "probevariation.h"
+#include "report/probevariation.h"
+#include "probeimpl.h"
 
 /* Makes room for a vector over the local dofs, of zeros. */
 static PetscErrorCode NewVector(Mesh mesh, PetscReal **vector)

@@ -184,8 +184,8 @@ PetscErrorCode BurnishSetQuiet(Burnish burnish, PetscBool quiet)
 
   Input Parameters:
 + burnish - the object
-- trust   - PETSC_TRUE: a .geo may use commands such as SystemCall and Save, PETSc options of a scene may name files, and
-            a body may have a routine of the user's (law: umat)
+- trust   - PETSC_TRUE: a .geo may use commands such as SystemCall and Save, PETSc options of a scene may name files,
+and a body may have a routine of the user's (law: umat)
 
   Note:
   Without it such a scene is refused as wrong input. Set it for scenes of people whom you trust only.

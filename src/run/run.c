@@ -8,6 +8,7 @@
 #include "base/refusal.h"
 #include "report/precheck.h"
 #include "report/rundirectory.h"
+#include "sensitivity.h"
 
 /* Tells whether a PETSc option may write files or run scripts: a viewer with a file's name (ascii:FILE), a viewer that
    always writes one, a name of a file, and solvers in Python. */
@@ -55,6 +56,7 @@ static PetscErrorCode RunOpen(Run *run, const RunInput *input)
   if (input->directory && !input->directory[0])
     PetscCall(RefuseInput(run->comm, "the directory of the results has no name; allowed: a path"));
   PetscCall(SceneRead(run->comm, input->scene, input->n_set, input->set, &run->scene));
+  PetscCall(SensitivitiesCheck(run));
   PetscCall(SceneLoadRoutines(run->scene, run->comm, input->trust));
   PetscCall(RunInsertOptions(run, input->trust));
   PetscCall(PetscSNPrintf(run->directory, sizeof(run->directory), "%s%s", input->directory ? input->directory : "out/",
@@ -84,6 +86,7 @@ static PetscErrorCode RunReopen(Run *run, const RunInput *input)
   PetscCall(ErrorLogSetDirectory(run->directory));
   PetscCall(CheckpointOpen(run->comm, run->directory, &run->checkpoint));
   PetscCall(CheckpointReadScene(run->checkpoint, input->n_set, input->set, &run->scene));
+  PetscCall(SensitivitiesCheck(run));
   PetscCall(SceneLoadRoutines(run->scene, run->comm, input->trust));
   PetscCall(RunInsertOptions(run, input->trust));
   PetscCall(RunDirectoryCheckRestart(run->comm, run->scene, run->directory));
@@ -103,6 +106,7 @@ static PetscErrorCode RunSetUp(Run *run, const RunInput *input)
     PetscCall(CheckpointCreate(run->comm, run->directory, run->mesh_file, &run->checkpoint));
   PetscCall(MeshCheckFormulations(run->mesh, run->scene));
   PetscCall(ModelCreate(run->scene, run->mesh, &run->model));
+  PetscCall(SensitivitiesCheckModel(run));
   PetscCall(ProbesCreate(run->model, run->scene, &run->probes));
   if (!input->restart) {
     PetscCall(ModelPlace(run->model, input->task == RUN_SOLVE ? run->scene->stepping.initial : 0));
@@ -143,6 +147,7 @@ static PetscErrorCode RunLastSolution(void *context)
 
   PetscFunctionBeginUser;
   PetscCall(ResultsLastSolution(run->results));
+  PetscCall(SensitivitiesFind(run, run->input));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -157,7 +162,8 @@ static PetscErrorCode RunCreateStepper(Run *run, const RunInput *input)
   PetscCall(LoadStepperSetFromScene(run->stepper, run->scene));
   PetscCall(LoadStepperSetFromOptions(run->stepper));
   PetscCall(LoadStepperMonitorSet(run->stepper, RunMonitor, run));
-  if (run->scene->output.error) PetscCall(LoadStepperLastSet(run->stepper, RunLastSolution, run));
+  if (run->scene->output.error || run->scene->n_sensitivities)
+    PetscCall(LoadStepperLastSet(run->stepper, RunLastSolution, run));
   PetscCall(CheckpointSetRun(run->checkpoint, run->scene, run->model, run->stepper, run->results));
   if (input->restart) PetscCall(CheckpointRead(run->checkpoint));
   PetscCall(ResultsStart(run->results));
@@ -231,6 +237,7 @@ PetscErrorCode RunScene(Run *run, const RunInput *input, BurnishStatus *status)
   run->kept = -1;
   *status   = BURNISH_DONE;
   PetscCall(PetscTime(&run->start));
+  run->input = input;
   PetscCall((input->restart ? RunReopen : RunOpen)(run, input));
   if (input->task != RUN_MESH) PetscCall(RunSetUp(run, input));
   if (input->task == RUN_SOLVE) PetscCall(RunSolve(run, input, status));

@@ -83,6 +83,19 @@ static void CommandLineSetAccuracy(CommandLine *line, const char *word, const ch
   line->set[line->n_set++] = edit;
 }
 
+/* Makes an edit of the scene of -sensitivity PROBE:KEY. */
+static void CommandLineAddSensitivity(CommandLine *line, const char *value)
+{
+  char *edit = line->sensitivity[line->n_sensitivities];
+
+  if (!value) return;
+  if (snprintf(edit, sizeof line->sensitivity[0], "sensitivity.%d=%s", line->n_sensitivities, value) >=
+      (int)sizeof line->sensitivity[0])
+    CommandLineComplain(line, "is too long", value);
+  line->n_sensitivities++;
+  line->set[line->n_set++] = edit;
+}
+
 /* Complains of options that exclude each other, and of a missing scene file. */
 static void CommandLineCheck(CommandLine *line)
 {
@@ -120,6 +133,8 @@ static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
     line->set[line->n_set++] = value;
   } else if (!strcmp(word, "-to") || !strcmp(word, "-probe")) {
     CommandLineSetAccuracy(line, word, CommandLineValue(line, argc, argv, i, "needs an error in per cent, or a probe"));
+  } else if (!strcmp(word, "-sensitivity")) {
+    CommandLineAddSensitivity(line, CommandLineValue(line, argc, argv, i, "needs PROBE:KEY or PROBE:KEY,KEY"));
   } else if (!strcmp(word, "-check") || !strcmp(word, "-mesh")) {
     CommandLineSetMode(line, word[1] == 'c' ? COMMAND_CHECK : COMMAND_MESH, word);
     if (*i + 1 < argc && !IsOption(argv[*i + 1])) CommandLineSetScene(line, argv[++*i]);
@@ -172,9 +187,10 @@ void CommandLineParse(int argc, char **argv, CommandLine *line)
   int maybe = 0; /* index in line->argv of a word that is the scene file or the value of the option before it */
 
   memset(line, 0, sizeof *line);
-  line->set  = calloc((size_t)argc + 1, sizeof *line->set);
-  line->argv = calloc((size_t)argc + 1, sizeof *line->argv);
-  if (!line->set || !line->argv) {
+  line->set         = calloc((size_t)argc + 1, sizeof *line->set);
+  line->sensitivity = calloc((size_t)argc + 1, sizeof *line->sensitivity);
+  line->argv        = calloc((size_t)argc + 1, sizeof *line->argv);
+  if (!line->set || !line->argv || !line->sensitivity) {
     CommandLineComplain(line, "out of memory", "command line");
     return;
   }
@@ -227,7 +243,9 @@ void CommandLineDestroy(CommandLine *line)
 {
   free(line->set);
   free(line->argv);
+  free(line->sensitivity);
   line->set = line->argv = NULL;
+  line->sensitivity      = NULL;
 }
 
 /*@
@@ -243,37 +261,40 @@ void CommandLineDestroy(CommandLine *line)
 @*/
 void CommandLineHelp(FILE *file)
 {
-  fputs("Burnish: contact of deformable bodies, from a scene file to results, in parallel.\n\n"
-        "  [mpirun -n N] burnish SCENE.yaml   runs the scene\n"
-        "  [mpirun -n N] burnish -restart DIR goes on from the checkpoint in DIR, on any number of ranks\n"
-        "  burnish -check SCENE.yaml          reads, meshes, validates and reports; solves nothing\n"
-        "  burnish -mesh SCENE.yaml           only makes the mesh file\n"
-        "  burnish -import DECK.inp           makes a scene and a mesh of a deck of Abaqus or CalculiX\n"
-        "  burnish -evaluate DIR PROBES.yaml  finds more probes of a finished run in its results\n"
-        "  burnish -explain CODE              says what a message that ends with this code means\n"
-        "  burnish -help | -version\n\n"
-        "  -o DIR           where results go (default out/NAME)\n"
-        "  -set KEY=VALUE   overrides or adds one value of the scene by its path, such as contact.0.smoother=facet or\n"
-        "                   'loads.0={surface: top, uy: -1}'; repeatable, the last one wins; with -restart only of "
-        "output,\n"
-        "                   solver and stepping\n"
-        "  -to E -probe P   makes meshes until the error of probe P is below E per cent (the scene's accuracy.to and\n"
-        "                   accuracy.probe)\n"
-        "  -overwrite       lets DIR hold another scene's results\n"
-        "  -quiet           no progress on the terminal\n"
-        "  -trust           lets the scene load libraries (law: umat), run programs and write files of its own (gmsh's "
-        "SystemCall\n"
-        "                   and Save, PETSc options that name files); for scenes of people whom you trust\n"
-        "  -time_limit S    ends the run after the step that leaves just the time to write a checkpoint, S seconds "
-        "from its start\n"
-        "All other options are PETSc's.\n\n"
-        "A run writes DIR/checkpoint.h5 every output.checkpoint steps, when it fails, and when SIGUSR1 (to mpirun, "
-        "which passes it\n"
-        "on, or to any rank), SIGTERM (to any rank) or -time_limit ends it after the current step.\n\n"
-        "Exit status: 0 done, 1 wrong input, 2 did not converge, 3 stopped after a checkpoint, 4 machine or internal "
-        "error,\n5 the accuracy that was asked for is not reached.\n\n"
-        "Scene file (YAML; file names in it start at its own folder):\n\n",
-        file);
+  fputs(
+    "Burnish: contact of deformable bodies, from a scene file to results, in parallel.\n\n"
+    "  [mpirun -n N] burnish SCENE.yaml   runs the scene\n"
+    "  [mpirun -n N] burnish -restart DIR goes on from the checkpoint in DIR, on any number of ranks\n"
+    "  burnish -check SCENE.yaml          reads, meshes, validates and reports; solves nothing\n"
+    "  burnish -mesh SCENE.yaml           only makes the mesh file\n"
+    "  burnish -import DECK.inp           makes a scene and a mesh of a deck of Abaqus or CalculiX\n"
+    "  burnish -evaluate DIR PROBES.yaml  finds more probes of a finished run in its results\n"
+    "  burnish -explain CODE              says what a message that ends with this code means\n"
+    "  burnish -help | -version\n\n"
+    "  -o DIR           where results go (default out/NAME)\n"
+    "  -set KEY=VALUE   overrides or adds one value of the scene by its path, such as contact.0.smoother=facet or\n"
+    "                   'loads.0={surface: top, uy: -1}'; repeatable, the last one wins; with -restart only of "
+    "output,\n"
+    "                   solver and stepping\n"
+    "  -to E -probe P   makes meshes until the error of probe P is below E per cent (the scene's accuracy.to and\n"
+    "                   accuracy.probe)\n"
+    "  -sensitivity P:K derivative of probe P by the number K of the scene; P:K,K for more, repeatable (the scene's\n"
+    "                   sensitivity)\n"
+    "  -overwrite       lets DIR hold another scene's results\n"
+    "  -quiet           no progress on the terminal\n"
+    "  -trust           lets the scene load libraries (law: umat), run programs and write files of its own (gmsh's "
+    "SystemCall\n"
+    "                   and Save, PETSc options that name files); for scenes of people whom you trust\n"
+    "  -time_limit S    ends the run after the step that leaves just the time to write a checkpoint, S seconds "
+    "from its start\n"
+    "All other options are PETSc's.\n\n"
+    "A run writes DIR/checkpoint.h5 every output.checkpoint steps, when it fails, and when SIGUSR1 (to mpirun, "
+    "which passes it\n"
+    "on, or to any rank), SIGTERM (to any rank) or -time_limit ends it after the current step.\n\n"
+    "Exit status: 0 done, 1 wrong input, 2 did not converge, 3 stopped after a checkpoint, 4 machine or internal "
+    "error,\n5 the accuracy that was asked for is not reached.\n\n"
+    "Scene file (YAML; file names in it start at its own folder):\n\n",
+    file);
   SchemaReference(file);
 }
 

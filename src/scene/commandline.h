@@ -33,6 +33,8 @@ typedef struct {
   char      **set; /* values of -set, each KEY=VALUE */
   int         overwrite, quiet, trust;
   char        accuracy[2][256]; /* the edits that -to and -probe stand for, or empty */
+  int         n_sensitivities;  /* given so far */
+  char (*sensitivity)[1024];    /* the edits that they stand for */
   /* The arguments that are left for PetscInitialize(). The first one is the program's name. */
   int    argc;
   char **argv;

@@ -1,5 +1,6 @@
 /* The reader of a scene: it fills the Scene from a validated document, see scene.h. */
 #include "sceneaccuracy.h"
+#include "scenesensitivity.h"
 #include "scenecontact.h"
 #include "sceneload.h"
 #include "scenemesh.h"
@@ -267,6 +268,7 @@ static PetscErrorCode SceneReadAll(Scene scene, const char *file)
   PetscCall(SceneReadProbes(scene));
   PetscCall(SceneReadOutput(scene));
   PetscCall(SceneReadAccuracy(scene));
+  PetscCall(SceneReadSensitivities(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -429,6 +431,36 @@ PetscErrorCode SceneReadAgain(MPI_Comm comm, const char *file, const char *where
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  SceneReadChanged - reads a scene again with another value of one number.
+
+  Collective
+
+  Input Parameters:
++ scene - the scene
+. comm  - communicator of all ranks
+. key   - path of the number
+- value - its other value
+
+  Output Parameter:
+. changed - the other scene, to be freed with SceneDestroy()
+
+  Note:
+  It refuses a value that the key may not have.
+@*/
+PetscErrorCode SceneReadChanged(Scene scene, MPI_Comm comm, const char *key, double value, Scene *changed)
+{
+  char      edit[KEY_PATH_LENGTH + 32], *set = edit;
+  Document *document;
+
+  PetscFunctionBeginUser;
+  *changed = NULL;
+  PetscCall(PetscSNPrintf(edit, sizeof(edit), "%s=%.17g", key, value));
+  PetscCall(DocumentReadText(comm, scene->file, scene->text, 1, &set, &document));
+  PetscCall(SceneCreate(document, scene->file, changed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneDestroyBodies(Scene scene)
 {
   PetscFunctionBeginUser;
@@ -490,6 +522,7 @@ PetscErrorCode SceneDestroy(Scene *scene)
   PetscCall(SceneMeshDestroy(s));
   PetscCall(ScenePairsDestroy(s->n_petsc, &s->petsc));
   PetscCall(ScenePairsDestroy(s->accuracy.n_densities, &s->accuracy.densities));
+  PetscCall(SceneDestroySensitivities(s));
   PetscCall(PetscFree(s->file));
   PetscCall(PetscFree(s->directory));
   PetscCall(PetscFree(s->text));

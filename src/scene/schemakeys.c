@@ -434,6 +434,9 @@ const SchemaKey SchemaKeys[] = {
   {"accuracy.limit", MAP, .help = "what the run may use; a mesh that is forecast to need more is not begun"},
   {"accuracy.limit.time", REAL, .range = "(0, inf)", .unit = "s", .help = "CPU time of all meshes and ranks together"},
   {"accuracy.limit.memory", REAL, .range = "(0, inf)", .unit = "MB", .help = "memory of the largest rank"},
+  {"sensitivity", TEXTS,
+   .help = "derivatives of probes by numbers of the scene at the end of the load, each PROBE:KEY or PROBE:KEY,KEY, such as "
+           "force:bodies.0.material.E; the result is in sensitivity.csv"},
   {"certificate", MAP, .help = "what a step must hold to be certified"},
   {"certificate.penetration", REAL, .range = "(0, inf)", .unit = "face sizes", .preset = "0.1",
    .help = "largest depth to which faces may cross, in sizes of the smaller face, besides what the shape of faces "

@@ -117,12 +117,37 @@ PetscErrorCode ModelAdjoint(Model model, int n, const Functional functional[], A
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
   PetscCall(ProblemCollectResidual(model->problem, model->x, F));
-  PetscCall(LinearSolverRenew(model->work->solver));
-  PetscCall(LinearSolverSetStart(model->work->solver, 0));
-  PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
-  PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(KSPSetOperators(ksp, model->problem->A, model->problem->P));
+  PetscCall(ModelLinearise(model, &ksp));
   for (int i = 0; i < n; i++) PetscCall(Solve(model, &functional[i], F, &adjoint[i]));
   PetscCall(VecDestroy(&F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelRespond - computes how the solution of a step follows a change of the residual.
+
+  Collective
+
+  Input Parameters:
++ model  - after ModelAdjoint(), whose tangent serves again
+- change - of the residual of the free dofs (force)
+
+  Output Parameters:
++ response - change of the free displacements (length)
+- known    - the linear solve succeeded
+@*/
+PetscErrorCode ModelRespond(Model model, Vec change, Vec response, PetscBool *known)
+{
+  KSP ksp;
+  Vec forces;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(change, &forces));
+  PetscCall(VecCopy(change, forces));
+  PetscCall(VecScale(forces, -1));
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(KSPSolve(ksp, forces, response));
+  *known = (PetscBool)!LinearCheckLost(model->linear);
+  PetscCall(VecDestroy(&forces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

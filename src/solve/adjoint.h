@@ -16,7 +16,8 @@
    leaves, what the solver leaves of the residual.
 
    ModelAdjoint() computes y for any number of functionals with one tangent and one factor. What is in
-   contact at the solution stays so. Source: Becker and Rannacher, Acta Numerica 10 (2001). */
+   contact at the solution stays so. ModelRespond() goes the other way: one change of the residual, and how all
+   displacements follow it. Source: Becker and Rannacher, Acta Numerica 10 (2001). */
 #pragma once
 #include "solve/model.h"
 
@@ -36,3 +37,4 @@ typedef struct {
 } Adjoint;
 
 PetscErrorCode ModelAdjoint(Model, int n, const Functional[], Adjoint[]);
+PetscErrorCode ModelRespond(Model, Vec change, Vec response, PetscBool *known);

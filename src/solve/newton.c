@@ -172,6 +172,28 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, const StressReferen
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ModelLinearise - computes the tangent at the trial state for linear solves with it.
+
+  Collective
+
+  Input Parameter:
+. model - after ProblemSetTrial() at its solution
+
+  Output Parameter:
+. ksp - solves with the tangent, which is the derivative of the residual
+@*/
+PetscErrorCode ModelLinearise(Model model, KSP *ksp)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LinearSolverRenew(model->work->solver));
+  PetscCall(LinearSolverSetStart(model->work->solver, 0));
+  PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
+  PetscCall(SNESGetKSP(model->snes, ksp));
+  PetscCall(KSPSetOperators(*ksp, model->problem->A, model->problem->P));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The state from which the tangent at the present iterate extrapolates stresses. It is the iterate before, since
    pressure changes along a full step as the step's linear problem says. Before the first iterate that is where the
    prediction started. A shortened step has left the volumes somewhere; its pressures are those of the last equilibrium.

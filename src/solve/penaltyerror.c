@@ -171,11 +171,7 @@ static PetscErrorCode ModelPenaltySlopes(Model model, int sources, Vec slope[], 
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &forces));
-  PetscCall(LinearSolverRenew(model->work->solver));
-  PetscCall(LinearSolverSetStart(model->work->solver, 0));
-  PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
-  PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(KSPSetOperators(ksp, model->problem->A, model->problem->P));
+  PetscCall(ModelLinearise(model, &ksp));
   *known = PETSC_TRUE;
   for (int source = 0; source < sources && *known; source++) {
     PetscCall(ModelStifferForces(model, (PenaltySource)source, forces));

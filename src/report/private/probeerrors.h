@@ -5,7 +5,7 @@
 #pragma once
 #include <stdio.h>
 #include "errors/quantityerror.h"
-#include "probevariation.h"
+#include "report/probevariation.h"
 
 typedef struct _n_ProbeErrors *ProbeErrors;
 

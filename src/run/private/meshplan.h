@@ -7,7 +7,7 @@
 #pragma once
 
 typedef struct {
-  double factor;   /* elements are smaller by it than those of the first mesh */
+  double factor; /* elements are smaller by it than those of the first mesh */
   double unknowns, error, cpu_s, rss_mb;
 } MeshFigures;
 

@@ -26,22 +26,23 @@ typedef struct {
 } RunInput;
 
 typedef struct {
-  MPI_Comm       comm;
-  PetscLogDouble start;  /* time when it began (s) */
-  PetscReal      mesh_s; /* seconds that the mesh generator took */
-  char           directory[PETSC_MAX_PATH_LEN], mesh_file[PETSC_MAX_PATH_LEN];
-  Scene          scene;
-  Checkpoint     checkpoint;
-  Mesh           mesh;
-  Model          model;
-  Probes         probes;
-  Results        results;
-  LoadStepper    stepper;
-  PetscBool      refines;       /* the scene asks for an accuracy: this run is on one of several meshes */
-  PetscInt       kept;          /* step of the last checkpoint, -1: none */
-  int            n_options;     /* PETSc options of the scene that are in PETSc's database */
-  char         **options;       /* their names, with dash */
-  char           message[1024]; /* why it did not end with BURNISH_DONE */
+  MPI_Comm        comm;
+  const RunInput *input;  /* during RunScene() */
+  PetscLogDouble  start;  /* time when it began (s) */
+  PetscReal       mesh_s; /* seconds that the mesh generator took */
+  char            directory[PETSC_MAX_PATH_LEN], mesh_file[PETSC_MAX_PATH_LEN];
+  Scene           scene;
+  Checkpoint      checkpoint;
+  Mesh            mesh;
+  Model           model;
+  Probes          probes;
+  Results         results;
+  LoadStepper     stepper;
+  PetscBool       refines;       /* the scene asks for an accuracy: this run is on one of several meshes */
+  PetscInt        kept;          /* step of the last checkpoint, -1: none */
+  int             n_options;     /* PETSc options of the scene that are in PETSc's database */
+  char          **options;       /* their names, with dash */
+  char            message[1024]; /* why it did not end with BURNISH_DONE */
 } Run;
 
 PetscErrorCode RunScene(Run *, const RunInput *, BurnishStatus *);

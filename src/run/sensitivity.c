@@ -1,0 +1,378 @@
+/* The derivatives of probes by numbers of the scene, see sensitivity.h. */
+#include "sensitivity.h"
+#include <math.h>
+#include <string.h>
+#include "base/refusal.h"
+#include "files/textfile.h"
+#include "report/probevariation.h"
+#include "solve/twin.h"
+
+/* By this part of itself a number is changed. Differences of residuals have no error of an iteration, so that the part
+   may be small. Contacts close and open over lengths of the penetration, which may be a millionth of the bodies. */
+#define SENSITIVITY_STEP 1e-7
+/* A twin whose residual is beyond this part of the forces is in another state than the model. */
+#define SENSITIVITY_APART 1e-3
+
+enum { SENSITIVITY_ROW = 1536 };
+
+/* A model of the scene with another value of one number */
+typedef struct {
+  Scene      scene;
+  Mesh       mesh;
+  Model      model;
+  Probes     probes;
+  Vec        F;     /* its residual (force) */
+  PetscReal *value; /* of its probes */
+} Twin;
+
+/* What is known of a probe */
+typedef struct {
+  PetscBool wanted;
+  PetscReal value;
+  Vec       y; /* adjoint solution at the free dofs; NULL: the direct way is taken */
+} SensitiveProbe;
+
+typedef struct {
+  Run            *run;
+  const RunInput *input;
+  SensitiveProbe *probe;
+  Vec             F; /* residual of the model (force) */
+  PetscReal      *derivative, *cpu_s;
+  const char    **why; /* it has no derivative */
+} Sensitivities;
+
+/*@
+  SensitivitiesCheck - refuses numbers that cannot be changed a little.
+
+  Collective
+
+  Input Parameter:
+. run - with its scene
+@*/
+PetscErrorCode SensitivitiesCheck(Run *run)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < run->scene->n_sensitivities; i++) {
+    const SceneSensitivity *s = &run->scene->sensitivities[i];
+    Scene                   changed;
+
+    PetscCall(SceneReadChanged(run->scene, run->comm, s->key, s->value * (1 + SENSITIVITY_STEP), &changed));
+    PetscCall(SceneDestroy(&changed));
+    PetscCall(SceneReadChanged(run->scene, run->comm, s->key, s->value * (1 - SENSITIVITY_STEP), &changed));
+    PetscCall(SceneDestroy(&changed));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SensitivitiesCheckModel - refuses a model whose solution is no function of its displacements.
+
+  Collective
+
+  Input Parameter:
+. run - with its model
+
+  Note:
+  Pressures of elements that keep their volume exactly are multipliers, which follow a number of the scene as
+  displacements do.
+@*/
+PetscErrorCode SensitivitiesCheckModel(Run *run)
+{
+  PetscFunctionBeginUser;
+  if (run->scene->n_sensitivities && ElasticityAugments(run->model->problem->elasticity))
+    PetscCall(RefuseInput(run->comm,
+                          "%s: a body keeps its volume by multipliers of its elements, which have no sensitivity; "
+                          "allowed: nu below 0.499, or elements of second order with pressures at nodes",
+                          SceneWhere(run->scene, "sensitivity", NULL)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes a twin. */
+static PetscErrorCode TwinCreate(const Sensitivities *all, const char *key, PetscReal value, Twin *twin)
+{
+  Run      *run = all->run;
+  PetscBool same;
+  PetscReal seconds;
+  char      file[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  *twin = (Twin){.scene = NULL};
+  PetscCall(SceneReadChanged(run->scene, run->comm, key, (double)value, &twin->scene));
+  PetscCall(PetscStrncpy(file, run->mesh_file, sizeof(file)));
+  if (!strncmp(key, "mesh.", strlen("mesh.")))
+    PetscCall(MeshGenerate(run->comm, twin->scene, "out", all->input->trust, file, &seconds));
+  PetscCall(MeshCreate(run->comm, twin->scene, file, &twin->mesh));
+  PetscCall(MeshCheckFormulations(twin->mesh, twin->scene));
+  PetscCall(ModelCreate(twin->scene, twin->mesh, &twin->model));
+  PetscCall(ProbesCreate(twin->model, twin->scene, &twin->probes));
+  PetscCall(ModelPlace(twin->model, twin->scene->stepping.initial));
+  PetscCall(ModelSetUp(twin->model));
+  PetscCall(ModelTwinFollow(twin->model, run->model, &same));
+  if (!same)
+    PetscCall(RefuseInput(run->comm,
+                          "%s: %s gives the mesh other nodes or cells when it changes a little; allowed for a "
+                          "sensitivity: parameters that move nodes and keep their connections",
+                          SceneWhere(run->scene, "sensitivity", NULL), key));
+  PetscCall(VecDuplicate(run->model->x, &twin->F));
+  PetscCall(PetscMalloc1(twin->scene->n_probes, &twin->value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TwinDestroy(Twin *twin)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(twin->value));
+  PetscCall(VecDestroy(&twin->F));
+  PetscCall(ProbesDestroy(&twin->probes));
+  PetscCall(ModelDestroy(&twin->model));
+  PetscCall(MeshDestroy(&twin->mesh));
+  PetscCall(SceneDestroy(&twin->scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Residual and probes of a twin at free displacements. */
+static PetscErrorCode TwinEvaluate(Twin *twin, Vec x, PetscReal t, PetscBool *ok)
+{
+  PetscBool mine;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelTwinEvaluate(twin->model, x, t, twin->F, &mine));
+  PetscCall(ProbesEvaluate(twin->probes, twin->value));
+  *ok = (PetscBool)(*ok && mine);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Do the residuals of the twins lie on either side of that of the model? */
+static PetscErrorCode Beside(const Sensitivities *all, const Twin twin[2], PetscBool *beside)
+{
+  PetscReal norm;
+  Vec       mean;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(all->F, &mean));
+  PetscCall(VecCopy(twin[0].F, mean));
+  PetscCall(VecAXPY(mean, 1, twin[1].F));
+  PetscCall(VecAXPY(mean, -2, all->F));
+  PetscCall(VecNorm(mean, NORM_2, &norm));
+  PetscCall(VecDestroy(&mean));
+  *beside = (PetscBool)(norm <= 2 * SENSITIVITY_APART * ProblemForceScale(all->run->model->problem));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The derivatives of all wanted probes by the number that differs by h in the two twins, the adjoint way, and of those
+   that take the direct way what they have without a change of the displacements. */
+static PetscErrorCode AddAdjoints(const Sensitivities *all, const Twin twin[2], PetscReal h, Vec change,
+                                  PetscReal derivative[])
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < all->run->scene->n_probes; p++) {
+    PetscReal follows = 0;
+
+    if (all->probe[p].y) PetscCall(VecDot(all->probe[p].y, change, &follows));
+    derivative[p] = (twin[0].value[p] - twin[1].value[p]) / (2 * h) + follows;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same for the probes that take the direct way: the twins go along with the solution. */
+static PetscErrorCode Direct(const Sensitivities *all, Twin twin[2], PetscReal h, Vec change, PetscReal derivative[],
+                             PetscBool *ok)
+{
+  const Model model = all->run->model;
+  PetscBool   any   = PETSC_FALSE;
+  Vec         response, x;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < all->run->scene->n_probes; p++)
+    any = (PetscBool)(any || (all->probe[p].wanted && !all->probe[p].y));
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(change, &response));
+  PetscCall(VecDuplicate(change, &x));
+  PetscCall(ModelRespond(model, change, response, ok));
+  for (int k = 0; k < 2 && *ok; k++) {
+    PetscCall(VecWAXPY(x, k ? -h : h, response, model->x));
+    PetscCall(TwinEvaluate(&twin[k], x, model->t, ok));
+  }
+  for (int p = 0; p < all->run->scene->n_probes; p++)
+    if (!all->probe[p].y) derivative[p] = (twin[0].value[p] - twin[1].value[p]) / (2 * h);
+  PetscCall(VecDestroy(&response));
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The derivatives of all wanted probes by one number. */
+static PetscErrorCode Differentiate(const Sensitivities *all, const SceneSensitivity *s, PetscReal derivative[],
+                                    const char **why)
+{
+  const Model     model = all->run->model;
+  const PetscReal h     = SENSITIVITY_STEP * PetscAbsReal((PetscReal)s->value);
+  PetscBool       ok = PETSC_TRUE, beside = PETSC_FALSE;
+  Twin            twin[2];
+  Vec             change;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) {
+    PetscCall(TwinCreate(all, s->key, (PetscReal)s->value + (k ? -h : h), &twin[k]));
+    PetscCall(ModelTwinGather(twin[k].model, model->x, model->t));
+    PetscCall(TwinEvaluate(&twin[k], model->x, model->t, &ok));
+  }
+  PetscCall(Beside(all, twin, &beside));
+  PetscCall(VecDuplicate(model->x, &change));
+  PetscCall(VecWAXPY(change, -1, twin[1].F, twin[0].F));
+  PetscCall(VecScale(change, 1 / (2 * h)));
+  PetscCall(AddAdjoints(all, twin, h, change, derivative));
+  if (ok && beside) PetscCall(Direct(all, twin, h, change, derivative, &ok));
+  *why = ok && beside ? NULL : "the solution is no function of the scene's end alone, or cannot be solved with";
+  PetscCall(VecDestroy(&change));
+  for (int k = 0; k < 2; k++) PetscCall(TwinDestroy(&twin[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the values of the probes, and the adjoint solutions of those that have a first variation. That of a mean
+   pressure leaves areas and normals as they are, which is good enough for an estimate of an error alone. */
+static PetscErrorCode FindAdjoints(Sensitivities *all)
+{
+  Run           *run  = all->run;
+  const int      n    = run->scene->n_probes;
+  const PetscInt dofs = run->mesh->n_nodes * run->mesh->dim;
+  int            m    = 0, *probe;
+  PetscReal     *value;
+  Functional    *functional;
+  Adjoint       *adjoint;
+  PetscBool      ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(n, &probe, n, &value, n, &functional, n, &adjoint));
+  PetscCall(ProblemSetTrial(run->model->problem, run->model->x, run->model->t));
+  PetscCall(ProblemResidual(run->model->problem, run->model->problem->trial, run->model->t, run->model->t, &ok));
+  PetscCall(ProblemCollectResidual(run->model->problem, run->model->x, all->F));
+  PetscCall(ProbesEvaluate(run->probes, value));
+  for (int p = 0; p < n; p++) {
+    const char *why = NULL;
+
+    all->probe[p].value = value[p];
+    if (!all->probe[p].wanted || run->scene->probes[p].kind == PROBE_PRESSURE_MEAN) continue;
+    PetscCall(ProbeVary(run->probes, p, &functional[m], &why));
+    if (why) PetscCall(ProbeVariationFree(&functional[m]));
+    probe[m] = p;
+    m += !why;
+  }
+  for (int k = 0; k < m; k++) PetscCall(PetscCalloc1(dofs, &adjoint[k].y));
+  PetscCall(ModelAdjoint(run->model, m, functional, adjoint));
+  for (int k = 0; k < m; k++) {
+    if (adjoint[k].known) {
+      PetscCall(VecDuplicate(run->model->x, &all->probe[probe[k]].y));
+      PetscCall(MeshCollectFree(run->mesh, adjoint[k].y, all->probe[probe[k]].y));
+    }
+    PetscCall(ProbeVariationFree(&functional[k]));
+    PetscCall(PetscFree(adjoint[k].y));
+  }
+  PetscCall(PetscFree4(probe, value, functional, adjoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds all derivatives: for each number once. */
+static PetscErrorCode FindAll(Sensitivities *all)
+{
+  const Scene scene = all->run->scene;
+  PetscReal  *derivative;
+  RunUsage    begin, end;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(scene->n_probes, &derivative));
+  for (int i = 0; i < scene->n_sensitivities; i++) {
+    const SceneSensitivity *s     = &scene->sensitivities[i];
+    const char             *why   = NULL;
+    int                     first = 0;
+
+    while (strcmp(scene->sensitivities[first].key, s->key)) first++;
+    if (first < i) continue;
+    PetscCall(ResultsGetUsage(all->run->results, &begin));
+    PetscCall(Differentiate(all, s, derivative, &why));
+    PetscCall(ResultsGetUsage(all->run->results, &end));
+    for (int j = i; j < scene->n_sensitivities; j++) {
+      if (strcmp(scene->sensitivities[j].key, s->key)) continue;
+      all->derivative[j] = why ? NAN : derivative[scene->sensitivities[j].probe];
+      all->why[j]        = why;
+      all->cpu_s[j]      = end.cpu_s - begin.cpu_s;
+    }
+  }
+  PetscCall(PetscFree(derivative));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Prints the derivatives. */
+static void Print(const Sensitivities *all)
+{
+  const Scene scene = all->run->scene;
+
+  for (int i = 0; i < scene->n_sensitivities; i++) {
+    const SceneSensitivity *s     = &scene->sensitivities[i];
+    const PetscReal         value = all->probe[s->probe].value;
+
+    if (all->why[i])
+      printf("derivative of %s by %s: not known: %s\n", scene->probes[s->probe].name, s->key, all->why[i]);
+    else
+      printf("derivative of %s by %s: %.6g; 1 %% of it changes %s by %.3g %%\n", scene->probes[s->probe].name, s->key,
+             (double)all->derivative[i], scene->probes[s->probe].name,
+             (double)(all->derivative[i] * (PetscReal)s->value / value));
+  }
+}
+
+/* Writes sensitivity.csv. */
+static PetscErrorCode Write(const Sensitivities *all)
+{
+  const Scene  scene = all->run->scene;
+  const size_t size  = (size_t)(scene->n_sensitivities + 1) * SENSITIVITY_ROW;
+  char        *text;
+  size_t       used;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(size, &text));
+  used = (size_t)snprintf(text, size, "probe,key,value,number,derivative,way,cpu_s\n");
+  for (int i = 0; i < scene->n_sensitivities; i++) {
+    const SceneSensitivity *s = &scene->sensitivities[i];
+
+    used +=
+      (size_t)snprintf(text + used, size - used, "%s,%s,%.10g,%.10g,%.10g,%s,%.3f\n", scene->probes[s->probe].name,
+                       s->key, (double)all->probe[s->probe].value, s->value, (double)all->derivative[i],
+                       all->probe[s->probe].y ? "adjoint" : "direct", (double)all->cpu_s[i]);
+  }
+  PetscCall(TextFileReplace(all->run->directory, "sensitivity.csv", text));
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SensitivitiesFind - finds the derivatives that the scene asks for, prints them and writes sensitivity.csv.
+
+  Collective
+
+  Input Parameters:
++ run   - at the solution of its last step, before that is accepted
+- input - what the user asks for
+
+  Note:
+  Refuses a parameter of the mesh that gives it other nodes or cells.
+@*/
+PetscErrorCode SensitivitiesFind(Run *run, const RunInput *input)
+{
+  const int     n = run->scene->n_sensitivities, probes = run->scene->n_probes;
+  Sensitivities all = {.run = run, .input = input};
+  PetscMPIInt   rank;
+
+  PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Comm_rank(run->comm, &rank));
+  PetscCall(PetscCalloc4(probes, &all.probe, n, &all.derivative, n, &all.cpu_s, n, &all.why));
+  for (int i = 0; i < n; i++) all.probe[run->scene->sensitivities[i].probe].wanted = PETSC_TRUE;
+  PetscCall(VecDuplicate(run->model->x, &all.F));
+  PetscCall(FindAdjoints(&all));
+  PetscCall(FindAll(&all));
+  if (!rank && !input->quiet) Print(&all);
+  if (!rank) PetscCall(Write(&all));
+  PetscCall(VecDestroy(&all.F));
+  for (int p = 0; p < probes; p++) PetscCall(VecDestroy(&all.probe[p].y));
+  PetscCall(PetscFree4(all.probe, all.derivative, all.cpu_s, all.why));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
