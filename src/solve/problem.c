@@ -608,6 +608,34 @@ PetscErrorCode ProblemReaction(Problem problem, const MeshGroup *group, PetscRea
 }
 
 /*@
+  ProblemBoltForce - computes the tension in a bolt at the trial state: the work of the stresses in its cells on the
+  shortening, over the shortening.
+
+  Collective
+
+  Input Parameters:
++ problem - the problem
+- body    - name of a body with pretension
+
+  Output Parameter:
+. force - the same on all ranks; in the plane per thickness, axisymmetric over 360 degrees
+@*/
+PetscErrorCode ProblemBoltForce(Problem problem, const char *body, PetscReal *force)
+{
+  const Mesh mesh = problem->mesh;
+  PetscReal *f;
+  PetscBool  ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &f));
+  PetscCall(ElasticityResidual(problem->elasticity, problem->trial, f, NULL, NULL, &ok));
+  *force = f[ToolOfBolt(mesh, body)->node * mesh->dim];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 1, MPIU_REAL, MPI_SUM, mesh->comm));
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ProblemIsLinear - returns whether one linear solve gives the answer at any load parameter.
 
   Not collective, the same on all ranks

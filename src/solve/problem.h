@@ -95,6 +95,7 @@ PetscErrorCode ProblemGatherLists(Problem, const PetscReal *u, PetscReal t, Pets
 PetscErrorCode ProblemRenewLists(Problem, const PetscReal *u_0, PetscReal t_0, PetscReal t, PetscBool left,
                                  PetscReal lag, PetscBool *hold);
 PetscErrorCode ProblemReaction(Problem, const MeshGroup *, PetscReal force[3]);
+PetscErrorCode ProblemBoltForce(Problem, const char *body, PetscReal *force);
 PetscBool      ProblemIsLinear(Problem);
 PetscBool      ProblemIsPlastic(Problem);
 PetscBool      ProblemConservative(Problem);
