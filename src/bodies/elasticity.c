@@ -145,9 +145,9 @@ static const MeshTool *FindBolt(Mesh mesh, int body)
   return NULL;
 }
 
-/* Notes what the shortening of a bolt does to its cells: the displacement along the axis grows from one end to the other
-   by the shortening, so that the strain grows by shortening over length. The work of the cells' stresses on it is the
-   mean of the tension times the shortening. */
+/* Notes what the shortening of a bolt does to its cells: the displacement along the axis grows from one end to the
+   other by the shortening, so that the strain grows by shortening over length. The work of the cells' stresses on it is
+   the mean of the tension times the shortening. */
 static PetscErrorCode SetBolts(Elasticity e, CellGroup *g)
 {
   const Mesh   mesh  = e->mesh;
@@ -615,8 +615,8 @@ static void ScatterForce(Elasticity e, const CellGroup *g, PetscInt batch, Petsc
     const PetscInt bolt = g->bolt[(size_t)batch * KERNEL_LANES + lane];
 
     for (int k = 0; k < g->nodes * e->dim && bolt >= 0; k++)
-      f[bolt * e->dim] += g->pull[((size_t)batch * g->nodes * e->dim + k) * KERNEL_LANES + lane] *
-                          e->f[k * KERNEL_LANES + lane];
+      f[bolt * e->dim] +=
+        g->pull[((size_t)batch * g->nodes * e->dim + k) * KERNEL_LANES + lane] * e->f[k * KERNEL_LANES + lane];
   }
 }
 

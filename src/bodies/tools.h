@@ -1,4 +1,5 @@
-/* Rigid tools with free motions, and bolts that are tightened: their unknowns in the displacements, and the forces on them.
+/* Rigid tools with free motions, and bolts that are tightened: their unknowns in the displacements, and the forces on
+   them.
 
    The unknowns are displacements of the tools' nodes (MeshTool), so that vectors, checkpoints and Newton's method treat
    them like others. ToolsConstrain() marks their components that are not free, ToolsPrescribe() writes these.
@@ -11,13 +12,13 @@
 #pragma once
 #include "bodies/elasticity.h"
 
-void      ToolsConstrain(Mesh, PetscBool *constrained);
-void      ToolsPrescribe(Mesh, PetscReal t, PetscReal *u);
-void      ToolMove(Mesh, const MeshTool *, const PetscReal *own, PetscReal t);
-void      ToolsPlace(Mesh, const PetscReal *u, PetscReal t);
-void      ToolsAccept(Mesh, const PetscReal *u, PetscReal t);
-void      ToolsResidual(Mesh, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2);
-PetscReal ToolsTurn(Mesh, const PetscReal *u_0, const PetscReal *u, const MeshTool **);
+void           ToolsConstrain(Mesh, PetscBool *constrained);
+void           ToolsPrescribe(Mesh, PetscReal t, PetscReal *u);
+void           ToolMove(Mesh, const MeshTool *, const PetscReal *own, PetscReal t);
+void           ToolsPlace(Mesh, const PetscReal *u, PetscReal t);
+void           ToolsAccept(Mesh, const PetscReal *u, PetscReal t);
+void           ToolsResidual(Mesh, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2);
+PetscReal      ToolsTurn(Mesh, const PetscReal *u_0, const PetscReal *u, const MeshTool **);
 PetscErrorCode ToolsTangent(Mesh, PetscReal t, Elasticity);
 const MeshTool *ToolOfPair(Mesh, Scene, int contact);
 const MeshTool *ToolOfBolt(Mesh, const char *body);

@@ -57,7 +57,7 @@ typedef struct {
   const SceneBody *bolt;      /* NULL: a rigid tool */
   PetscReal        length;    /* of the bolt: extent along its axis */
   PetscReal        stiffness; /* of what keeps its length (force per length) */
-  PetscReal   arm;           /* length by which rotations count as displacements */
+  PetscReal        arm;       /* length by which rotations count as displacements */
 } MeshTool;
 
 typedef struct {
@@ -98,4 +98,4 @@ typedef struct {
   PetscSF    node_sf;     /* from ghost nodes to their owners' nodes */
   PetscInt  *global_dofs; /* NULL until MeshSetConstraints() */
   PetscReal *work;        /* n_nodes*dim */
-} *Mesh;
+} * Mesh;

@@ -44,8 +44,8 @@ PetscErrorCode MeshToolsList(Scene scene, Mesh mesh)
       PetscCall(PetscSNPrintf(tool->path, sizeof(tool->path), "contact.%d.master.%s", tool->contact,
                               shapes[contact->analytic.shape]));
     else
-      PetscCall(PetscSNPrintf(tool->path, sizeof(tool->path), "bodies.%d.%s", tool->body,
-                              tool->bolt ? "pretension" : "rigid"));
+      PetscCall(
+        PetscSNPrintf(tool->path, sizeof(tool->path), "bodies.%d.%s", tool->body, tool->bolt ? "pretension" : "rigid"));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -100,9 +100,9 @@ PetscErrorCode MeshToolsMeasureBolts(Scene scene, Mesh mesh)
 {
   PetscFunctionBeginUser;
   for (int k = 0; k < mesh->n_tools; k++) {
-    MeshTool *tool     = &mesh->tools[k];
-    PetscReal ends[2]  = {PETSC_MIN_REAL, PETSC_MIN_REAL}; /* -lowest, highest */
-    PetscReal volume = 0;
+    MeshTool *tool    = &mesh->tools[k];
+    PetscReal ends[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL}; /* -lowest, highest */
+    PetscReal volume  = 0;
 
     if (!tool->bolt) continue;
     for (PetscInt c = 0; c < mesh->n_cells; c++) {

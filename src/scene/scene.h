@@ -37,9 +37,9 @@ typedef struct {
   int         chosen;      /* 1 if `auto` chose the formulation: cells that have none of it take full */
   /* 1 if its volume is stiff or plastic flow keeps it, and cells of first order with full integration lock.
      MeshCheckFormulations() sets it. */
-  int    locks;
-  int    enclosed;  /* 1 if its volume is kept exactly and no free displacement changes it; EnclosedBodiesFind() sets it */
-  int    condensed; /* as in a KernelCase; PressureNodesExist() and EnclosedBodiesFind() set it */
+  int locks;
+  int enclosed;  /* 1 if its volume is kept exactly and no free displacement changes it; EnclosedBodiesFind() sets it */
+  int condensed; /* as in a KernelCase; PressureNodesExist() and EnclosedBodiesFind() set it */
   /* Of a rigid tool. Of a bolt that is tightened the component 0 is free: the shortening of its unloaded length. */
   Motion motion;
   int    bolt;    /* 1 if the body is a bolt that is tightened */
@@ -211,25 +211,25 @@ typedef struct {
 } SceneAccuracy;
 
 typedef struct {
-  char      *file, *directory; /* file as the user gave it; its directory, where relative paths start */
-  char      *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
-  char      *name;
-  char      *mesh_file;    /* path with which the process can open the file */
-  PetscBool  foreign_mesh; /* the mesh file is one of another program, by its ending; CAD geometry too */
-  PetscBool  cad;          /* the file is geometry of a CAD program, by its ending */
-  double     mesh_size;    /* of the elements of CAD geometry; 0: by the size of each body */
-  int        n_cad_surfaces;
+  char            *file, *directory; /* file as the user gave it; its directory, where relative paths start */
+  char            *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
+  char            *name;
+  char            *mesh_file;    /* path with which the process can open the file */
+  PetscBool        foreign_mesh; /* the mesh file is one of another program, by its ending; CAD geometry too */
+  PetscBool        cad;          /* the file is geometry of a CAD program, by its ending */
+  double           mesh_size;    /* of the elements of CAD geometry; 0: by the size of each body */
+  int              n_cad_surfaces;
   SceneCadSurface *cad_surfaces;
-  int        order;        /* of the elements, 1 or 2; 0 stands for that of the .msh file */
-  char      *sizes;        /* view of gmsh with the sizes of elements; NULL: those of the .geo file */
-  int        n_parameters;
-  ScenePair *parameters; /* of the .geo file */
-  Geometry   geometry;
-  Kinematics kinematics;
-  int        dim;           /* 3 for solid, else 2 */
-  int        plane_stress;  /* 1: geometry is plane strain for everything but the law, which has no stress across */
-  double     thickness;     /* of the bodies in the plane (length), by which results multiply forces; else 1 */
-  int        per_thickness; /* 1: in the plane without the key, so that forces are those of a unit of thickness */
+  int              order; /* of the elements, 1 or 2; 0 stands for that of the .msh file */
+  char            *sizes; /* view of gmsh with the sizes of elements; NULL: those of the .geo file */
+  int              n_parameters;
+  ScenePair       *parameters; /* of the .geo file */
+  Geometry         geometry;
+  Kinematics       kinematics;
+  int              dim; /* 3 for solid, else 2 */
+  int    plane_stress;  /* 1: geometry is plane strain for everything but the law, which has no stress across */
+  double thickness;     /* of the bodies in the plane (length), by which results multiply forces; else 1 */
+  int    per_thickness; /* 1: in the plane without the key, so that forces are those of a unit of thickness */
   struct {
     char *length, *force, *stress;
   } units; /* words for results and pictures, or NULL */
@@ -276,7 +276,7 @@ typedef struct {
   int        n_petsc;
   ScenePair *petsc;    /* PETSc options of the scene */
   void      *document; /* private to this folder: the tree of the document (document.h), for SceneWhere() */
-} *Scene;
+} * Scene;
 
 PetscErrorCode SceneRead(MPI_Comm, const char *file, int n_set, char *const *set, Scene *);
 PetscErrorCode SceneReadAgain(MPI_Comm, const char *file, const char *where, const char *text, int n_set,

@@ -224,8 +224,8 @@ static PetscErrorCode SceneCheckProbeName(Scene scene, const SceneProbe *probe)
 /* Tells whether a probe's value is one per thickness of the plane. */
 static int ProbePerThickness(ProbeKind kind)
 {
-  return kind == PROBE_REACTION || kind == PROBE_BOLT_FORCE || kind == PROBE_CONTACT_FORCE || kind == PROBE_FRICTION_FORCE ||
-         kind == PROBE_FRICTION_TORQUE || kind == PROBE_SLIPPED_AREA;
+  return kind == PROBE_REACTION || kind == PROBE_BOLT_FORCE || kind == PROBE_CONTACT_FORCE ||
+         kind == PROBE_FRICTION_FORCE || kind == PROBE_FRICTION_TORQUE || kind == PROBE_SLIPPED_AREA;
 }
 
 static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)

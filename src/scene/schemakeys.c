@@ -152,7 +152,8 @@ const SchemaKey SchemaKeys[] = {
            "for materials that keep their volume nearly or exactly. auto: mixed where the bulk modulus is above 20 times the shear modulus (nu above 0.475), "
            "otherwise full; von_mises takes fbar at order 1 and mixed at order 2, umat fbar and full"},
   {"bodies.*.pretension", MAP,
-   .help = "tightens the body, which is the shank of a bolt: its unloaded length becomes shorter by what the force needs"},
+   .help = "tightens the body, which is the shank of a bolt: its unloaded length becomes shorter by what the force "
+           "needs. What it clamps must hold it from the start, so touch: nothing else resists the force"},
   {"bodies.*.pretension.axis", POINT, REQUIRED,
    .help = "direction of the bolt, of any length; about an axis it is [0, 1]. It does not turn with the body"},
   {"bodies.*.pretension.force", REAL | FORMULA, REQUIRED, .unit = "force",

@@ -31,8 +31,9 @@ Curve Loop(1) = {31, 2, -41, -1};
 Plane Surface(1) = {1};
 below = 43; sides[] = {3, 4};
 If(apart)
-  Point(103) = {x[2], length, 0};
-  Point(104) = {x[3], length, 0};
+  gap = -1e-6 * length; // without it gmsh would make one of crown and seat
+  Point(103) = {x[2], length - gap, 0};
+  Point(104) = {x[3], length - gap, 0};
   Line(103) = {3, 103};
   Line(104) = {4, 104};
   Line(143) = {103, 104};
@@ -58,9 +59,6 @@ Else
   h0[] = Extrude{0, 0, depth}{ Surface{61}; Layers{1}; Recombine; };
   h1[] = Extrude{0, 0, depth}{ Surface{62}; Layers{1}; Recombine; };
   h2[] = Extrude{0, 0, depth}{ Surface{63}; Layers{1}; Recombine; };
-  If(apart)
-    Geometry.AutoCoherence = 0; // else seat and crown would become one
-  EndIf
   b[] = Extrude{0, 0, depth}{ Surface{2}; Layers{1}; Recombine; };
   Physical Volume("shank") = {a[1]};
   Physical Volume("sleeve") = {b[1]};

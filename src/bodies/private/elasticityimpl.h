@@ -23,8 +23,8 @@ typedef struct {
   PetscInt  *cell; /* [lanes] */
   PetscInt  *node; /* [nodes][lanes] */
   PetscInt
-    *block;       /* [nodes][nodes][lanes]: place of the pair of nodes in the block CSR; then PREFETCH_PAIRS of zeros */
-  PetscReal   *X; /* [nodes][dim][lanes] */
+    *block;     /* [nodes][nodes][lanes]: place of the pair of nodes in the block CSR; then PREFETCH_PAIRS of zeros */
+  PetscReal *X; /* [nodes][dim][lanes] */
   /* Of bolts: what a shortening of 1 adds to the displacements of the nodes [nodes][dim][lanes], and the first of the
      nodes that have it (MeshTool), -1 in a cell of another body [lanes]; NULL where the group has no cell of a bolt */
   PetscReal   *pull;
