@@ -135,6 +135,9 @@ typedef struct {
   /* With augment, pressures become multipliers until all penetrations are within g_max, at most max_updates times in a
      step. */
   int augment, max_updates;
+  /* Part of the pair that is there over the load parameter: 0 away, 1 there; between them it fades. With n = 0 it is
+     always there. */
+  History presence;
 } SceneContact;
 
 typedef enum {

@@ -61,7 +61,8 @@ PetscBool SceneBreaks(Scene scene, PetscReal t)
     if (MotionBreaks(&scene->bodies[b].motion, t) || (scene->bodies[b].bolt && scene->bodies[b].locked == t))
       return PETSC_TRUE;
   for (int c = 0; c < scene->n_contacts; c++)
-    if (MotionBreaks(&scene->contacts[c].motion, t)) return PETSC_TRUE;
+    if (MotionBreaks(&scene->contacts[c].motion, t) || HistoryBreaks(&scene->contacts[c].presence, t))
+      return PETSC_TRUE;
   return PETSC_FALSE;
 }
 

@@ -233,6 +233,12 @@ const SchemaKey SchemaKeys[] = {
            "with bodies' names for all; entries that name two of these surfaces as slave and master replace their pair"},
   {"contact.*.exclude", LIST, .help = "pairs of surfaces, or of bodies where surfaces is all, that do not meet"},
   {"contact.*.exclude.*", TEXTS, .help = "two names, or one: it does not meet itself"},
+  {"contact.*.during", NAME | TEXTS,
+   .help = "step, or list of steps one after the other, in which the pair is there: it comes over the first one, where that "
+           "is not the first of all, and fades over the step that follows the last one. Elsewhere the surfaces pass "
+           "through each other, and must not be deeper in each other than elements when it comes"},
+  {"contact.*.history", HISTORY,
+   .help = "part of the pair that is there over the load parameter t, from 0 to 1, as during makes it; without both it is 1"},
   {"contact.*.slave", TEXT, .help = "physical surface of a deformable body; needed without surfaces"},
   {"contact.*.master", TEXT | MAP,
    .help = "a physical surface or an analytic surface; needed without surfaces. With surfaces, an analytic surface that "
