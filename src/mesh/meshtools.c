@@ -1,7 +1,6 @@
 /* Rigid tools with free motions and their nodes, see meshtools.h. */
 #include "meshtools.h"
 #include "kernels/elementkernel.h"
-#include "mesh/mesh.h"
 
 /* A bolt whose length is kept gives way by this part of its elastic elongation in a step. It is far below what any mesh
    resolves, and leaves a linear solver nine of the sixteen digits. */
@@ -106,12 +105,14 @@ PetscErrorCode MeshToolsMeasureBolts(Scene scene, Mesh mesh)
 
     if (!tool->bolt) continue;
     for (PetscInt c = 0; c < mesh->n_cells; c++) {
-      PetscReal X[ELEMENT_MAX_NODES * 3];
+      const PetscInt n = mesh->cell_ptr[c + 1] - mesh->cell_ptr[c];
+      PetscReal      X[ELEMENT_MAX_NODES * 3];
 
       if (mesh->cell_body[c] != tool->body) continue;
-      MeshCellCoordinates(mesh, c, X);
+      for (PetscInt a = 0; a < n * mesh->dim; a++)
+        X[a] = mesh->coords[mesh->cell_nodes[mesh->cell_ptr[c] + a / mesh->dim] * mesh->dim + a % mesh->dim];
       volume += CellVolume(mesh->cell_type[c], mesh->dim, scene->geometry, X);
-      for (PetscInt a = 0; a < mesh->cell_ptr[c + 1] - mesh->cell_ptr[c]; a++) {
+      for (PetscInt a = 0; a < n; a++) {
         PetscReal along = 0;
 
         for (int d = 0; d < mesh->dim; d++) along += tool->bolt->axis[d] * X[a * mesh->dim + d];
