@@ -155,6 +155,8 @@ NOT_HERE = {
     "make valgrind":
     ("wants valgrind, which make deps does not install", "bash -n scripts/valgrind.sh && make -n valgrind"),
     "scripts/portability.sh PREFIX": ("wants a second PETSc", "bash -n scripts/portability.sh"),
+    "module use scripts/packaging/modules": ("wants Environment Modules", "test -d scripts/packaging/modules"),
+    "module load burnish": ("wants Environment Modules", "test -f scripts/packaging/modules/burnish/0.1.0"),
     "module load gcc openmpi petsc metis gmsh cmake python":
     ("wants a cluster", "grep -qF 'module load gcc openmpi petsc metis gmsh cmake python' scripts/deps.sh"),
     "spack install petsc+mumps+hdf5+metis gmsh libyaml cjson muparser cmocka cmake":
