@@ -146,7 +146,9 @@ install: all ## installs program, library, pages and examples into PREFIX (defau
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/doc/burnish/doc/pages $(wildcard doc/pages/*.md)
 	for picture in $(wildcard runs/records/*.png runs/records/*/*.png); do \
 	  install -D -m 644 $$picture $(DESTDIR)$(PREFIX)/share/doc/burnish/$$picture || exit 1; done
-	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/scripts $(wildcard scripts/*.py) scripts/requirements.txt
+	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/scripts $(wildcard scripts/*.py) \
+	  scripts/requirements.txt scripts/pyproject.toml
+	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/scripts/burnish $(wildcard scripts/burnish/*.py)
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/scripts/meshfiles $(wildcard scripts/meshfiles/*.py)
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/runs $(wildcard runs/*.yaml)
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/meshes $(wildcard meshes/*.geo meshes/*.step)

@@ -13,7 +13,7 @@ import numpy
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from launch import command, environment, read_steps, read_summary
-from meshview import read_mesh, read_states
+from burnish.meshview import read_mesh, read_states
 
 SCENE, RANKS, OUT = "runs/pipe_pinch.yaml", 2, pathlib.Path("out")
 RUNS = {"facet": ["contact.0.smoother=facet"], "diffuse": ["contact.0.smoother=diffuse"]}  # name -> overrides

@@ -22,12 +22,12 @@ def main():
     mesh = scene.with_suffix(".msh")
     for file in (scene, mesh):
         if file.exists():
-            sys.exit(f"burnish: '{file}' is there already; allowed: a new name, as in -import {args.deck} NEW.yaml")
+            sys.exit(f"burnish: '{file}' is there already; allowed: a new name, as in -import {args.deck} NEW.yaml [B147]")
     try:
         made = DeckScene(Deck(args.deck))
         text = made.text(mesh.name)
     except MeshError as error:
-        sys.exit(f"burnish: '{args.deck}' is not taken: {error}")
+        sys.exit(f"burnish: '{args.deck}' is not taken: {error} [B124]")
     made.mesh.write(mesh)
     scene.write_text(text)
     for line in made.remarks():

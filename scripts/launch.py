@@ -1,82 +1,15 @@
-"""Runs of Burnish for the scripts here: the environment in which mpirun starts, and what a run leaves as Python
-values."""
+"""Runs of Burnish for the scripts here: records of cases and their tables. The package burnish beside this file has what
+any user needs: it starts runs and reads them."""
 import argparse
 import csv
-import functools
-import json
-import os
 import pathlib
-import re
 import shutil
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 
-import numpy
+from burnish.runs import command, environment, read_steps, read_summary  # noqa: F401: other scripts take them from here
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-MPI = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",  # Open MPI 5
-    "OMPI_MCA_mpi_yield_when_idle": "1",
-    "OMPI_MCA_hwloc_base_binding_policy": "none",  # two runs at a time would be bound to the same cores
-    "PRTE_MCA_hwloc_default_binding_policy": "none",
-    "OMP_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-}
-
-
-@functools.cache
-def kernels(burnish):
-    """OPENBLAS_CORETYPE, where the program says that its BLAS has faster kernels for this processor than those it
-    chooses."""
-    try:
-        said = subprocess.run([burnish, "-version"], env={
-            **MPI,
-            **os.environ
-        }, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
-    except OSError:  # the run will say why
-        return {}
-    return dict(re.findall(r"(OPENBLAS_CORETYPE)=(\w+)", said))
-
-
-def environment(burnish):
-    """The caller's, with what several ranks on few cores and the BLAS need where it says nothing."""
-    return {**MPI, **kernels(burnish), **os.environ}
-
-
-def command(burnish, ranks, scene, directory, overrides, *options):
-    """Command line of a run, for subprocess."""
-    line = ["mpirun", "-n", str(ranks), str(burnish), str(scene), "-o", str(directory), *options]
-    for override in overrides:
-        line += ["-set", override]
-    return line
-
-
-def read_summary(directory):
-    return json.loads((pathlib.Path(directory) / "summary.json").read_text())
-
-
-def read_units(directory):
-    """[length, stress] as the scene's key units names them, None without it or before the run has ended."""
-    path = pathlib.Path(directory) / "summary.json"
-    units = read_summary(directory).get("units", {}) if path.exists() else {}
-    return [units["length"], units["stress"]] if units.get("named") else None
-
-
-def read_steps(directory):
-    """Columns of steps.csv, NaN where empty, and texts of the column `during`; {} without an accepted step."""
-    with open(pathlib.Path(directory) / "steps.csv", newline="") as file:
-        rows = list(csv.DictReader(file, skipinitialspace=True))
-    if not rows:
-        return {}
-    return {
-        key: numpy.array([row[key] if key == "during" else float(row[key] or "nan") for row in rows])
-        for key in rows[0]
-    }
-
-
 def table_parser(description, name, record=None):
     """Options of a script that runs cases into a record and prints a table of it; its runs go to out/NAME."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)

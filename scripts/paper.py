@@ -17,7 +17,7 @@ import numpy
 
 import paperpictures
 from launch import command, environment, read_steps, read_summary
-from meshview import read_mesh, read_slave, read_states
+from burnish.meshview import read_mesh, read_slave, read_states
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 NAMES = ("pipe_pinch", "plate_cylinder", "cup_flattening")

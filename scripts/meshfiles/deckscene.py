@@ -66,7 +66,7 @@ class DeckScene:
         for shape, cells in self.mesh.elements.items():
             if SHAPES[shape].dim == self.dim:
                 self._used[cells] = True
-        self.materials, self.sections = {}, []
+        self.materials, self.sections, self.thicknesses = {}, [], set()
         self.interactions, self.pairs, self.amplitudes = {}, [], {}
         self.actions, self._made = {}, {}
         self.nlgeom, self.first, self.period = False, None, 1.0
@@ -134,6 +134,8 @@ class DeckScene:
 
     def _section(self, card):
         part = self.part
+        if self.dim == 2 and not self.axisymmetric and card.lines and card.lines[0][0]:
+            self.thicknesses.add(float(card.lines[0][0]))
         for name in part.sections:
             if name.split(".")[-1].upper() == card.parameters.get("ELSET", "").upper():
                 entry = (name, card.parameters.get("MATERIAL", "").upper())
@@ -338,14 +340,10 @@ class DeckScene:
         if cards is None:
             raise MeshError(f"*SOLID SECTION: there is no material '{name}'")
         if "HYPERELASTIC" in cards:
-            if self.plane_stress:
-                self.missing.append("plane stress of rubber: the scene has plane strain")
             return self._rubber(*cards["HYPERELASTIC"])
         if "ELASTIC" not in cards:
             raise MeshError(f"material '{name}' has neither *ELASTIC nor *HYPERELASTIC")
         young, nu = cards["ELASTIC"][1][0][:2]
-        if self.plane_stress:
-            young, nu = self._as_plane_strain(young, nu, cards)
         if "PLASTIC" in cards:
             card, rows = cards["PLASTIC"]
             if card.parameters.get("HARDENING", "ISOTROPIC").upper() != "ISOTROPIC":
@@ -357,14 +355,20 @@ class DeckScene:
             return f"{{law: von_mises, E: {number(young)}, nu: {number(nu)}, hardening: {{table: [{pairs}]}}}}"
         return f"{{law: {'svk' if self.nlgeom else 'linear'}, E: {number(young)}, nu: {number(nu)}}}"
 
-    def _as_plane_strain(self, young, nu, cards):
-        """Constants that give in plane strain the stresses that these give in plane stress."""
-        if "PLASTIC" in cards:
-            self.missing.append("plane stress of plastic bodies: the scene has plane strain")
-            return young, nu
-        self.changed.append("plane stress (CPS elements): plane strain with constants that give the same stresses in "
-                            "the plane; stress_zz and von Mises stress are not those of plane stress")
-        return young * (1 + 2 * nu) / (1 + nu)**2, nu / (1 + nu)
+    def _geometry(self, laws):
+        """The geometry of the scene. Laws that flow or keep their volume exactly have no plane stress there."""
+        if self.dim == 3 or self.axisymmetric:
+            return "solid" if self.dim == 3 else "axisymmetric"
+        if self.plane_stress and any("von_mises" in law or "incompressible" in law for law in laws):
+            self.missing.append("plane stress of plastic and of incompressible bodies: the scene has plane strain")
+            return "plane_strain"
+        return "plane_stress" if self.plane_stress else "plane_strain"
+
+    def _thickness(self):
+        """The line with the thickness, which a scene has once."""
+        if len(self.thicknesses) > 1:
+            self.missing.append("*SOLID SECTION: bodies of different thickness; the scene has the largest one")
+        return [f"thickness: {number(max(self.thicknesses))}\n"] if self.thicknesses else []
 
     def _rubber(self, card, values):
         """Constants of Abaqus: W of the isochoric strains plus (J - 1)^2 / D1."""
@@ -511,12 +515,11 @@ class DeckScene:
         """The scene as YAML."""
         if not self.sections:
             raise MeshError("the deck has no *SOLID SECTION, so that no body has a material")
-        geometry = "solid" if self.dim == 3 else "axisymmetric" if self.axisymmetric else "plane_strain"
+        bodies = [(body, self._law(material)) for body, material in self.sections if self._has_cells(body)]
         supports, loads = self._loads()
-        lines = [f"mesh: {{file: {mesh_file}}}\n", f"geometry: {geometry}\n",
-                  f"kinematics: {'finite' if self.nlgeom else 'small'}\n", "bodies:\n"]
-        lines += [f"  - {{volume: {name_of(body)}, material: {self._law(material)}{self._formulation(body)}}}\n"
-                  for body, material in self.sections if self._has_cells(body)]
+        lines = [f"mesh: {{file: {mesh_file}}}\n", f"geometry: {self._geometry([law for _, law in bodies])}\n",
+                  *self._thickness(), f"kinematics: {'finite' if self.nlgeom else 'small'}\n", "bodies:\n"]
+        lines += [f"  - {{volume: {name_of(body)}, material: {law}{self._formulation(body)}}}\n" for body, law in bodies]
         for title, part in (("supports", supports), ("loads", loads)):
             lines += [f"{title}:\n", *part] if part else []
         if self.pairs:

@@ -97,11 +97,16 @@ static const Explanation Input[] = {
    "`Mesh.SecondOrderIncomplete=0`. `mesh.order` is that of the file."},
   {"B124",
    {"' is not taken: "},
-   "a mesh or CAD file of another program is not taken",
+   "a mesh, a deck or a CAD file of another program is not taken",
    "The file is broken, holds no solids, has no surface at the point or of the name that the scene gives, or cannot be "
    "meshed. The message says which.",
    "Do what the message allows. The option `--list` of the script convert_mesh.py prints names and centres of "
    "surfaces."},
+  {"B147",
+   {"is there already; allowed: a new name"},
+   "an import finds its scene or mesh there already",
+   "A file of the name that -import would write exists. It is not replaced, as it may have been edited.",
+   "Name a new scene, `burnish -import DECK.inp NEW.yaml`, or move the old files away."},
   {"B105",
    {"the mesh has no", "has no volume group", "has no cells of a volume group", "is needed: "},
    "the mesh has no group of this name",

@@ -126,6 +126,55 @@ static void GetNodes(Elasticity e, const CellGroup *g, PetscInt c, PetscInt node
   }
 }
 
+/* Lists the nodes to which a cell is coupled: its own, and that of the bolt of which it is part. Returns how many. */
+static int CoupledNodes(Elasticity e, PetscInt c, PetscInt nodes[ELEMENT_MAX_NODES + 1])
+{
+  const CellGroup *g    = &e->groups[e->cell_group[c]];
+  const PetscInt   bolt = g->bolt ? g->bolt[e->cell_slot[c]] : -1;
+
+  GetNodes(e, g, c, nodes);
+  if (bolt >= 0) nodes[g->nodes] = bolt;
+  return g->nodes + (bolt >= 0);
+}
+
+/* The bolt that is body number `body` of the scene, or NULL. */
+static const MeshTool *FindBolt(Mesh mesh, int body)
+{
+  for (int k = 0; k < mesh->n_tools; k++)
+    if (mesh->tools[k].bolt && mesh->tools[k].body == body) return &mesh->tools[k];
+  return NULL;
+}
+
+/* Notes what the shortening of a bolt does to its cells: the displacement along the axis grows from one end to the
+   other by the shortening, so that the strain grows by shortening over length. The work of the cells' stresses on it is
+   the mean of the tension times the shortening. */
+static PetscErrorCode SetBolts(Elasticity e, CellGroup *g)
+{
+  const Mesh   mesh  = e->mesh;
+  const size_t lanes = (size_t)g->n_batches * KERNEL_LANES;
+  PetscBool    any   = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (size_t s = 0; s < lanes; s++) any = (PetscBool)(any || FindBolt(mesh, mesh->cell_body[g->cell[s]]));
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(lanes * g->nodes * e->dim, &g->pull, lanes, &g->bolt));
+  for (size_t s = 0; s < lanes; s++) {
+    const MeshTool *bolt  = FindBolt(mesh, mesh->cell_body[g->cell[s]]);
+    const size_t    batch = s / KERNEL_LANES, lane = s % KERNEL_LANES;
+
+    g->bolt[s] = bolt ? bolt->node : -1;
+    for (int a = 0; bolt && a < ElementGet(g->kernel.type)->nodes; a++) {
+      const size_t first = (batch * g->nodes + a) * e->dim;
+      PetscReal    along = 0;
+
+      for (int i = 0; i < e->dim; i++) along += bolt->bolt->axis[i] * g->X[(first + i) * KERNEL_LANES + lane];
+      for (int i = 0; i < e->dim; i++)
+        g->pull[(first + i) * KERNEL_LANES + lane] = bolt->bolt->axis[i] * along / bolt->length;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Fills a slot of a group with a cell. The last cell also fills the rest of its batch. */
 static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, PetscInt c)
 {
@@ -157,19 +206,22 @@ static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, Pets
 static PetscErrorCode NodeCells(Elasticity e, PetscInt **ptr, PetscInt **cells)
 {
   const Mesh mesh = e->mesh;
-  PetscInt   nodes[ELEMENT_MAX_NODES], *p, *list;
+  PetscInt   nodes[ELEMENT_MAX_NODES + 1], *p, *list;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_nodes + 2, &p));
-  PetscCall(PetscMalloc1((mesh->has_pressures ? 2 : 1) * (mesh->n_cells ? mesh->cell_ptr[mesh->n_cells] : 0), &list));
+  PetscCall(PetscMalloc1(
+    (mesh->has_pressures ? 2 : 1) * (mesh->n_cells ? mesh->cell_ptr[mesh->n_cells] : 0) + mesh->n_cells, &list));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    GetNodes(e, &e->groups[e->cell_group[c]], c, nodes);
-    for (int k = 0; k < e->groups[e->cell_group[c]].nodes; k++) p[nodes[k] + 2]++;
+    const int n = CoupledNodes(e, c, nodes);
+
+    for (int k = 0; k < n; k++) p[nodes[k] + 2]++;
   }
   for (PetscInt n = 0; n < mesh->n_nodes; n++) p[n + 2] += p[n + 1];
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    GetNodes(e, &e->groups[e->cell_group[c]], c, nodes);
-    for (int k = 0; k < e->groups[e->cell_group[c]].nodes; k++) list[p[nodes[k] + 1]++] = c;
+    const int n = CoupledNodes(e, c, nodes);
+
+    for (int k = 0; k < n; k++) list[p[nodes[k] + 1]++] = c;
   }
   *ptr   = p;
   *cells = list;
@@ -185,15 +237,17 @@ static PetscErrorCode NodeNeighbours(Elasticity e, PetscInt node, const PetscInt
 
   PetscFunctionBeginUser;
   *count = 0;
-  for (int k = 0; k < mesh->n_tools && node >= mesh->n_body_nodes; k++) /* of a tool, which has no cells */
+  for (int k = 0; k < mesh->n_tools && node >= mesh->n_body_nodes; k++) /* of a tool, which may have no cells */
     for (PetscInt n = mesh->tools[k].node; n < mesh->tools[k].node + TOOL_NODES; n++)
-      if (node >= mesh->tools[k].node && node < mesh->tools[k].node + TOOL_NODES) neighbours[(*count)++] = n;
+      if (node >= mesh->tools[k].node && node < mesh->tools[k].node + TOOL_NODES) {
+        mark[n]                = node;
+        neighbours[(*count)++] = n;
+      }
   for (PetscInt k = ptr[node]; k < ptr[node + 1]; k++) {
-    const CellGroup *g = &e->groups[e->cell_group[cells[k]]];
-    PetscInt         nodes[ELEMENT_MAX_NODES];
+    PetscInt  nodes[ELEMENT_MAX_NODES + 1];
+    const int n_coupled = CoupledNodes(e, cells[k], nodes);
 
-    GetNodes(e, g, cells[k], nodes);
-    for (int m = 0; m < g->nodes; m++) {
+    for (int m = 0; m < n_coupled; m++) {
       const PetscInt n = nodes[m];
 
       if (mark[n] == node) continue;
@@ -376,6 +430,7 @@ PetscErrorCode ElasticityCreate(Mesh mesh, Scene scene, Elasticity *elasticity)
   PetscCall(SetLength(e));
   for (int g = 0; g < e->n_groups; g++) PetscCall(AllocateGroup(&e->groups[g], e->dim));
   for (PetscInt c = 0; c < mesh->n_cells; c++) SetCell(e, scene, &e->groups[e->cell_group[c]], e->cell_slot[c], c);
+  for (int g = 0; g < e->n_groups; g++) PetscCall(SetBolts(e, &e->groups[g]));
   PetscCall(CreateBlocks(e));
   PetscCall(CreateBuffers(e));
   PetscCall(ElasticityCreateVolumes(e, scene));
@@ -403,6 +458,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   for (int g = 0; g < e->n_groups; g++) {
     PetscCall(PetscFree3(e->groups[g].cell, e->groups[g].node, e->groups[g].block));
     PetscCall(PetscFree2(e->groups[g].X, e->groups[g].constants));
+    PetscCall(PetscFree2(e->groups[g].pull, e->groups[g].bolt));
     PetscCall(PetscFree(e->groups[g].state));
     PetscCall(PetscFree(e->groups[g].flow));
     PetscCall(PetscFree(e->groups[g].length));
@@ -476,6 +532,15 @@ void ElasticityGather(Elasticity e, CellGroup *g, PetscInt batch, const PetscRea
         gathered[(a * e->dim + i) * KERNEL_LANES + lane] = u[node[a * KERNEL_LANES + lane] * e->dim + i];
     }
   }
+  for (int k = 0; g->pull && k < g->nodes * e->dim; k++) {
+    for (int lane = 0; lane < KERNEL_LANES; lane++) {
+      const PetscInt bolt = g->bolt[(size_t)batch * KERNEL_LANES + lane];
+
+      if (bolt >= 0)
+        gathered[k * KERNEL_LANES + lane] +=
+          u[bolt * e->dim] * g->pull[((size_t)batch * g->nodes * e->dim + k) * KERNEL_LANES + lane];
+    }
+  }
   SelectState(e, g, batch, 0);
 }
 
@@ -546,6 +611,13 @@ static void ScatterForce(Elasticity e, const CellGroup *g, PetscInt batch, Petsc
     }
   }
   if (force2) *force2 += sum;
+  for (int lane = 0; g->pull && f && lane < count; lane++) {
+    const PetscInt bolt = g->bolt[(size_t)batch * KERNEL_LANES + lane];
+
+    for (int k = 0; k < g->nodes * e->dim && bolt >= 0; k++)
+      f[bolt * e->dim] +=
+        g->pull[((size_t)batch * g->nodes * e->dim + k) * KERNEL_LANES + lane] * e->f[k * KERNEL_LANES + lane];
+  }
 }
 
 /*@
@@ -634,6 +706,35 @@ static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, c
   }
 }
 
+/* Adds the couplings of the cells of bolts in a batch with the shortening of their bolts. */
+static PetscErrorCode AddBolts(Elasticity e, const CellGroup *g, PetscInt batch)
+{
+  const int dim = e->dim, dofs = g->nodes * dim, width = dofs + dim;
+  PetscReal ke[(MAX_DOFS + 3) * (MAX_DOFS + 3)];
+  PetscInt  nodes[ELEMENT_MAX_NODES + 1];
+
+  PetscFunctionBeginUser;
+  for (int lane = 0; lane < ElasticityBatchCells(g, batch); lane++) {
+    const size_t     slot = (size_t)batch * KERNEL_LANES + lane;
+    const PetscReal *pull = &g->pull[(size_t)batch * dofs * KERNEL_LANES + lane];
+
+    if (g->bolt[slot] < 0) continue;
+    (void)CoupledNodes(e, g->cell[slot], nodes);
+    PetscCall(PetscArrayzero(ke, width * width));
+    for (int i = 0; i < dofs; i++) {
+      for (int j = 0; j < dofs; j++) {
+        const PetscReal k = e->K[((size_t)i * dofs + j) * KERNEL_LANES + lane];
+
+        ke[i * width + dofs] += k * pull[j * KERNEL_LANES];
+        ke[dofs * width + j] += pull[i * KERNEL_LANES] * k;
+        ke[dofs * width + dofs] += pull[i * KERNEL_LANES] * k * pull[j * KERNEL_LANES];
+      }
+    }
+    PetscCall(ElasticityAddBlock(e, g->nodes + 1, nodes, ke));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ElasticityTangent - assembles the tangent of this rank's cells into the local block CSR, which is zeroed first.
 
@@ -672,6 +773,7 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const StressR
         ScatterTangent(e, g, batch, 3, KERNEL_LANES);
       else
         ScatterTangent(e, g, batch, 2, KERNEL_LANES);
+      if (g->pull) PetscCall(AddBolts(e, g, batch));
     }
   }
   PetscCall(PetscLogEventEnd(event_tangent, 0, 0, 0, 0));
@@ -706,7 +808,7 @@ PetscErrorCode ElasticityExtrapolates(Elasticity e, PetscBool *any)
   Input Parameters:
 + e     - the elasticity
 . n     - number of nodes
-. nodes - local nodes, all of one local cell
+. nodes - local nodes, all of one local cell or of the bolt of which it is part
 - k     - [n*dim][n*dim], row-major, dofs node by node
 
   Note:
@@ -972,6 +1074,9 @@ void ElasticityGatherCell(Elasticity e, CellGroup *g, PetscInt slot, const Petsc
     for (int i = 0; i < e->dim; i++) {
       X[a * e->dim + i]      = g->X[((batch * g->nodes + a) * e->dim + i) * KERNEL_LANES + lane];
       cell_u[a * e->dim + i] = u[nodes[a] * e->dim + i];
+      if (g->pull && g->bolt[slot] >= 0)
+        cell_u[a * e->dim + i] +=
+          u[g->bolt[slot] * e->dim] * g->pull[((batch * g->nodes + a) * e->dim + i) * KERNEL_LANES + lane];
     }
   }
   for (int k = 0; k < g->kernel.n_constants; k++)

@@ -176,7 +176,8 @@ static PetscErrorCode FindSupported(FreeModes modes, Loads loads)
     MPI_Allreduce(MPI_IN_PLACE, gram, (PetscMPIInt)(modes->n_pieces * square), MPI_DOUBLE, MPI_SUM, mesh->comm));
   for (PetscInt p = 0; p < modes->n_pieces; p++)
     for (int c = 0; c < MOTION_COMPONENTS && modes->pieces[p].tool; c++)
-      if (!modes->pieces[p].tool->motion->free[c]) gram[p * square + (c + 3) % 6 * (RIGID_MODES + 1)] = 1;
+      if (modes->pieces[p].tool->bolt || !modes->pieces[p].tool->motion->free[c])
+        gram[p * square + (c + 3) % 6 * (RIGID_MODES + 1)] = 1;
   PetscCall(ColumnOrder(1, columns));
   for (PetscInt p = 0; p < modes->n_pieces; p++) {
     HoldImpossible(modes->scene->geometry, &gram[p * square]);
@@ -660,7 +661,7 @@ PetscErrorCode FreeModesRefuse(FreeModes modes)
     }
   }
   for (PetscInt p = 0; p < modes->n_pieces; p++)
-    if (modes->pieces[p].tool && !modes->pieces[p].paired)
+    if (modes->pieces[p].tool && modes->pieces[p].n_free && !modes->pieces[p].paired)
       PetscCall(
         RefuseInput(modes->mesh->comm,
                     "%s: the tool '%s' is free to move, but no contact pair knows it; allowed: a free tool that "

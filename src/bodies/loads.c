@@ -661,6 +661,7 @@ PetscErrorCode LoadsTangent(Loads loads, PetscReal t, const PetscReal *u, Elasti
 
   PetscFunctionBeginUser;
   PetscCall(FoundationTangent(loads->foundation, t, elasticity));
+  PetscCall(ToolsTangent(loads->mesh, t, elasticity));
   if (!loads->n_follower) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LoadsMove(loads, t));
   PetscCall(PetscLogEventBegin(loads->event_follower, 0, 0, 0, 0));

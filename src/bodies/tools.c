@@ -43,8 +43,27 @@ const MeshTool *ToolOfPair(Mesh mesh, Scene scene, int contact)
     const MeshTool *tool = &mesh->tools[k];
 
     if (tool->contact == contact) return tool;
-    if (tool->body >= 0 && master && !strcmp(master, tool->name)) return tool;
+    if (tool->body >= 0 && !tool->bolt && master && !strcmp(master, tool->name)) return tool;
   }
+  return NULL;
+}
+
+/*@
+  ToolOfBolt - finds the unknown of a body that is tightened as a bolt.
+
+  Not collective
+
+  Input Parameters:
++ mesh - the mesh
+- body - name of the body
+
+  Note:
+  It returns NULL where the body is no bolt.
+@*/
+const MeshTool *ToolOfBolt(Mesh mesh, const char *body)
+{
+  for (int k = 0; k < mesh->n_tools; k++)
+    if (mesh->tools[k].bolt && !strcmp(mesh->tools[k].name, body)) return &mesh->tools[k];
   return NULL;
 }
 
@@ -248,6 +267,14 @@ void ToolsResidual(Mesh mesh, PetscReal t, const PetscReal *u, PetscReal *f, Pet
   for (int k = 0; k < mesh->n_tools && !rank; k++) {
     const MeshTool *tool = &mesh->tools[k];
 
+    if (tool->bolt && t > tool->bolt->locked) {
+      const PetscReal way = u[tool->node * mesh->dim] - tool->motion->accepted.value[0];
+
+      if (f) f[tool->node * mesh->dim] += tool->stiffness * way;
+      if (energy) *energy += tool->stiffness * way * way / 2;
+      if (force2) *force2 += PetscSqr(tool->stiffness * way);
+      continue;
+    }
     for (int c = 0; c < MOTION_COMPONENTS; c++) {
       const PetscInt  dof   = tool->node * mesh->dim + ToolDof(mesh, c);
       const PetscReal force = tool->motion->free[c] ? MotionForce(tool->motion, t, c) / (c < 3 ? 1 : tool->arm) : 0;
@@ -258,4 +285,29 @@ void ToolsResidual(Mesh mesh, PetscReal t, const PetscReal *u, PetscReal *f, Pet
       if (force2) *force2 += PetscSqr(force);
     }
   }
+}
+
+/*@
+  ToolsTangent - adds the stiffness of what keeps the length of bolts to the local block CSR of the elasticity.
+
+  Not collective
+
+  Input Parameters:
++ mesh       - the mesh
+. t          - load parameter
+- elasticity - after ElasticityTangent()
+@*/
+PetscErrorCode ToolsTangent(Mesh mesh, PetscReal t, Elasticity elasticity)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  for (int k = 0; k < mesh->n_tools && !rank; k++) {
+    const MeshTool *tool  = &mesh->tools[k];
+    PetscReal       ke[9] = {tool->stiffness};
+
+    if (tool->bolt && t > tool->bolt->locked) PetscCall(ElasticityAddBlock(elasticity, 1, &tool->node, ke));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -143,7 +143,7 @@ static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, in
 /* Can the two sides have met in the step? The same on all ranks. */
 static PetscBool SidesMeet(const CertifiedPair *pair, PetscReal overlap)
 {
-  const MPI_Comm comm = pair->side[0]->surface->mesh->comm;
+  const MPI_Comm comm  = pair->side[0]->surface->mesh->comm;
   PetscReal      reach = overlap;
   Box            box[2], image;
 
@@ -203,6 +203,14 @@ static PetscErrorCode FindPressed(Certificate certificate, const CertifiedPair *
   }
   *overlap = PetscMax(*overlap, other);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether a pair is wholly there at t. Else its surfaces may pass through each other. */
+static PetscBool IsThere(const CertifiedPair *pair, PetscReal t)
+{
+  const History *presence = &pair->of.scene->presence;
+
+  return (PetscBool)(!presence->n || HistoryValue(presence, t) == 1);
 }
 
 /* Judges one pair on this rank. */
@@ -312,6 +320,7 @@ PetscErrorCode CertificateCheck(Certificate certificate, const PetscReal *u_0, P
   for (int k = 0; k < certificate->n; k++) {
     Finding here = {.kind = FINDING_NONE};
 
+    if (!IsThere(&certificate->pairs[k], t_0) || !IsThere(&certificate->pairs[k], t)) continue;
     PetscCall(JudgePair(certificate, &certificate->pairs[k], states, ts, &here));
     if (TakeFinding(&here, &worst) || pair < 0) pair = certificate->pairs[k].pair;
   }

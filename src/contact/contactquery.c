@@ -89,6 +89,7 @@ PetscErrorCode ContactPairPressing(const ContactPair *pair, ContactPressing *pre
   count[1] = FindDeepest(pair, pair->n_nodes, pair->n, &most[2]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, pair->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 4, MPIU_REAL, MPI_MAX, pair->mesh->comm));
+  if (ContactPairPresence(pair, pair->t) < 1) PetscCall(PetscArrayzero(most, 4)); /* what comes or goes is no error */
   faces = (PetscBool)(!count[0] && count[1]);
   *pressing =
     (ContactPressing){.n = count[faces], .faces = faces, .depth = most[2 * faces], .over_h = most[2 * faces + 1]};

@@ -5,6 +5,13 @@
 /* Two surfaces that are apart by no more than this fraction of the face size touch, whatever their curvature. */
 #define CONTACT_TOUCH 1e-6
 
+/* Penalties over the stiffness of the bodies, about, by which a pair fades. The automatic penalty is at most this many
+   times the stiffness of elements. Another figure moves where in the step the force falls, and nothing else. */
+#define PRESENCE_STIFF 100
+/* Least factor on a penalty. The forces of pairs that are away are 0; their penalty is only kept from being 0, because
+   linear steps divide by it. */
+#define PRESENCE_LEAST 1e-9
+
 /*@
   ContactTermAddedOverlap - returns the overlap that the scene adds at a term to that of the meshes (length).
 
@@ -181,6 +188,27 @@ PetscReal ContactMeanOpening(const ContactPair *pair, PetscInt c)
 }
 
 /*@
+  ContactPairPresence - returns the part of a pair that is there, from 0 (away) to 1.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+- t    - load parameter
+@*/
+PetscReal ContactPairPresence(const ContactPair *pair, PetscReal t)
+{
+  return pair->scene->presence.n ? HistoryValue(&pair->scene->presence, t) : 1;
+}
+
+/* Factor on the penalties of a pair of which a part p is there. The pair is a spring in series with its bodies. Its
+   stiffness then is p / (1 - p) times theirs, so that its force falls evenly with p where the bodies do not follow. */
+static PetscReal PresenceFactor(PetscReal p)
+{
+  return PetscMax(p / (p + (1 - p) * PRESENCE_STIFF), PRESENCE_LEAST);
+}
+
+/*@
   ContactTermState - builds what the law is to know of a term. Nobody else builds a LawState.
 
   Not collective
@@ -194,7 +222,9 @@ PetscReal ContactMeanOpening(const ContactPair *pair, PetscInt c)
 @*/
 LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t, PetscReal most)
 {
-  return (LawState){.penalty    = PetscMin(most, ContactTermPenalty(pair, c, pair->now.penalty[c])),
+  const PetscReal part = PresenceFactor(ContactPairPresence(pair, t));
+
+  return (LawState){.penalty    = part * PetscMin(most, ContactTermPenalty(pair, c, pair->now.penalty[c])),
                     .offset     = ContactTermOffset(pair, c, t),
                     .multiplier = pair->now.multiplier[c] - (pair->carried ? pair->carried[c] : 0)};
 }
@@ -237,7 +267,7 @@ void ContactTermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *
 
   *value = (LawValue){0, 0, 0};
   if (gap) *gap = found;
-  if (PetscIsNanReal(found)) return;
+  if (PetscIsNanReal(found) || ContactPairPresence(pair, t) == 0) return;
   pair->law->evaluate(found, &state, value);
   if (pair->holding && value->stiffness == 0) TermHold(pair, c, &state, found, value);
 }

@@ -176,7 +176,7 @@ PetscErrorCode ContactLocateLost(Contact contact, PetscBool *lost, char *text, s
   for (int p = 0; p < contact->n_pairs; p++) {
     const ContactLost *here = &contact->pairs[p].lost;
 
-    if (here->depth <= worst[0]) continue;
+    if (here->depth <= worst[0] || ContactPairPresence(&contact->pairs[p], contact->pairs[p].t) < 1) continue;
     worst[0] = here->depth;
     worst[1] = here->gap;
     worst[2] = here->size;

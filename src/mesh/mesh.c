@@ -156,6 +156,7 @@ static PetscErrorCode MeshBuild(Scene scene, const char *file, RootMesh *root, M
   PetscCall(MeshToolsList(scene, mesh));
   PetscCall(PressureNodesExist(scene, root, mesh));
   PetscCall(MeshDistribute(root, mesh));
+  PetscCall(MeshToolsMeasureBolts(scene, mesh));
   PetscCall(FreeAllDofs(mesh));
   PetscCall(DMSetOptionsPrefix(mesh->dm, "mesh_"));
   PetscCall(PetscObjectSetName((PetscObject)mesh->dm, "mesh"));

@@ -53,7 +53,11 @@ typedef struct {
   Motion     *motion;
   int         body, contact; /* in the scene; the other one is -1 */
   PetscInt    node;          /* the first of its nodes */
-  PetscReal   arm;           /* length by which rotations count as displacements */
+  /* A body that is tightened as a bolt has such nodes too; the first dof is the shortening of its unloaded length. */
+  const SceneBody *bolt;      /* NULL: a rigid tool */
+  PetscReal        length;    /* of the bolt: extent along its axis */
+  PetscReal        stiffness; /* of what keeps its length (force per length) */
+  PetscReal        arm;       /* length by which rotations count as displacements */
 } MeshTool;
 
 typedef struct {
@@ -94,4 +98,4 @@ typedef struct {
   PetscSF    node_sf;     /* from ghost nodes to their owners' nodes */
   PetscInt  *global_dofs; /* NULL until MeshSetConstraints() */
   PetscReal *work;        /* n_nodes*dim */
-} *Mesh;
+} * Mesh;

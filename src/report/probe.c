@@ -316,6 +316,22 @@ static PetscErrorCode EvaluateToolRotation(Probes probes, Probe *probe, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode EvaluateBoltForce(Probes probes, Probe *probe, PetscReal *value)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ProblemBoltForce(probes->model->problem, probe->scene->target, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateBoltShortening(Probes probes, Probe *probe, PetscReal *value)
+{
+  const MeshTool *bolt = ToolOfBolt(probes->model->mesh, probe->scene->target);
+
+  PetscFunctionBeginUser;
+  *value = probes->model->u[bolt->node * probes->model->mesh->dim];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode EvaluateDisplacement(Probes probes, Probe *probe, PetscReal *value)
 {
   const Model model = probes->model;
@@ -570,6 +586,8 @@ static const ProbeType types[PROBE_KINDS] = {
   [PROBE_ELASTIC_SLIP]       = {"elastic_slip", NAMES_PAIR, 0, NULL, EvaluateFriction},
   [PROBE_TOOL_MOTION]        = {"tool_motion", NAMES_PAIR, 0, NULL, EvaluateToolMotion},
   [PROBE_TOOL_ROTATION]      = {"tool_rotation", NAMES_PAIR, 0, NULL, EvaluateToolRotation},
+  [PROBE_BOLT_FORCE]         = {"bolt_force", NAMES_NOTHING, 0, NULL, EvaluateBoltForce},
+  [PROBE_BOLT_SHORTENING]    = {"bolt_shortening", NAMES_NOTHING, 0, NULL, EvaluateBoltShortening},
   [PROBE_FLUID_FRONT]        = {"fluid_front", NAMES_SURFACE, 0, NULL, EvaluateFluidFront},
   [PROBE_FLUID_AREA]         = {"fluid_area", NAMES_SURFACE, 0, NULL, EvaluateFluidArea},
   [PROBE_SEAL_PRESSURE]      = {"seal_pressure", NAMES_SURFACE, 0, NULL, EvaluateSealPressure},

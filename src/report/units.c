@@ -87,6 +87,7 @@ void UnitsProbe(Scene scene, const SceneProbe *probe, char text[UNITS_TEXT])
   PerThickness(scene, per);
   switch (probe->kind) {
   case PROBE_REACTION:
+  case PROBE_BOLT_FORCE:
   case PROBE_CONTACT_FORCE:
   case PROBE_FRICTION_FORCE: snprintf(text, UNITS_TEXT, "%.60s%.70s", UnitsForce(scene), per); break;
   case PROBE_FRICTION_TORQUE:

@@ -90,6 +90,9 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
                           NULL));
   if (!SceneHas(scene, body->path, body->rigid ? "rigid" : "material"))
     PetscCall(SceneRefuse(scene, body->path, body->rigid ? "rigid" : "material", Needs, "is missing; allowed:"));
+  if (body->rigid && SceneHas(scene, body->path, "pretension"))
+    PetscCall(
+      SceneRefuse(scene, body->path, "pretension", "tightens a body that can stretch; allowed: with a volume", NULL));
   if (SceneHas(scene, body->path, body->rigid ? "material" : "rigid"))
     PetscCall(SceneRefuse(scene, body->path, body->rigid ? "material" : "rigid", Needs, "has no place here; allowed:"));
   PetscCall(SceneReadText(scene, body->path, body->rigid ? "surface" : "volume", &body->name));
@@ -106,6 +109,7 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
   PetscCall(SceneCheckRoutine(scene, body));
   PetscCall(SceneReadFormulation(scene, body));
   PetscCall(SceneCheckIncompressible(scene, body));
+  PetscCall(SceneReadPretension(scene, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

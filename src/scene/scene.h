@@ -40,7 +40,11 @@ typedef struct {
   int locks;
   int enclosed;  /* 1 if its volume is kept exactly and no free displacement changes it; EnclosedBodiesFind() sets it */
   int condensed; /* as in a KernelCase; PressureNodesExist() and EnclosedBodiesFind() set it */
-  Motion motion; /* of a rigid tool */
+  /* Of a rigid tool. Of a bolt that is tightened the component 0 is free: the shortening of its unloaded length. */
+  Motion motion;
+  int    bolt;    /* 1 if the body is a bolt that is tightened */
+  double axis[3]; /* of the bolt: a unit vector */
+  double locked;  /* of the bolt: load parameter from which its length is kept; above 1: it never is */
 } SceneBody;
 
 typedef struct {
@@ -131,6 +135,9 @@ typedef struct {
   /* With augment, pressures become multipliers until all penetrations are within g_max, at most max_updates times in a
      step. */
   int augment, max_updates;
+  /* Part of the pair that is there over the load parameter: 0 away, 1 there; between them it fades. With n = 0 it is
+     always there. */
+  History presence;
 } SceneContact;
 
 typedef enum {
@@ -144,6 +151,8 @@ typedef enum {
   PROBE_PRESSURE_MEAN,
   PROBE_TOOL_MOTION,
   PROBE_TOOL_ROTATION,
+  PROBE_BOLT_FORCE, /* the target is the body of a bolt, of the next one too */
+  PROBE_BOLT_SHORTENING,
   PROBE_PRESSURE_DEVIATION,
   PROBE_FRICTION_FORCE, /* from here on the target is a pair with friction */
   PROBE_FRICTION_TORQUE,

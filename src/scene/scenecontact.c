@@ -208,6 +208,27 @@ static PetscErrorCode SceneReadSides(Scene scene, const SurfacePair *pair, int a
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads when the pair is there. Its penalty is then not chosen by the run, which would take its fading for softness. */
+static PetscErrorCode SceneReadPresence(Scene scene, SceneContact *contact)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SceneReadFactors(scene, contact->path, "history", &contact->presence));
+  if (!contact->presence.n) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int i = 0; i < contact->presence.n; i++)
+    if (contact->presence.v[i] < 0 || contact->presence.v[i] > 1)
+      PetscCall(
+        SceneRefuse(scene, contact->path, "history", "is a part of the pair; allowed: factors from 0 to 1", NULL));
+  if (contact->adjust || contact->augment)
+    PetscCall(
+      SceneRefuse(scene, contact->path, contact->adjust ? "penalty.adjust" : "penalty.augment",
+                  "follows the penetration, which grows while the pair comes and goes; allowed: a fixed penalty, "
+                  "or a pair that is always there",
+                  NULL));
+  if (contact->penalty_may_stiffen) contact->penalty_scale = SCENE_PRESENCE_SCALE;
+  contact->penalty_may_stiffen = contact->stick_may_stiffen = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
 {
   Node symmetry = SceneNode(scene, contact->path, "symmetry");
@@ -233,6 +254,7 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->feature_angle = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
   PetscCall(SceneReadPenalty(scene, contact));
   PetscCall(SceneReadFriction(scene, contact));
+  PetscCall(SceneReadPresence(scene, contact));
   contact->find_symmetry = !symmetry;
   contact->n_symmetry    = symmetry ? symmetry->n : 0;
   PetscCall(PetscCalloc1(contact->n_symmetry, &contact->symmetry));
@@ -286,6 +308,7 @@ PetscErrorCode SceneDestroyContacts(Scene scene)
     for (int k = 0; k < contact->n_symmetry; k++) PetscCall(PetscFree(contact->symmetry[k]));
     PetscCall(ExpressionDestroy(&contact->overlap_expression));
     PetscCall(ExpressionDestroy(&contact->mu_expression));
+    PetscCall(PetscFree2(contact->presence.t, contact->presence.v));
     PetscCall(PetscFree2(contact->mu_history.t, contact->mu_history.v));
     PetscCall(PetscFree2(contact->mu_pressure.t, contact->mu_pressure.v));
     PetscCall(PetscFree(contact->symmetry));

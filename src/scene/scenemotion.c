@@ -132,6 +132,70 @@ static PetscErrorCode SceneReadForces(Scene scene, const char *tool, Motion *mot
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads the direction of a bolt. */
+static PetscErrorCode SceneReadAxis(Scene scene, const char *path, SceneBody *body)
+{
+  double square = 0;
+
+  PetscFunctionBeginUser;
+  (void)SceneReals(scene, path, "axis", body->axis);
+  for (int d = 0; d < 3; d++) square += body->axis[d] * body->axis[d];
+  if (!(square > 0))
+    PetscCall(SceneRefuse(scene, path, "axis", "has no direction; allowed: a vector other than 0", NULL));
+  for (int d = 0; d < 3; d++) body->axis[d] /= sqrt(square);
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC && body->axis[0] != 0)
+    PetscCall(SceneRefuse(scene, path, "axis", "would break the symmetry about the axis; allowed: [0, 1]", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads from when on a bolt keeps its length. */
+static PetscErrorCode SceneReadLocked(Scene scene, const char *path, SceneBody *body)
+{
+  const Node node = SceneNode(scene, path, "locked");
+
+  PetscFunctionBeginUser;
+  body->locked = 2;
+  if (!node) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int i = 0; !NodeReal(node, &body->locked) && i < scene->stepping.n_steps; i++)
+    if (!strcmp(scene->stepping.steps[i].name, node->text)) body->locked = scene->stepping.steps[i].begin;
+  if (body->locked < 0 || body->locked > 1)
+    PetscCall(SceneRefuse(scene, path, "locked",
+                          "is no step and no load parameter; allowed: a number from 0 to 1, or a name under "
+                          "stepping.steps",
+                          node->text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SceneReadPretension - reads how a body is tightened as a bolt.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+- body  - a deformable body; those of its fields that describe a bolt are set
+@*/
+PetscErrorCode SceneReadPretension(Scene scene, SceneBody *body)
+{
+  char path[KEY_PATH_LENGTH];
+
+  PetscFunctionBeginUser;
+  if (!SceneHas(scene, body->path, "pretension")) PetscFunctionReturn(PETSC_SUCCESS);
+  KeyPathJoin(path, body->path, "pretension");
+  body->bolt             = 1;
+  body->motion.n_free    = 1;
+  body->motion.free[0]   = 1;
+  body->motion.thickness = scene->thickness;
+  PetscCall(SceneReadAxis(scene, path, body));
+  PetscCall(SceneReadOfTime(scene, path, "force", &body->motion.force[0], &body->motion.force_expression[0]));
+  if (body->motion.force_expression[0] && SceneHas(scene, path, "history"))
+    PetscCall(SceneRefuse(scene, path, "history",
+                          "stands beside an expression, which is the value at t itself; allowed: one of them", NULL));
+  PetscCall(SceneReadHistory(scene, path, &body->motion.history));
+  PetscCall(SceneReadLocked(scene, path, body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SceneReadMotion - reads motion, free components, force and moment of a tool.
 

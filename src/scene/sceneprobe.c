@@ -26,6 +26,8 @@ static const struct {
   [PROBE_ELASTIC_SLIP]       = {"elastic_slip", "", ""},
   [PROBE_TOOL_MOTION]        = {"tool_motion", "component", ""},
   [PROBE_TOOL_ROTATION]      = {"tool_rotation", "", "component"},
+  [PROBE_BOLT_FORCE]         = {"bolt_force", "", ""},
+  [PROBE_BOLT_SHORTENING]    = {"bolt_shortening", "", ""},
   [PROBE_FLUID_FRONT]        = {"fluid_front", "axis side", ""},
   [PROBE_FLUID_AREA]         = {"fluid_area", "", ""},
   [PROBE_SEAL_PRESSURE]      = {"seal_pressure", "", ""},
@@ -92,6 +94,18 @@ static PetscErrorCode SceneRefuseProbeTarget(Scene scene, SceneProbe *probe)
   }
   PetscCall(
     SceneRefuse(scene, probe->path, ProbeForms[probe->kind].kind, pairs, "there is no contact pair of this name;"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses a probe of a bolt whose target is none. */
+static PetscErrorCode SceneRefuseProbeBolt(Scene scene, SceneProbe *probe)
+{
+  const SceneBody *body = SceneFindBody(scene, probe->target, 0);
+
+  PetscFunctionBeginUser;
+  if (!body || !body->bolt)
+    PetscCall(SceneRefuse(scene, probe->path, ProbeForms[probe->kind].kind,
+                          "is no bolt; allowed: the volume of a body with the key pretension", probe->target));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -210,8 +224,8 @@ static PetscErrorCode SceneCheckProbeName(Scene scene, const SceneProbe *probe)
 /* Tells whether a probe's value is one per thickness of the plane. */
 static int ProbePerThickness(ProbeKind kind)
 {
-  return kind == PROBE_REACTION || kind == PROBE_CONTACT_FORCE || kind == PROBE_FRICTION_FORCE ||
-         kind == PROBE_FRICTION_TORQUE || kind == PROBE_SLIPPED_AREA;
+  return kind == PROBE_REACTION || kind == PROBE_BOLT_FORCE || kind == PROBE_CONTACT_FORCE ||
+         kind == PROBE_FRICTION_FORCE || kind == PROBE_FRICTION_TORQUE || kind == PROBE_SLIPPED_AREA;
 }
 
 static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
@@ -234,6 +248,8 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
     PetscCall(SceneReadText(scene, path, ProbeForms[probe->kind].kind, &probe->target));
     if (probe->kind >= PROBE_FLUID_FRONT)
       PetscCall(SceneRefuseProbeFluid(scene, probe));
+    else if (probe->kind == PROBE_BOLT_FORCE || probe->kind == PROBE_BOLT_SHORTENING)
+      PetscCall(SceneRefuseProbeBolt(scene, probe));
     else if (probe->kind != PROBE_REACTION)
       PetscCall(SceneRefuseProbeTarget(scene, probe));
     if (probe->kind >= PROBE_FRICTION_FORCE && probe->kind < PROBE_FLUID_FRONT)

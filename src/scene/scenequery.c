@@ -58,9 +58,11 @@ PetscBool SceneBreaks(Scene scene, PetscReal t)
   for (int s = 0; s < scene->n_supports; s++)
     if (HistoryBreaks(&scene->supports[s].history, t)) return PETSC_TRUE;
   for (int b = 0; b < scene->n_bodies; b++)
-    if (MotionBreaks(&scene->bodies[b].motion, t)) return PETSC_TRUE;
+    if (MotionBreaks(&scene->bodies[b].motion, t) || (scene->bodies[b].bolt && scene->bodies[b].locked == t))
+      return PETSC_TRUE;
   for (int c = 0; c < scene->n_contacts; c++)
-    if (MotionBreaks(&scene->contacts[c].motion, t)) return PETSC_TRUE;
+    if (MotionBreaks(&scene->contacts[c].motion, t) || HistoryBreaks(&scene->contacts[c].presence, t))
+      return PETSC_TRUE;
   return PETSC_FALSE;
 }
 

@@ -105,7 +105,13 @@ static void ForceText(const SceneStep *first, const SceneStep *final, char text[
   AddPoint(text, &last, 1, final->until < 1 ? 0 : 1);
 }
 
-/* Springs are there from the start where the first step is named. */
+/* Says whether a path is that of a support or of a contact pair, which are there, and not one of a tool's forces. */
+static int IsThere(const char *path)
+{
+  return !strncmp(path, "supports.", 9) || (!strncmp(path, "contact.", 8) && !strchr(path + 8, '.'));
+}
+
+/* Springs and pairs are there from the start where the first step is named. */
 static void SpringText(const SceneStep *first, const SceneStep *final, char text[STEPS_HISTORY])
 {
   ForceText(first, final, text);
@@ -130,13 +136,13 @@ static PetscErrorCode ResolveMap(Scene scene, Node map, int place, const char *p
   const Node during = map->child[place];
   const int  moves  = strstr(path, ".motion.") || NodeChild(map, "ux") || NodeChild(map, "uy") || NodeChild(map, "uz");
   char       text[STEPS_HISTORY] = "", below[KEY_PATH_LENGTH];
-  int        span[2] = {0, 0};
+  int        span[2]             = {0, 0};
 
   PetscFunctionBeginUser;
   if (NodeChild(map, "history"))
     PetscCall(SceneRefuse(scene, path, "during", "stands beside a history; allowed: one of them", NULL));
   PetscCall(FindSpan(scene, path, during, span));
-  if (!strncmp(path, "supports.", 9))
+  if (IsThere(path))
     SpringText(&scene->stepping.steps[span[0]], &scene->stepping.steps[span[1]], text);
   else
     (moves ? WayText : ForceText)(&scene->stepping.steps[span[0]], &scene->stepping.steps[span[1]], text);

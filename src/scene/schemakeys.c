@@ -151,6 +151,21 @@ const SchemaKey SchemaKeys[] = {
            "enhanced bends without locking and fbar keeps its volume without locking. mixed has pressures of its own, "
            "for materials that keep their volume nearly or exactly. auto: mixed where the bulk modulus is above 20 times the shear modulus (nu above 0.475), "
            "otherwise full; von_mises takes fbar at order 1 and mixed at order 2, umat fbar and full"},
+  {"bodies.*.pretension", MAP,
+   .help = "tightens the body, which is the shank of a bolt: its unloaded length becomes shorter by what the force "
+           "needs. What it clamps must hold it from the start, so touch: nothing else resists the force"},
+  {"bodies.*.pretension.axis", POINT, REQUIRED,
+   .help = "direction of the bolt, of any length; about an axis it is [0, 1]. It does not turn with the body"},
+  {"bodies.*.pretension.force", REAL | FORMULA, REQUIRED, .unit = "force",
+   .help = "tension in the bolt, the mean over its length; in the plane over thickness, axisymmetric over 360 degrees. "
+           "A number is multiplied by the history, an expression is of t"},
+  {"bodies.*.pretension.history", HISTORY, .preset = "[[0, 0], [1, 1]]",
+   .help = "factor on force over the load parameter t"},
+  {"bodies.*.pretension.during", NAME | TEXTS,
+   .help = "steps in which the force acts, in the place of history, as loads.N.during"},
+  {"bodies.*.pretension.locked", REAL | NAME, .range = "[0, 1]",
+   .help = "load parameter, or name of a step whose start it is, from which the bolt keeps the unloaded length that it has "
+           "then, and its force follows from the other loads; the default is never"},
   {"bodies.*.surface", TEXT, .help = "physical surface of a rigid tool; needs rigid"},
   {"bodies.*.rigid", MAP, .help = "makes the surface a meshed rigid tool"},
   {"bodies.*.rigid.point", POINT, .unit = "length",
@@ -218,6 +233,12 @@ const SchemaKey SchemaKeys[] = {
            "with bodies' names for all; entries that name two of these surfaces as slave and master replace their pair"},
   {"contact.*.exclude", LIST, .help = "pairs of surfaces, or of bodies where surfaces is all, that do not meet"},
   {"contact.*.exclude.*", TEXTS, .help = "two names, or one: it does not meet itself"},
+  {"contact.*.during", NAME | TEXTS,
+   .help = "step, or list of steps one after the other, in which the pair is there: it comes over the first one, where that "
+           "is not the first of all, and fades over the step that follows the last one. Elsewhere the surfaces pass "
+           "through each other, and must not be deeper in each other than elements when it comes"},
+  {"contact.*.history", HISTORY,
+   .help = "part of the pair that is there over the load parameter t, from 0 to 1, as during makes it; without both it is 1"},
   {"contact.*.slave", TEXT, .help = "physical surface of a deformable body; needed without surfaces"},
   {"contact.*.master", TEXT | MAP,
    .help = "a physical surface or an analytic surface; needed without surfaces. With surfaces, an analytic surface that "
@@ -367,6 +388,9 @@ const SchemaKey SchemaKeys[] = {
    .help = "displacement of the point of the rigid tool that is this pair's master; needs component"},
   {"probes.*.tool_rotation", TEXT, .unit = "degrees",
    .help = "component of the rotation vector of the rigid tool that is this pair's master; needs component in 3D"},
+  {"probes.*.bolt_force", TEXT, .unit = "force", .help = "tension in this body, which has pretension"},
+  {"probes.*.bolt_shortening", TEXT, .unit = "length",
+   .help = "what tightening has taken from the unloaded length of this body, which has pretension"},
   {"probes.*.displacement", POINT, .unit = "length",
    .help = "displacement of the node at this reference point; needs component"},
   {"probes.*.distance", POINTS, .unit = "length", .help = "distance of the nodes at two reference points"},

@@ -173,8 +173,7 @@ PetscErrorCode ProblemResidual(Problem problem, const PetscReal *u, PetscReal t,
   PetscCall(ElasticityResidual(problem->elasticity, u, problem->f, NULL, &sum[0], &mine));
   PetscCall(LoadsResidual(problem->loads, t, u, problem->f, NULL, &sum[1]));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
-  if (!mine)
-    problem->inverted = problem->mesh->cell_tag[ElasticityInvertedCell(problem->elasticity, &problem->fault)];
+  if (!mine) problem->inverted = problem->mesh->cell_tag[ElasticityInvertedCell(problem->elasticity, &problem->fault)];
   if (problem->contact) {
     TimingBegin(TIMING_ASSEMBLY_CONTACT);
     PetscCall(ContactResidual(problem->contact, u, t_contact, problem->f, NULL, &sum[2]));
@@ -604,6 +603,34 @@ PetscErrorCode ProblemReaction(Problem problem, const MeshGroup *group, PetscRea
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 3, MPIU_REAL, MPI_SUM, problem->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ProblemBoltForce - computes the tension in a bolt at the trial state: the work of the stresses in its cells on the
+  shortening, over the shortening.
+
+  Collective
+
+  Input Parameters:
++ problem - the problem
+- body    - name of a body with pretension
+
+  Output Parameter:
+. force - the same on all ranks; in the plane per thickness, axisymmetric over 360 degrees
+@*/
+PetscErrorCode ProblemBoltForce(Problem problem, const char *body, PetscReal *force)
+{
+  const Mesh mesh = problem->mesh;
+  PetscReal *f;
+  PetscBool  ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &f));
+  PetscCall(ElasticityResidual(problem->elasticity, problem->trial, f, NULL, NULL, &ok));
+  *force = f[ToolOfBolt(mesh, body)->node * mesh->dim];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 1, MPIU_REAL, MPI_SUM, mesh->comm));
+  PetscCall(PetscFree(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

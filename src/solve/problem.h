@@ -72,7 +72,7 @@ typedef struct _n_Problem {
   PetscReal      expected;     /* motion (length) that ProblemGatherLists() made the contact lists for */
   PetscInt       inverted;     /* gmsh's tag of a cell of this rank that a residual found inverted, or -1 */
   int            fault;        /* of the routine of the user in that cell, for UmatTell() */
-} *Problem;
+} * Problem;
 
 PetscErrorCode ProblemCreate(Scene, Mesh, Problem *);
 PetscErrorCode ProblemDestroy(Problem *);
@@ -95,6 +95,7 @@ PetscErrorCode ProblemGatherLists(Problem, const PetscReal *u, PetscReal t, Pets
 PetscErrorCode ProblemRenewLists(Problem, const PetscReal *u_0, PetscReal t_0, PetscReal t, PetscBool left,
                                  PetscReal lag, PetscBool *hold);
 PetscErrorCode ProblemReaction(Problem, const MeshGroup *, PetscReal force[3]);
+PetscErrorCode ProblemBoltForce(Problem, const char *body, PetscReal *force);
 PetscBool      ProblemIsLinear(Problem);
 PetscBool      ProblemIsPlastic(Problem);
 PetscBool      ProblemConservative(Problem);

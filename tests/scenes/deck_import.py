@@ -93,20 +93,24 @@ check.holds("nodes without elements are named", "'99' has 1 nodes that belong to
 *EXPANSION
 1e-5
 *SOLID SECTION, ELSET=plate, MATERIAL=steel
-1.
+0.5
 *BOUNDARY
 1, 1, 2
 4, 1, 1
 *STEP
 *STATIC
 *CLOAD
-2, 1, 5.
-3, 1, 5.
+2, 1, 2.5
+3, 1, 2.5
 *END STEP
 """)
 said = imported(place / "plane.inp").stdout
-check.holds("plane stress by other constants, which is said", "changed: plane stress" in said and "missing" not in said,
+text = (place / "plane.yaml").read_text()
+check.holds("plane stress with its thickness", "geometry: plane_stress\nthickness: 0.5\n" in text and "plane stress" not in said,
             said)
+again = imported(place / "plane.inp")
+check.holds("a scene that is there is kept, with a code", again.returncode == 1 and again.stdout.rstrip().endswith("[B147]"),
+            again.stdout)
 fields = run(args, place / "plane.yaml", out="plane", ranks=1).fields()
 check.near("a plate that is pulled grows as in plane stress", fields["displacement"][fields["nodes"][:, 0] > 1, 0],
            2 * 10 / 1000, 1e-9)

@@ -112,7 +112,7 @@ while not (out / "B300/steps.csv").exists() and slow.poll() is None:
 slow.send_signal(signal.SIGTERM)
 check.holds("B300: a signal", "[B300]" in slow.communicate()[1] and slow.returncode == 3, f"exit {slow.returncode}")
 
-sources = " ".join(re.sub(r'"\s*"', "", path.read_text()) for path in (ROOT / "src").glob("*/*.c")
+sources = " ".join(re.sub(r'"\s*"', "", path.read_text()) for path in (*(ROOT / "src").glob("*/*.c"), *(ROOT / "scripts").glob("*.py"))
                    if path.name != "explanation.c")
 entries = dict(table())
 stale = [f"{code}: {phrase}" for code, phrases in entries.items() for phrase in phrases if phrase not in sources]

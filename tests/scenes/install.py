@@ -1,11 +1,13 @@
 """make install puts program, library, man page, completion and examples where they run from, and the pages where their
-links and pictures are found; a program outside of the source tree links the library; the man page is well formed and
+links and pictures are found; a program outside of the source tree links the library; the Python package is installed
+and used; the man page is well formed and
 lists every option."""
 import os
 import pathlib
 import re
 import shutil
 import subprocess
+import sys
 
 from harness import Check, arguments, SCENES
 
@@ -40,6 +42,39 @@ finished = run("mpicc", ROOT / "tests/library/library.c", *flags, "-o", "library
 check.holds("a program links the library", finished.returncode == 0, finished.stdout if finished.returncode else "")
 finished = run("mpirun", "-n", args.ranks, work / "library", SCENES / "probes.yaml", cwd=work)
 check.holds("and runs", finished.returncode == 0, finished.stdout[-1000:] if finished.returncode else "")
+
+scripts, site = prefix / "share/burnish/scripts", work / "site"
+finished = run(sys.executable, "-m", "pip", "install", "--no-index", "--no-deps", "--no-build-isolation", "--target",
+               site, scripts, cwd=work)
+check.holds("pip installs the Python package", finished.returncode == 0, finished.stdout if finished.returncode else "")
+(work / "use.py").write_text(f"""
+import burnish, numpy
+scene = {{"mesh": {{"file": "{SCENES.parent.parent / 'meshes/block.geo'}", "parameters": {{"lx": 2, "ly": 1, "lz": 1.5}}}},
+         "bodies": [{{"volume": "block", "material": {{"law": "linear", "E": 1000, "nu": 0}}}}], "kinematics": "small",
+         "supports": [{{"surface": "y_min", "ux": 0, "uy": 0, "uz": 0}}],
+         "loads": [{{"surface": "y_max", "traction": [0, 5, 0]}}],
+         "contact": [{{"name": "pad", "slave": "x_max", "master": {{"plane": {{"point": [2.001, 0, 0], "normal": [-1, 0, 0]}}}}}}],
+         "probes": [{{"name": "top", "displacement": [0, 1, 0], "component": "y"}}]}}
+results = burnish.run(scene, "out/stretched", ranks={args.ranks}, overrides={{"mesh.order": 2}})
+exact = 5 / 1000 * results.nodes[:, 1]
+assert numpy.allclose(results.field("displacement")[:, 1], exact, atol=1e-9), "displacement"
+assert abs(results.probes["top"] - 0.005) < 1e-9 and abs(results.steps["top"][-1] - 0.005) < 1e-9, "probe"
+assert list(results.cells) == ["hex27"] and results.times[-1] == 1, "cells"
+nodes, gap = results.contact("pad", "gap")
+assert len(nodes) and len(gap), "contact"
+print(results.plot(), *results.draw("von_mises", view=(30, 20)))
+try:
+    burnish.run(scene, "out/wrong", overrides={{"mesh.order": 7}})
+except burnish.Failed as failed:
+    assert failed.status == 1 and "mesh.order" in failed.text, "refusal"
+else:
+    raise SystemExit("nothing was refused")
+""")
+finished = run(sys.executable, "-I", "-c", f"import sys; sys.path.insert(0, {str(site)!r}); exec(open('use.py').read())",
+               cwd=work, env={**os.environ, "BURNISH": str(prefix / "bin/burnish")})
+check.holds("it runs scenes and reads and draws their results", finished.returncode == 0 and
+            (work / "out/stretched/steps.png").exists() and (work / "out/stretched/von_mises.png").exists(),
+            finished.stdout if finished.returncode else "")
 
 documents = prefix / "share/doc/burnish"
 broken = [f"{path.name}: {link}" for path in [documents / "README.md", *(documents / "doc/pages").glob("*.md")]

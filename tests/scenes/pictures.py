@@ -12,8 +12,8 @@ from harness import Check, arguments, run, SCENES
 
 SCRIPTS = SCENES.parent.parent / "scripts"
 sys.path.insert(0, str(SCRIPTS))
-from meshview import read_skin  # noqa: E402
-from raster import Canvas, View  # noqa: E402
+from burnish.meshview import read_skin  # noqa: E402
+from burnish.raster import Canvas, View  # noqa: E402
 
 PLANE = [
     "geometry=plane_strain", "mesh.parameters.solid=0",

@@ -49,7 +49,7 @@ CHECKED = {
 # Run in the full set only: as the page shows them (None), or with less to do
 FULL = {
     "mpirun -n 2 build/burnish runs/saddle.yaml": None,
-    f"{PYTHON} scripts/render.py out/saddle --field pressure --units mm,MPa": None,
+    f"{PYTHON} scripts/render.py out/saddle --field pressure --units mm,MPa --up z --view=-35,40": None,
     f"{PYTHON} scripts/render.py out/roller --mirror x": None,
     f"{PYTHON} scripts/plot.py out/roller": None,
     f"{PYTHON} scripts/plot.py out/stiff out/roller": None,
@@ -155,6 +155,8 @@ NOT_HERE = {
     "make valgrind":
     ("wants valgrind, which make deps does not install", "bash -n scripts/valgrind.sh && make -n valgrind"),
     "scripts/portability.sh PREFIX": ("wants a second PETSc", "bash -n scripts/portability.sh"),
+    "module use scripts/packaging/modules": ("wants Environment Modules", "test -d scripts/packaging/modules"),
+    "module load burnish": ("wants Environment Modules", "test -f scripts/packaging/modules/burnish/0.1.0"),
     "module load gcc openmpi petsc metis gmsh cmake python":
     ("wants a cluster", "grep -qF 'module load gcc openmpi petsc metis gmsh cmake python' scripts/deps.sh"),
     "spack install petsc+mumps+hdf5+metis gmsh libyaml cjson muparser cmocka cmake":

@@ -23,8 +23,12 @@ typedef struct {
   PetscInt  *cell; /* [lanes] */
   PetscInt  *node; /* [nodes][lanes] */
   PetscInt
-    *block;       /* [nodes][nodes][lanes]: place of the pair of nodes in the block CSR; then PREFETCH_PAIRS of zeros */
-  PetscReal   *X; /* [nodes][dim][lanes] */
+    *block;     /* [nodes][nodes][lanes]: place of the pair of nodes in the block CSR; then PREFETCH_PAIRS of zeros */
+  PetscReal *X; /* [nodes][dim][lanes] */
+  /* Of bolts: what a shortening of 1 adds to the displacements of the nodes [nodes][dim][lanes], and the first of the
+     nodes that have it (MeshTool), -1 in a cell of another body [lanes]; NULL where the group has no cell of a bolt */
+  PetscReal   *pull;
+  PetscInt    *bolt;
   PetscReal   *constants;   /* of the law [n_constants][lanes] */
   PetscInt     multipliers; /* where those of the first batch are in VolumeState; -1: the group has none */
   PetscInt     yielding;    /* the same in Elasticity.yielding */

@@ -141,13 +141,13 @@ struct _n_Contact {
   int             n_pairs;
   ContactPair    *pairs;
   ContactWork     work;
-  BlockMatrix     blocks;  /* the last tangent */
-  ContactVectors  border;  /* the first variations of its terms */
-  ContactVectors  one;     /* room for one of them */
-  ContactProduct *product; /* of each pair; NULL: no product is asked for */
+  BlockMatrix     blocks;     /* the last tangent */
+  ContactVectors  border;     /* the first variations of its terms */
+  ContactVectors  one;        /* room for one of them */
+  ContactProduct *product;    /* of each pair; NULL: no product is asked for */
   PetscBool       transposed; /* it is one with the transposed tangent */
-  PetscReal      *outer;   /* forces of tools and mirror images are added here; NULL: nobody asks */
-  PetscReal      *hold;    /* forces that drive the tools of pairs are added here; NULL: nobody asks */
+  PetscReal      *outer;      /* forces of tools and mirror images are added here; NULL: nobody asks */
+  PetscReal      *hold;       /* forces that drive the tools of pairs are added here; NULL: nobody asks */
   PetscLogEvent   event_search, event_project, event_residual, event_tangent;
   PetscLogEvent   event_fit, event_offset, event_adjust, event_touch; /* only where the scene calls for the effect */
 };
@@ -181,6 +181,7 @@ PetscReal      ContactTermPenalty(const ContactPair *, PetscInt term, PetscReal 
 PetscBool      ContactTermAtBound(const ContactPair *, PetscInt term);
 PetscInt       ContactTermId(const ContactPair *, PetscInt term);
 /* contactterm.c */
+PetscReal ContactPairPresence(const ContactPair *, PetscReal t);
 LawState  ContactTermState(const ContactPair *, PetscInt term, PetscReal t, PetscReal most);
 void      ContactTermLaw(const ContactPair *, PetscInt term, PetscReal t, LawValue *, PetscReal *gap, PetscReal *area);
 PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term,

@@ -6,6 +6,8 @@
    more iterations, and forces of a cylinder that slides over coarse elements scatter three times as much. */
 #define SCENE_PENALTY_SCALE      30
 #define SCENE_PENALTY_SCALE_TEXT "30"
+/* The same of pairs that come and go, whose penalty the run does not make stiffer. */
+#define SCENE_PRESENCE_SCALE 100
 /* The same with friction. Newton's method then takes many more iterations with a stiff penalty: a tool that is drawn
    over a slab takes 180 with this factor, 230 with 10, and 2000 with 30. */
 #define SCENE_FRICTION_SCALE      3

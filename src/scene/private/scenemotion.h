@@ -3,4 +3,5 @@
 #include "scene/scene.h"
 
 PetscErrorCode SceneReadMotion(Scene, const char *tool, Motion *);
+PetscErrorCode SceneReadPretension(Scene, SceneBody *);
 PetscErrorCode SceneDestroyMotion(Motion *);
