@@ -173,8 +173,7 @@ PetscErrorCode ProblemResidual(Problem problem, const PetscReal *u, PetscReal t,
   PetscCall(ElasticityResidual(problem->elasticity, u, problem->f, NULL, &sum[0], &mine));
   PetscCall(LoadsResidual(problem->loads, t, u, problem->f, NULL, &sum[1]));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
-  if (!mine)
-    problem->inverted = problem->mesh->cell_tag[ElasticityInvertedCell(problem->elasticity, &problem->fault)];
+  if (!mine) problem->inverted = problem->mesh->cell_tag[ElasticityInvertedCell(problem->elasticity, &problem->fault)];
   if (problem->contact) {
     TimingBegin(TIMING_ASSEMBLY_CONTACT);
     PetscCall(ContactResidual(problem->contact, u, t_contact, problem->f, NULL, &sum[2]));
@@ -271,6 +270,7 @@ PetscErrorCode ProblemSetForm(Problem problem, TangentForm form)
              "a bordered tangent cannot be joined again");
   PetscCall(MatDestroy(&problem->A));
   PetscCall(SumOperatorCreate(problem->P, &problem->A));
+  if (problem->contact) PetscCall(ContactKeepFactors(problem->contact));
   problem->form = form;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
