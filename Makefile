@@ -123,6 +123,9 @@ bench: all tests ## raw timing records, their tables and a plot in out/bench/ (L
 	@$(VENV)/bin/python scripts/scaling.py --burnish $(BURNISH) $(if $(LARGE),--large) --out out/bench \
 	  >out/bench/scaling.txt
 	@cat out/bench/scaling.txt
+	@$(VENV)/bin/python scripts/physics_table.py --burnish $(BURNISH) --out out/bench/physics \
+	  --record out/bench/physics.csv >out/bench/physics.txt
+	@cat out/bench/physics.txt
 
 fuzz: ## looks for files that break the readers, SECONDS=600 for each, with clang
 	@scripts/fuzz.sh $(or $(SECONDS),600)

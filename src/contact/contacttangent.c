@@ -125,6 +125,24 @@ static PetscErrorCode CoupleTool(const ContactPair *pair, PetscInt points, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the block that the work's sum of second variations of some slave points makes, with the dofs of a tool. It is
+   not formed where blocks are kept as factors. */
+static PetscErrorCode AddSecond(Contact contact, const ContactPair *pair, int p, PetscInt points, const PetscInt *point,
+                                PetscInt n, const PetscInt *nodes)
+{
+  const FitDerivativesSum *sum = &pair->work->sum;
+
+  PetscFunctionBeginUser;
+  if (BlockMatrixKeepsFactors(contact->blocks) && !pair->tool) {
+    PetscCall(BlockMatrixAddFactors(contact->blocks, p, n, nodes, sum->depth, sum->stride, sum->K, sum->J));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  ContactSecondEnd(pair);
+  PetscCall(CoupleTool(pair, points, point, n, nodes));
+  PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds the block A psi'' Nbar Nbar^T of a term. It stands alone where the term shares its points; else it comes with
    -p M of its one point. */
 static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscInt n,
@@ -143,9 +161,7 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
     PetscCall(ContactSecondBegin(pair, n, 1));
     FitDerivativesAddOuter(&pair->work->sum, 1, v);
     if (pair->point_force[q] != 0) PetscCall(ContactSecondAdd(pair, q, -pair->point_force[q], own));
-    ContactSecondEnd(pair);
-    PetscCall(CoupleTool(pair, 1, &q, n, nodes));
-    PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
+    PetscCall(AddSecond(contact, pair, p, 1, &q, n, nodes));
   }
   PetscCall(PetscFree(v));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -163,9 +179,7 @@ static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p,
   PetscCall(ContactSecondBegin(pair, n, loaded));
   for (PetscInt k = 0; k < loaded; k++)
     PetscCall(ContactSecondAdd(pair, points[k], -pair->point_force[points[k]], own));
-  ContactSecondEnd(pair);
-  PetscCall(CoupleTool(pair, loaded, points, n, nodes));
-  PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
+  PetscCall(AddSecond(contact, pair, p, loaded, points, n, nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -259,6 +273,25 @@ static PetscErrorCode PlaceBlocks(Contact contact, PetscBool *changed)
   for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairName(contact, &contact->pairs[p], p));
   PetscCall(ContactMatrixRows(contact, &rows));
   PetscCall(BlockMatrixPlace(contact->blocks, rows, changed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactKeepFactors - lets the next tangents be matrices that multiply but have no entries, which are made in less
+  time.
+
+  Collective
+
+  Input Parameter:
+. contact - the contact; its tangents are symmetric
+@*/
+PetscErrorCode ContactKeepFactors(Contact contact)
+{
+  PetscInt rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactMatrixRows(contact, &rows));
+  PetscCall(BlockMatrixKeepFactors(contact->blocks, rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -122,19 +122,22 @@ static PetscErrorCode AddZeros(Contact contact, PetscInt node, PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the values of a term to the vector that was added last. */
+/* Adds the values of a term to the vector that was added last. The rows of a node follow each other in both, so that
+   one search serves them all. */
 static PetscErrorCode FillTerm(Contact contact, const ContactPair *pair, PetscInt c, PetscReal scale)
 {
   ContactVectors *border = &contact->border, *one = &contact->one;
   const PetscInt  first = border->ptr[border->n - 1], n = border->ptr[border->n] - first;
+  PetscInt        at = -1;
 
   PetscFunctionBeginUser;
   one->n = 0;
   PetscCall(ContactVectorsAdd(one, pair, c, scale));
   for (PetscInt k = 0; k < one->ptr[1]; k++) {
-    PetscInt at;
-
-    PetscCall(PetscFindInt(one->row[k], n, &border->row[first], &at));
+    if (at + 1 < n && border->row[first + at + 1] == one->row[k])
+      at++;
+    else
+      PetscCall(PetscFindInt(one->row[k], n, &border->row[first], &at));
     PetscCheck(at >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the tangent's pattern lacks a node of a term");
     border->value[first + at] += one->value[k];
   }

@@ -2,7 +2,9 @@
    sums to a NodeMatrix. Of symmetric blocks only the sums on and above the diagonal are stored. Blocks that are not
    symmetric have sums of their own for all pairs. */
 #include "matrix/blockmatrix.h"
+#include "matrix/blockfactors.h"
 #include "matrix/nodematrix.h"
+#include "base/lanes.h"
 
 /* Largest pattern that is kept, as a multiple of the pattern that the blocks need. A pattern that holds all blocks is
    kept, with zeros where no block has an entry. A new pattern costs the sum with other matrices and the solver's
@@ -45,6 +47,8 @@ struct _n_BlockMatrix {
      key come last. */
   PetscInt   nodes_room, *node;
   NodeMatrix matrix;
+  /* Where it is not NULL, it takes the place of matrix and its sums: blocks are kept as factors. */
+  BlockFactors factors;
   /* Pattern that the blocks need, block after block: the number of nodes with keys, then these keys. A key is the
      node's first free global dof. */
   PetscInt     n_pattern, *pattern;
@@ -63,7 +67,7 @@ struct _n_BlockMatrix {
   PetscBool        uneven;  /* such a block was added */
   PetscInt        *coupled; /* room for the result of BlockMatrixGetCoupled() */
   PetscBool        transposed; /* the blocks are multiplied transposed */
-  const PetscReal *along;   /* vector that blocks are multiplied by when they are added, or NULL */
+  const PetscReal *along;      /* vector that blocks are multiplied by when they are added, or NULL */
   PetscReal       *product;
   PetscBool        restored; /* the matrix is not the one that its user knows */
   PetscBool        replaced; /* the pattern has changed since BlockMatrixMark(); marked holds the old one */
@@ -93,6 +97,12 @@ PetscErrorCode BlockMatrixCreate(MPI_Comm comm, int size, BlockMatrix *blocks)
   (*blocks)->comm = comm;
   (*blocks)->size = size;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Is there a matrix? */
+static PetscBool HasMatrix(BlockMatrix blocks)
+{
+  return blocks->factors ? BlockFactorsGet(blocks->factors) != NULL : blocks->matrix != NULL;
 }
 
 static PetscErrorCode DestroyLists(BlockMatrix blocks)
@@ -142,6 +152,7 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscCall(PetscFree((*blocks)->column));
   PetscCall(PetscFree((*blocks)->coupled));
   PetscCall(NodeMatrixDestroy(&(*blocks)->matrix));
+  PetscCall(BlockFactorsDestroy(&(*blocks)->factors));
   PetscCall(PetscFree(*blocks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -518,15 +529,60 @@ static PetscErrorCode BlockMatrixCreateMat(BlockMatrix blocks, PetscInt rows)
   const NodePairs pairs = {blocks->size, blocks->own.n_nodes, blocks->own.dof, blocks->own.pair_ptr, blocks->own.pair};
 
   PetscFunctionBeginUser;
+  PetscCall(PetscFree(blocks->coupled));
+  if (blocks->factors) {
+    PetscCall(BlockFactorsPlace(blocks->factors, rows, blocks->own.n_nodes, blocks->own.dof));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(NodeMatrixDestroy(&blocks->matrix));
   PetscCall(NodeMatrixCreate(blocks->comm, rows, &pairs, &blocks->matrix));
   PetscCall(NodeMatrixJoin(blocks->matrix, NULL));
   PetscCall(PetscFree(blocks->sum));
   PetscCall(PetscFree(blocks->whole));
   PetscCall(PetscFree(blocks->column));
-  PetscCall(PetscFree(blocks->coupled));
   PetscCall(PetscMalloc1(blocks->above[blocks->own.n_nodes] * blocks->size, &blocks->sum));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BlockMatrixKeepFactors - lets the matrix keep its blocks as factors from now on, so that it multiplies but has no
+  entries.
+
+  Collective
+
+  Input Parameters:
++ blocks - the block matrix
+- rows   - rows of the matrix on this rank, as for BlockMatrixPlace()
+
+  Note:
+  A matrix that there is becomes an empty one of the same pattern. BlockMatrixAddRows() is not possible any more.
+@*/
+PetscErrorCode BlockMatrixKeepFactors(BlockMatrix blocks, PetscInt rows)
+{
+  const PetscBool had = HasMatrix(blocks);
+
+  PetscFunctionBeginUser;
+  if (blocks->factors) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BlockFactorsCreate(blocks->comm, blocks->size, &blocks->factors));
+  PetscCall(NodeMatrixDestroy(&blocks->matrix));
+  PetscCall(PetscFree(blocks->sum));
+  if (!had) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BlockMatrixCreateMat(blocks, rows));
+  blocks->restored = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BlockMatrixKeepsFactors - says whether BlockMatrixKeepFactors() was called.
+
+  Not collective
+
+  Input Parameter:
+. blocks - the block matrix
+@*/
+PetscBool BlockMatrixKeepsFactors(BlockMatrix blocks)
+{
+  return blocks->factors ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /*@
@@ -554,14 +610,14 @@ PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *ch
 
   PetscFunctionBeginUser;
   PetscCall(BlocksPattern(blocks, &n, &pattern));
-  placed = (PetscBool)(blocks->matrix && n == blocks->n_pattern);
+  placed = (PetscBool)(HasMatrix(blocks) && n == blocks->n_pattern);
   if (placed && n) PetscCall(PetscArraycmp(pattern, blocks->pattern, n, &placed));
   PetscCall(PetscFree(blocks->pattern));
   blocks->pattern   = pattern;
   blocks->n_pattern = n;
   if (placed)
     PetscCall(BlockMatrixNumberNodes(blocks, PETSC_FALSE, &placed));
-  else if (blocks->matrix)
+  else if (HasMatrix(blocks))
     PetscCall(PlacePattern(blocks, PETSC_FALSE, &placed));
   all = placed;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, blocks->comm));
@@ -575,7 +631,10 @@ PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *ch
     PetscCall(PlacePattern(blocks, PETSC_TRUE, &placed));
     PetscCall(BlockMatrixCreateMat(blocks, rows));
   }
-  PetscCall(PetscArrayzero(blocks->sum, blocks->above[blocks->own.n_nodes] * blocks->size));
+  if (blocks->factors)
+    BlockFactorsClear(blocks->factors);
+  else
+    PetscCall(PetscArrayzero(blocks->sum, blocks->above[blocks->own.n_nodes] * blocks->size));
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++) blocks->seen[r] = -1;
   blocks->uneven   = PETSC_FALSE;
   *changed         = all && !blocks->restored ? PETSC_FALSE : PETSC_TRUE;
@@ -625,21 +684,6 @@ static inline PetscErrorCode Sum(const int size, const PetscBool outer, BlockMat
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y += A x, from the upper triangle of A. */
-static void MultiplyUpper(PetscInt m, const PetscReal *A, const PetscReal *x, PetscReal *y)
-{
-  for (PetscInt i = 0; i < m; i++) {
-    const PetscReal *row = A + i * m;
-    PetscReal        sum = row[i] * x[i];
-
-    for (PetscInt j = i + 1; j < m; j++) {
-      sum += row[j] * x[j];
-      y[j] += row[j] * x[i];
-    }
-    y[i] += sum;
-  }
-}
-
 /* y += v v^T x. */
 static void MultiplyOuter(PetscInt m, const PetscReal *v, const PetscReal *x, PetscReal *y)
 {
@@ -650,49 +694,62 @@ static void MultiplyOuter(PetscInt m, const PetscReal *v, const PetscReal *x, Pe
 }
 
 /* product += block * along. Most blocks have only zeros in along, because most are far from everything that moves;
-   these are skipped. */
+   these are skipped. Of `outer` v v^T the factor J is v. */
 static PetscErrorCode BlockMatrixMultiplyRows(BlockMatrix blocks, PetscInt n, const PetscInt *node, PetscBool outer,
-                                              const PetscReal *value)
+                                              const BlockFactor *block)
 {
-  const int  size = blocks->size;
-  PetscBool  any  = PETSC_FALSE;
-  PetscReal *x, *y;
+  const int      size = blocks->size;
+  const PetscInt room = LanesGroups((int)(n * size)) * LANES;
+  PetscBool      any  = PETSC_FALSE;
+  PetscReal     *x, *y;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++)
     for (int d = 0; d < size; d++) any = (PetscBool)(any || blocks->along[node[i] * size + d] != 0);
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc2(n * size, &x, n * size, &y));
-  PetscCall(PetscArrayzero(y, n * size));
+  PetscCall(PetscCalloc2(room, &x, room, &y));
   for (PetscInt i = 0; i < n; i++)
     for (int d = 0; d < size; d++) x[i * size + d] = blocks->along[node[i] * size + d];
   if (outer)
-    MultiplyOuter(n * size, value, x, y);
+    MultiplyOuter(n * size, block->J, x, y);
   else
-    MultiplyUpper(n * size, value, x, y);
+    BlockFactorMultiply(n * size, block, x, y);
   for (PetscInt i = 0; i < n; i++)
     for (int d = 0; d < size; d++) blocks->product[node[i] * size + d] += y[i * size + d];
   PetscCall(PetscFree2(x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Numbers those nodes of a block that have dofs, which come first, among the nodes of the matrix. */
+static PetscErrorCode NumberBlock(BlockMatrix blocks, int list, PetscInt n, const PetscInt *node, PetscInt *with)
+{
+  const PetscInt *number = &blocks->list_number[blocks->list[list]];
+
+  PetscFunctionBeginUser;
+  for (*with = 0; *with < n && number[node[*with]] >= 0; (*with)++) blocks->at[*with] = number[node[*with]];
+  PetscCheck(*with == n || blocks->list_key[blocks->list[list] + node[*with]] < 0, PETSC_COMM_SELF,
+             PETSC_ERR_ARG_OUTOFRANGE, "a node is in no named block");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Add(BlockMatrix blocks, int list, PetscInt n, const PetscInt *node, PetscBool outer,
                           const PetscReal *value)
 {
-  const PetscInt *number = &blocks->list_number[blocks->list[list]];
-  PetscInt        with   = 0;
+  const PetscInt    m     = n * blocks->size;
+  const BlockFactor block = {.depth = 1, .stride = m, .factor = 0.5, .K = outer ? value : NULL, .J = value};
+  PetscInt          with;
 
   PetscFunctionBeginUser;
-  for (; with < n && number[node[with]] >= 0; with++) blocks->at[with] = number[node[with]];
-  PetscCheck(with == n || blocks->list_key[blocks->list[list] + node[with]] < 0, PETSC_COMM_SELF,
-             PETSC_ERR_ARG_OUTOFRANGE, "a node is in no named block");
-  if (blocks->size == 3 && outer)
-    PetscCall(Sum(3, PETSC_TRUE, blocks, with, n * 3, value));
+  PetscCall(NumberBlock(blocks, list, n, node, &with));
+  if (blocks->factors)
+    PetscCall(BlockFactorsAdd(blocks->factors, with, blocks->at, &block));
+  else if (blocks->size == 3 && outer)
+    PetscCall(Sum(3, PETSC_TRUE, blocks, with, m, value));
   else if (blocks->size == 3)
-    PetscCall(Sum(3, PETSC_FALSE, blocks, with, n * 3, value));
+    PetscCall(Sum(3, PETSC_FALSE, blocks, with, m, value));
   else
-    PetscCall(Sum(blocks->size, outer, blocks, with, n * blocks->size, value));
-  if (blocks->along) PetscCall(BlockMatrixMultiplyRows(blocks, n, node, outer, value));
+    PetscCall(Sum(blocks->size, outer, blocks, with, m, value));
+  if (blocks->along) PetscCall(BlockMatrixMultiplyRows(blocks, n, node, outer, &block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -735,6 +792,39 @@ PetscErrorCode BlockMatrixAddOuter(BlockMatrix blocks, int list, PetscInt n, con
 {
   PetscFunctionBeginUser;
   PetscCall(Add(blocks, list, n, node, PETSC_TRUE, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BlockMatrixAddFactors - adds a block K^T J + J^T K to a sum that keeps factors, without forming it.
+
+  Not collective
+
+  Input Parameters:
++ blocks - the block matrix, after BlockMatrixKeepFactors() and BlockMatrixPlace()
+. list   - number of the list
+. n      - number of nodes
+. node   - as for BlockMatrixAdd()
+. depth  - rows of K and J
+. stride - length of a row of K and J, of which n*size numbers are used; what follows them, up to a whole number of
+           LANES, is finite
+. K      - first factor, K[depth][stride]
+- J      - second factor, J[depth][stride]
+
+  Note:
+  The factors are copied.
+@*/
+PetscErrorCode BlockMatrixAddFactors(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[], PetscInt depth,
+                                     PetscInt stride, const PetscReal K[], const PetscReal J[])
+{
+  const BlockFactor block = {depth, stride, 1, K, J};
+  PetscInt          with;
+
+  PetscFunctionBeginUser;
+  PetscCheck(blocks->factors, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "the blocks are not kept as factors");
+  PetscCall(NumberBlock(blocks, list, n, node, &with));
+  PetscCall(BlockFactorsAdd(blocks->factors, with, blocks->at, &block));
+  if (blocks->along) PetscCall(BlockMatrixMultiplyRows(blocks, n, node, PETSC_FALSE, &block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -800,6 +890,7 @@ PetscErrorCode BlockMatrixAddRows(BlockMatrix blocks, int list, PetscInt n_rows,
   const int       size = blocks->size;
 
   PetscFunctionBeginUser;
+  PetscCheck(!blocks->factors, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "blocks that are factors are symmetric");
   PetscCall(TakeUneven(blocks));
   for (PetscInt i = 0; i < n_rows; i++) {
     const PetscInt r = number[row[i]];
@@ -880,13 +971,17 @@ static void AddSymmetric(BlockMatrix blocks)
 . blocks - the block matrix
 
   Output Parameter:
-. matrix - parallel AIJ matrix that belongs to the block matrix
+. matrix - parallel AIJ matrix that belongs to the block matrix; where factors are kept, a shell matrix that multiplies
 @*/
 PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
 {
   const NodeUpper values = {(const PetscReal *)blocks->sum, ROW, blocks->of_pair, blocks->diagonal};
 
   PetscFunctionBeginUser;
+  if (blocks->factors) {
+    *matrix = BlockFactorsGet(blocks->factors);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   FillDiagonal(blocks);
   if (blocks->uneven) {
     AddSymmetric(blocks);
@@ -982,6 +1077,8 @@ PetscErrorCode BlockMatrixReturn(BlockMatrix blocks, PetscInt rows)
   blocks->replaced = PETSC_FALSE;
   if (blocks->own.pair_ptr)
     PetscCall(RestoreMatrix(blocks, rows));
+  else if (blocks->factors)
+    PetscCall(BlockFactorsReset(blocks->factors));
   else
     PetscCall(NodeMatrixDestroy(&blocks->matrix));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -1009,7 +1106,7 @@ PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const cha
   PetscInt         **list[]  = {&blocks->own.key, &blocks->own.dof, &blocks->own.pair_ptr, &blocks->own.pair};
   PetscInt           n[4]    = {0, 0, 0, 0};
   PetscMPIInt        size;
-  PetscBool          there = blocks->matrix ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool          there = HasMatrix(blocks);
   char               path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;

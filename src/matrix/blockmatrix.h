@@ -9,6 +9,9 @@
    the sum unsymmetric. BlockMatrixMark() and BlockMatrixReturn() go back to an
    earlier pattern, for a load step that is repeated.
 
+   After BlockMatrixKeepFactors() no sum is made: blocks are kept as factors (blockfactors.h), and the matrix only
+   multiplies by them. BlockMatrixAddFactors() then adds blocks that were never formed. The pattern is found as before.
+
    Measured: with all blocks' entries in PETSc's COO format instead, CPU seconds are 1.8 times as many on two rings in
    space, 1.4 on spheres, 1.5 on a pinched pipe with the diffuse smoother and 1.04 to 1.14 with facets. */
 #pragma once
@@ -27,10 +30,14 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *);
 PetscErrorCode BlockMatrixBegin(BlockMatrix, int n_lists, const PetscInt n[], const PetscInt *const dof[]);
 PetscErrorCode BlockMatrixSort(BlockMatrix, int list, PetscInt n, PetscInt node[], PetscInt *with);
 PetscErrorCode BlockMatrixName(BlockMatrix, int list, PetscInt n, const PetscInt node[], PetscBool whole);
+PetscErrorCode BlockMatrixKeepFactors(BlockMatrix, PetscInt rows);
+PetscBool      BlockMatrixKeepsFactors(BlockMatrix);
 PetscErrorCode BlockMatrixPlace(BlockMatrix, PetscInt rows, PetscBool *changed);
 void           BlockMatrixGetNodes(BlockMatrix, PetscInt b, PetscInt *n, const PetscInt **node);
 PetscErrorCode BlockMatrixAdd(BlockMatrix, int list, PetscInt n, const PetscInt node[], const PetscReal value[]);
 PetscErrorCode BlockMatrixAddOuter(BlockMatrix, int list, PetscInt n, const PetscInt node[], const PetscReal v[]);
+PetscErrorCode BlockMatrixAddFactors(BlockMatrix, int list, PetscInt n, const PetscInt node[], PetscInt depth,
+                                     PetscInt stride, const PetscReal K[], const PetscReal J[]);
 PetscErrorCode BlockMatrixAddRows(BlockMatrix, int list, PetscInt n_rows, const PetscInt row[], PetscInt n,
                                   const PetscInt node[], const PetscReal value[]);
 void           BlockMatrixMultiply(BlockMatrix, PetscBool transposed, const PetscReal *x, PetscReal *y);

@@ -1,5 +1,6 @@
 /* Sum of two matrices as a shell matrix, which holds both as composed objects. */
 #include "matrix/sumoperator.h"
+#include "matrix/blockfactors.h"
 
 /* Names of the terms among the objects that are composed with the operator. The operator keeps references to them in
    this way. */
@@ -55,7 +56,8 @@ PetscErrorCode SumOperatorCreate(Mat K, Mat *A)
 
   Input Parameters:
 + A - the operator, from SumOperatorCreate()
-- C - matrix of the layout of K, used with the values that it has when the operator is applied; NULL: no other term
+- C - matrix of the layout of K, which may be one of BlockFactorsGet(), used with the values that it has when the
+operator is applied; NULL: no other term
 @*/
 PetscErrorCode SumOperatorSet(Mat A, Mat C)
 {
@@ -78,13 +80,15 @@ PetscErrorCode SumOperatorSet(Mat A, Mat C)
 PetscErrorCode SumOperatorMerge(Mat A, Mat *whole)
 {
   PetscBool shell;
-  Mat       K = NULL, C = NULL;
+  Mat       K = NULL, C = NULL, formed = NULL;
 
   PetscFunctionBeginUser;
   *whole = NULL;
   PetscCall(PetscObjectTypeCompare((PetscObject)A, MATSHELL, &shell));
   if (shell) PetscCall(SumOperatorGetTerms(A, &K, &C));
   if (K) PetscCall(MatDuplicate(K, MAT_COPY_VALUES, whole));
-  if (K && C) PetscCall(MatAXPY(*whole, 1, C, DIFFERENT_NONZERO_PATTERN));
+  if (K && C) PetscCall(BlockFactorsForm(C, &formed));
+  if (K && C) PetscCall(MatAXPY(*whole, 1, formed ? formed : C, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(MatDestroy(&formed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

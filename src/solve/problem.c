@@ -270,6 +270,7 @@ PetscErrorCode ProblemSetForm(Problem problem, TangentForm form)
              "a bordered tangent cannot be joined again");
   PetscCall(MatDestroy(&problem->A));
   PetscCall(SumOperatorCreate(problem->P, &problem->A));
+  if (problem->contact) PetscCall(ContactKeepFactors(problem->contact));
   problem->form = form;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include "base/lanes.h"
+#include "matrix/blockfactors.h"
 #include "matrix/blockmatrix.h"
 
 enum { ROWS = 6 }; /* rows of each rank */
@@ -43,7 +45,7 @@ static void AddBlocks(BlockMatrix blocks, int node, const PetscInt *dof, PetscRe
   assert_int_equal(BlockMatrixEnd(blocks, matrix), 0);
 }
 
-static void AssembledEqualsBlocks(int node)
+static void AssembledEqualsBlocks(int node, PetscBool keeps)
 {
   PetscMPIInt rank, size;
   BlockMatrix blocks;
@@ -59,6 +61,8 @@ static void AssembledEqualsBlocks(int node)
 
     for (int i = 0; i < 4; i++) in[i] = mine[i] < 0 ? 0 : 1;
     assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, node, &blocks), 0);
+    if (keeps) assert_int_equal(BlockMatrixKeepFactors(blocks, ROWS), 0);
+    assert_int_equal(BlockMatrixKeepsFactors(blocks), keeps);
     for (int pass = 0; pass < 2; pass++) {
       for (int i = 0; i < 4; i++) out[i] = 0;
       AddBlocks(blocks, node, mine, 1 + pass, in, out, &matrix, &changed);
@@ -81,12 +85,90 @@ static void AssembledEqualsBlocks(int node)
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);
 }
 
-/* Tests a node's dofs one by one and together; the last one has no dof. */
+/* Tests a node's dofs one by one and together; the last one has no dof. Blocks are summed, or kept as they are. */
 static void test_assembled_equals_blocks(void **state)
 {
   (void)state;
-  AssembledEqualsBlocks(1);
-  AssembledEqualsBlocks(2);
+  for (int node = 1; node <= 2; node++) {
+    AssembledEqualsBlocks(node, PETSC_FALSE);
+    AssembledEqualsBlocks(node, PETSC_TRUE);
+  }
+}
+
+enum { FACTOR_ROWS = 6, FACTOR_STRIDE = 2 * LANES }; /* 6: a whole pass over rows and a part of one */
+
+/* Adds K^T J + J^T K over the nodes of AddBlocks() to a sum that keeps factors, or as a matrix. */
+static void AddFactored(BlockMatrix blocks, const PetscInt *dof, const PetscReal *in, PetscReal *out, Mat *matrix)
+{
+  const PetscInt        n                             = 4, *nodes;
+  const PetscInt *const lists[]                       = {dof};
+  PetscReal             K[FACTOR_ROWS][FACTOR_STRIDE] = {{0}}, J[FACTOR_ROWS][FACTOR_STRIDE] = {{0}};
+  PetscReal             value[16 + BLOCK_PADDING] = {0};
+  PetscInt              count;
+  PetscBool             changed;
+
+  assert_int_equal(BlockMatrixBegin(blocks, 1, &n, lists), 0);
+  assert_int_equal(BlockMatrixName(blocks, 0, n, (PetscInt[]){3, 1, 2, 0}, PETSC_TRUE), 0);
+  assert_int_equal(BlockMatrixPlace(blocks, ROWS, &changed), 0);
+  BlockMatrixGetNodes(blocks, 0, &count, &nodes);
+  for (int k = 0; k < FACTOR_ROWS; k++) {
+    for (int i = 0; i < 4; i++) {
+      K[k][i] = 1 + nodes[i] * k - 0.5 * k * k;
+      J[k][i] = 2 - nodes[i] + k;
+    }
+    for (int i = 0; i < 4; i++)
+      for (int j = i; j < 4; j++) value[4 * i + j] += K[k][i] * J[k][j] + J[k][i] * K[k][j];
+  }
+  BlockMatrixMultiply(blocks, PETSC_FALSE, in, out);
+  if (BlockMatrixKeepsFactors(blocks))
+    assert_int_equal(BlockMatrixAddFactors(blocks, 0, n, nodes, FACTOR_ROWS, FACTOR_STRIDE, *K, *J), 0);
+  else
+    assert_int_equal(BlockMatrixAdd(blocks, 0, n, nodes, value), 0);
+  assert_int_equal(BlockMatrixEnd(blocks, matrix), 0);
+}
+
+/* Factors that are kept: products with the blocks, with the matrix and with the matrix that is formed of it are those
+   of blocks that are summed. */
+static void test_kept_factors(void **state)
+{
+  PetscReal   in[4] = {1, -2, 0.5, 3}, out[2][4] = {{0}}, norm, error[2];
+  PetscMPIInt rank, size;
+  BlockMatrix blocks[2];
+  Mat         matrix[2], formed, none;
+  Vec         x, y[3];
+
+  (void)state;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  for (int keeps = 0; keeps < 2; keeps++) {
+    const PetscInt mine[4] = {ROWS * rank + 1, ROWS * rank + 4, ROWS * ((rank + 1) % size) + 2, -1};
+
+    assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, 1, &blocks[keeps]), 0);
+    if (keeps) assert_int_equal(BlockMatrixKeepFactors(blocks[keeps], ROWS), 0);
+    AddFactored(blocks[keeps], mine, in, out[keeps], &matrix[keeps]);
+  }
+  for (int i = 0; i < 4; i++) assert_true(PetscAbsReal(out[0][i] - out[1][i]) <= 1e-12 * PetscAbsReal(out[0][i]));
+  assert_int_equal(BlockFactorsForm(matrix[0], &none), 0);
+  assert_null(none);
+  assert_int_equal(BlockFactorsForm(matrix[1], &formed), 0);
+  assert_int_equal(MatCreateVecs(matrix[0], &x, &y[0]), 0);
+  for (int i = 0; i < ROWS; i++) assert_int_equal(VecSetValue(x, ROWS * rank + i, 1 + rank + i * i, INSERT_VALUES), 0);
+  assert_int_equal(VecAssemblyBegin(x), 0);
+  assert_int_equal(VecAssemblyEnd(x), 0);
+  for (int k = 0; k < 3; k++) {
+    if (k) assert_int_equal(VecDuplicate(y[0], &y[k]), 0);
+    assert_int_equal(MatMult(k == 2 ? formed : matrix[k], x, y[k]), 0);
+  }
+  assert_int_equal(VecNorm(y[0], NORM_2, &norm), 0);
+  for (int k = 0; k < 2; k++) {
+    assert_int_equal(VecAXPY(y[1 + k], -1, y[0]), 0);
+    assert_int_equal(VecNorm(y[1 + k], NORM_2, &error[k]), 0);
+    assert_true(error[k] <= 1e-12 * norm);
+  }
+  for (int k = 0; k < 3; k++) assert_int_equal(VecDestroy(&y[k]), 0);
+  assert_int_equal(VecDestroy(&x), 0);
+  assert_int_equal(MatDestroy(&formed), 0);
+  for (int k = 0; k < 2; k++) assert_int_equal(BlockMatrixDestroy(&blocks[k]), 0);
 }
 
 /* Rows that are not symmetric, beside a block that is: the matrix and the product with the blocks are their sum. */
@@ -289,6 +371,7 @@ int main(int argc, char **argv)
                                      cmocka_unit_test(test_returns_to_the_marked_pattern),
                                      cmocka_unit_test(test_no_blocks),
                                      cmocka_unit_test(test_coupled_nodes),
+                                     cmocka_unit_test(test_kept_factors),
                                      cmocka_unit_test(test_uneven_rows)};
   int                     failed;
 
