@@ -527,6 +527,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   Model           model  = stepper->model;
   StepperReport  *report = &stepper->report;
   const PetscReal t = model->t, first = stepper->size.dt;
+  const PetscBool recovers = (PetscBool)(stepper->size.failed_dt > 0);
   SolveReport     solve;
   PetscReal       most, longest = 0; /* of the attempts that failed */
   PetscBool       clipped, singular;
@@ -570,8 +571,9 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     singular = (PetscBool)((solve.result == SOLVE_LINEAR && solve.newton == 1) ||
                            (solve.result == SOLVE_ADRIFT && !solve.newton));
     if (failures >= STEPPER_STATIC && !singular) continue; /* a damped solve of the same dt comes next */
-    if (solve.result != SOLVE_LEAK) stepper->size.failed_dt = longest = PetscMax(longest, dt);
-    stepper->size.dt = STEPPER_CUT * dt;
+    if (solve.result != SOLVE_LEAK) longest = PetscMax(longest, dt);
+    stepper->size.failed_dt = recovers ? 0 : longest; /* what fails again on the way back is no matter of the place */
+    stepper->size.dt        = STEPPER_CUT * dt;
     if (stepper->size.dt < stepper->size.dt_min || singular || BoundIsReached(&solve, dt, end)) {
       PetscCall(ReportFailure(report, t, end, first, dt, stepper->size.dt_min, record->attempts, &solve));
       PetscFunctionReturn(PETSC_SUCCESS);

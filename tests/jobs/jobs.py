@@ -75,6 +75,16 @@ JOBS = [
     Job("x_ring", "X-ring in a groove under a lid", [
         Answer("force", 239.11, 0.1, "limit"),
     ], steps=10, pairs=2),
+    Job("d_ring", "D-ring in a groove, pressed by a fluid", [
+        Answer("tight_to", 7.772, 0.1, "limit"),
+        Answer("top", 0.3301, 0.7, "limit"),
+    ], steps=14, pairs=2),
+    Job("u_cup", "U-cup between rod and bore, pressed by oil", [
+        Answer("floor", -0.23298, 0.08, "limit"),
+    ], steps=14, pairs=3),
+    Job("dovetail_ring", "square seal in a dovetail groove", [
+        Answer("force", 13.662, 0.04, "limit"),
+    ], steps=12, pairs=2),
     # Balls
     Job("ball_in_cone", "ball in a cone by force", [
         Answer("peak_pressure", 83.00, 0.1, "limit"),  # Hertz, for a ring of infinite radius: 84.42
