@@ -12,8 +12,8 @@ for name, overrides in (("two rubbers", ()), ("one rubber", ("bodies.1.material.
         for simplex in (0, 1)
     ]
     check.near(f"{name}: force of triangles over that of quadrilaterals", force[1] / force[0], 1, 0.01)
-# Elements of first order, whose nodes have a pressure for each rubber: with one for both the force is 8 % too small on
-# the coarse mesh, and does not tend to that of quadrilaterals.
+# Elements of first order, whose nodes have a pressure for each rubber: with one for both the force is 1.43
+# with 4 elements through a block, where the limit is 1.55.
 excess = []
 for n in (8, 16):
     force = [
@@ -25,6 +25,6 @@ for n in (8, 16):
 check.near("first order: force of triangles over that of quadrilaterals", excess[0], 0, 0.03)
 check.holds("first order: the difference falls with the size of elements", abs(excess[1]) < 0.65 * abs(excess[0]),
             f"{excess[0]:.4f} to {excess[1]:.4f}")
-said = refused(args, SCENES / "bonded_three.yaml")
+said = run(args, SCENES / "bonded_three.yaml", out="three", must=1).text
 check.holds("three rubbers at a node of a plane model", "whose pressures leave none" in said and "[B128]" in said, said)
 check.finish()
