@@ -36,6 +36,12 @@ static const Explanation Input[] = {
    "the law or the element has no plane stress",
    "Plane stress is for elastic laws that are not incompressible, with `formulation: full` or `enhanced`.",
    "Take such a law or `nu` below 0.5; for yielding parts a thin solid with one element over the thickness."},
+  {"B128",
+   {"whose pressures leave none"},
+   "more rubbers share a node than mixed tri3 and tet4 have pressures for",
+   "Pressures jump between bonded bodies of different materials. A node has as many pressures as the model has "
+   "dimensions, and the bodies take more.",
+   "Take `mesh.order: 2`, whose elements hold their pressures themselves, or merge bodies of nearly the same rubber."},
   {"B111",
    {"is inverted ("},
    "cell of a body is inverted",

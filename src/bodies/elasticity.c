@@ -37,6 +37,7 @@ static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
                              .formulation = scene->bodies[body].formulation,
                              .n_constants = material.n_constants,
                              .condensed   = scene->bodies[body].condensed,
+                             .component   = scene->bodies[body].component,
                              .thin        = scene->plane_stress};
 
   if (scene->bodies[body].chosen && !ElementKernelExists(&kernel)) kernel.formulation = FORMULATION_FULL;
@@ -47,7 +48,7 @@ static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
 static PetscBool SameKernel(const KernelCase *a, const KernelCase *b)
 {
   return a->type == b->type && a->law == b->law && a->formulation == b->formulation &&
-             a->n_constants == b->n_constants && a->condensed == b->condensed &&
+             a->n_constants == b->n_constants && a->condensed == b->condensed && a->component == b->component &&
              (a->plastic ? a->plastic->hardening : NULL) == (b->plastic ? b->plastic->hardening : NULL)
            ? PETSC_TRUE
            : PETSC_FALSE;

@@ -193,6 +193,7 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
                      .n_constants = kernel->n_constants ? kernel->n_constants : law->constants,
                      .plastic     = kernel->plastic,
                      .length      = kernel->length,
+                     .component   = kernel->component,
                      .thin        = kernel->thin,
                      .states      = kernel->plastic ? ElementStates(kernel->plastic) : 0,
                      .constants   = constants};

@@ -55,6 +55,7 @@ typedef struct {
   int    yields; /* of mixed elements: the energy is that of a soft volume about the multipliers, see ElementYield() */
   int    condensed; /* of mixed triangles and tetrahedra of second order: their pressures are not those of nodes */
   double length;    /* of mixed elements whose nodes have pressures: that which makes these unknowns lengths */
+  int    component; /* of mixed elements whose nodes have pressures: the displacement that stands for them */
   int    thin;      /* 1: in plane stress; of geometry plane strain, formulations full and enhanced, without plasticity */
 } KernelCase;
 

@@ -13,10 +13,10 @@
    elements. In small strains the trace of the strain takes the place of J - 1, tau that of p, and tau / lambda that of
    j - 1.
 
-   The nodes of an element are followed by as many nodes for the pressure. The first component of the displacement of
-   such a node is tau length / mu, with the length of the KernelCase; the others do not count. The rows of the pressures
-   have the sign with which the symmetric part of the tangent is positive definite where that of the displacements is:
-   the tangent is not symmetric. */
+   The nodes of an element are followed by as many nodes for the pressure. One component of the displacement of such a
+   node is tau length / mu, with length and component of the KernelCase; the others do not count. The rows of the
+   pressures have the sign with which the symmetric part of the tangent is positive definite where that of the
+   displacements is: the tangent is not symmetric. */
 #include "nodalpressure.h"
 
 enum { MAX_CORNERS = 4 };
@@ -33,7 +33,7 @@ LANES_INLINE void SetPressure(const BatchCall *call, const int n, const int dim,
 {
   x->mean = (Lanes){0};
   for (int a = 0; a < n; a++) {
-    x->tau[a] = call->mu / call->length * CONST_LANE(call->u, (n + a) * dim);
+    x->tau[a] = call->mu / call->length * CONST_LANE(call->u, (n + a) * dim + call->component);
     x->mean += x->tau[a] / n;
   }
   NodalPressureSet(call, &x->mean, dilatation, &x->at);
@@ -54,7 +54,8 @@ LANES_INLINE void AddPressureForce(const BatchCall *call, const int n, const int
     Lanes force = -*volume * x->at.slope * x->at.excess / n;
 
     for (int b = 0; b < n; b++) force += Deviation(call, n, volume, a, b) * x->tau[b];
-    for (int i = 0; i < dim; i++) LANE(call->f, (n + a) * dim + i) = i == 0 ? x->at.scale * force : (Lanes){0};
+    for (int i = 0; i < dim; i++)
+      LANE(call->f, (n + a) * dim + i) = i == call->component ? x->at.scale * force : (Lanes){0};
   }
 }
 
@@ -62,7 +63,7 @@ LANES_INLINE void AddPressureForce(const BatchCall *call, const int n, const int
 LANES_INLINE void JoinTangent(const BatchCall *call, const int n, const int dim, const Lanes *volume, const Pressure *x,
                               const double *part, const double *D)
 {
-  const int   half = n * dim, all = 2 * half;
+  const int   half = n * dim, all = 2 * half, p = half + call->component;
   const Lanes across = x->at.scale * x->at.slope / n;
   const Lanes middle = *volume * (x->at.slope * x->at.j_slope - x->at.bend * x->at.excess) / (n * n);
 
@@ -70,13 +71,13 @@ LANES_INLINE void JoinTangent(const BatchCall *call, const int n, const int dim,
   for (int r = 0; r < half; r++) {
     for (int s = 0; s < half; s++) LANE(call->K, r * all + s) = CONST_LANE(part, r * half + s);
     for (int a = 0; a < n; a++) {
-      LANE(call->K, r * all + half + a * dim) = across * CONST_LANE(D, r);
-      LANE(call->K, (half + a * dim) * all + r) = -across * CONST_LANE(D, r);
+      LANE(call->K, r * all + p + a * dim)   = across * CONST_LANE(D, r);
+      LANE(call->K, (p + a * dim) * all + r) = -across * CONST_LANE(D, r);
     }
   }
   for (int a = 0; a < n; a++) {
     for (int b = 0; b < n; b++)
-      LANE(call->K, (half + a * dim) * all + half + b * dim) =
+      LANE(call->K, (p + a * dim) * all + p + b * dim) =
         x->at.scale * x->at.scale * (middle + Deviation(call, n, volume, a, b));
   }
 }

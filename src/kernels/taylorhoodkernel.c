@@ -59,7 +59,7 @@ LANES_INLINE void AddPressureForce(const BatchCall *call, const int n, const int
                                    const Lanes *volume, const double N[MAX_CORNERS], const NodalPressure *x)
 {
   for (int a = 0; a < corners; a++)
-    LANE(call->f, (n + a) * dim) -= x->scale * *volume * x->slope * x->excess * N[a];
+    LANE(call->f, (n + a) * dim + call->component) -= x->scale * *volume * x->slope * x->excess * N[a];
 }
 
 /* Adds a point to the rows and columns of the pressures. D: forces of a pressure 1 at the point. */
@@ -67,18 +67,18 @@ LANES_INLINE void AddPressureTangent(const BatchCall *call, const int n, const i
                                      const Lanes *volume, const double N[MAX_CORNERS], const NodalPressure *x,
                                      const double *D)
 {
-  const int   half = n * dim, all = (n + corners) * dim;
+  const int   first = n * dim + call->component, all = (n + corners) * dim;
   const Lanes across = x->scale * x->slope;
   const Lanes own    = x->scale * x->scale * *volume * (x->slope * x->j_slope - x->bend * x->excess);
 
   for (int a = 0; a < corners; a++) {
-    const int p = half + a * dim;
+    const int p = first + a * dim;
 
-    for (int r = 0; r < half; r++) {
+    for (int r = 0; r < n * dim; r++) {
       LANE(call->K, r * all + p) += across * N[a] * CONST_LANE(D, r);
       LANE(call->K, p * all + r) -= across * N[a] * CONST_LANE(D, r);
     }
-    for (int b = 0; b < corners; b++) LANE(call->K, p * all + half + b * dim) += own * (N[a] * N[b]);
+    for (int b = 0; b < corners; b++) LANE(call->K, p * all + first + b * dim) += own * (N[a] * N[b]);
   }
 }
 
@@ -97,7 +97,7 @@ LANES_INLINE void EvaluatePoint(const BatchCall *call, const int n, const int co
   Dilatation(call, H, &dilatation);
   KeepLeastJ(call, &dilatation);
   CornerShapes(e, corners, q, N);
-  for (int a = 0; a < corners; a++) tau += N[a] * CONST_LANE(call->u, (n + a) * dim);
+  for (int a = 0; a < corners; a++) tau += N[a] * CONST_LANE(call->u, (n + a) * dim + call->component);
   tau *= call->mu / call->length;
   NodalPressureSet(call, &tau, &dilatation, &x);
   if (call->H) NodalPressureStore(call, q, H, &dilatation, &x);

@@ -2,6 +2,7 @@
 #include "kernels/elementkernel.h"
 #include "mesh/meshdofs.h"
 #include "pressurenodesimpl.h"
+#include "base/complaint.h"
 
 /* Says whether the nodes of the cells of a type in a body have pressures. */
 static PetscBool HasPressures(Scene scene, int body, ElementType type)
@@ -23,46 +24,155 @@ static PetscBool SameMaterial(const Material *a, const Material *b)
   return same;
 }
 
-/* Condenses the pressures of bodies of different materials that share nodes: their pressures jump there, and unknowns
-   of the nodes would make them continuous. On rank 0. */
-static PetscErrorCode CondenseBonded(Scene scene, const RootMesh *root, int *condensed)
+/* Says for each body which is the first with its material, -1 if it has none. */
+static void SortMaterials(Scene scene, int *material)
 {
-  int *first; /* the first body with pressures at each node of gmsh; -1: none */
+  for (int b = 0; b < scene->n_bodies; b++) {
+    material[b] = scene->bodies[b].rigid ? -1 : b;
+    for (int a = 0; a < b && material[b] == b; a++)
+      if (!scene->bodies[a].rigid && SameMaterial(&scene->bodies[a].material, &scene->bodies[b].material))
+        material[b] = a;
+  }
+}
+
+/* Marks the pairs of materials with pressures that share nodes: bonded [n_bodies][n_bodies]. A node lists one material
+   more than it has components, at most, since components fail there anyway. On rank 0. */
+static PetscErrorCode FindBonds(Scene scene, const RootMesh *root, int dim, const int *material, PetscBool *bonded)
+{
+  int *known, *count;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(root->gmsh.n_nodes, &first));
-  for (PetscInt i = 0; i < root->gmsh.n_nodes; i++) first[i] = -1;
+  PetscCall(PetscMalloc1(root->gmsh.n_nodes * (dim + 1), &known));
+  PetscCall(PetscCalloc1(root->gmsh.n_nodes, &count));
   for (PetscInt c = 0; c < root->n_cells; c++) {
     const PetscInt *nodes = RootMeshCellNodes(root, c);
-    const int       body  = root->cell_body[c];
+    const int       own   = material[root->cell_body[c]];
 
-    if (!HasPressures(scene, body, root->cell_block[c]->element->type)) continue;
+    if (!HasPressures(scene, root->cell_body[c], root->cell_block[c]->element->type)) continue;
     for (int k = 0; k < root->cell_block[c]->nodes; k++) {
-      int *other = &first[nodes[k]];
+      int *at = &known[nodes[k] * (dim + 1)], *n = &count[nodes[k]], m = 0;
 
-      if (*other < 0) *other = body;
-      if (!SameMaterial(&scene->bodies[*other].material, &scene->bodies[body].material))
-        condensed[*other] = condensed[body] = 1;
+      while (m < *n && at[m] != own) m++;
+      if (m < *n || *n > dim) continue;
+      for (m = 0; m < *n; m++)
+        bonded[own * scene->n_bodies + at[m]] = bonded[at[m] * scene->n_bodies + own] = PETSC_TRUE;
+      at[(*n)++] = own;
     }
   }
-  PetscCall(PetscFree(first));
+  PetscCall(PetscFree(known));
+  PetscCall(PetscFree(count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Condenses pressures where the linear solver iterates, which is not for tangents of a saddle, and of bonded bodies. */
-static PetscErrorCode Condense(Scene scene, const RootMesh *root, Mesh mesh)
+/* Counts and marks the components that the materials bonded to one have taken. */
+static int CountTaken(int n, int dim, const PetscBool *bonded, const int *component, PetscBool taken[3])
 {
-  int *condensed, all = scene->solver.type == SOLVER_ITERATIVE;
+  int count = 0;
+
+  for (int d = 0; d < dim; d++) taken[d] = PETSC_FALSE;
+  for (int b = 0; b < n; b++)
+    if (bonded[b] && component[b] >= 0 && component[b] < dim) taken[component[b]] = PETSC_TRUE;
+  for (int d = 0; d < dim; d++) count += taken[d];
+  return count;
+}
+
+/* Chooses the component of each body, dim where none is left. The material with the fewest left is the next, as in
+   Brelaz (Communications of the ACM 22, 1979), which colours every graph of two colours. */
+static void ChooseComponents(int n, int dim, const int *material, const PetscBool *bonded, int *component)
+{
+  PetscBool taken[3];
+
+  for (int b = 0; b < n; b++) component[b] = -1;
+  for (int next = 0; next >= 0;) {
+    int most = next = -1;
+
+    for (int b = 0; b < n; b++) {
+      const int count = CountTaken(n, dim, &bonded[b * n], component, taken);
+
+      if (material[b] != b || component[b] >= 0 || count <= most) continue;
+      most = count;
+      next = b;
+    }
+    if (next < 0) break;
+    CountTaken(n, dim, &bonded[next * n], component, taken);
+    component[next] = 0;
+    while (component[next] < dim && taken[component[next]]) component[next]++;
+  }
+  for (int b = 0; b < n; b++) component[b] = material[b] < 0 ? 0 : component[material[b]];
+}
+
+/* Gives bodies of different materials that share nodes different components, and says which bodies these are. On rank
+   0. */
+static PetscErrorCode SeparateBonded(Scene scene, const RootMesh *root, int dim, int *component, int *shares)
+{
+  const int  n = scene->n_bodies;
+  int       *material;
+  PetscBool *bonded;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(scene->n_bodies, &condensed));
+  PetscCall(PetscMalloc1(n, &material));
+  PetscCall(PetscCalloc1(n * n, &bonded));
+  SortMaterials(scene, material);
+  PetscCall(FindBonds(scene, root, dim, material, bonded));
+  ChooseComponents(n, dim, material, bonded, component);
+  for (int b = 0; b < n; b++)
+    for (int a = 0; a < n && material[b] >= 0; a++) shares[b] |= bonded[material[b] * n + a];
+  PetscCall(PetscFree(material));
+  PetscCall(PetscFree(bonded));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses a body that has found no component, and whose elements, of first order, cannot condense their pressures. */
+static PetscErrorCode RefuseCrowded(Scene scene, const RootMesh *root, Mesh mesh, const int *component)
+{
+  Complaint complaint = {""};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; root && c < root->n_cells; c++) {
+    const SceneBody *body = &scene->bodies[root->cell_body[c]];
+
+    if (component[root->cell_body[c]] < mesh->dim) continue;
+    if (HasPressures(scene, root->cell_body[c], root->cell_block[c]->element->type))
+      Complain(&complaint,
+               "%s: body '%s' of mixed %s shares nodes with bodies of %d other materials, whose pressures leave none "
+               "for it; allowed: mesh.order: 2",
+               SceneWhere(scene, body->path, "material"), body->name, root->cell_block[c]->element->name,
+               (int)mesh->dim);
+  }
+  PetscCall(ComplaintRefuse(mesh->comm, &complaint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Condenses pressures where the linear solver iterates, which is not for tangents of a saddle. */
+static PetscErrorCode CondenseAll(Scene scene, const RootMesh *root, Mesh mesh)
+{
+  int all = scene->solver.type == SOLVER_ITERATIVE;
+
+  PetscFunctionBeginUser;
   if (root && scene->solver.type == SOLVER_AUTO && mesh->dim == 3 && mesh->dim * root->n_nodes > SOLVER_DIRECT_DOFS)
     all = 1;
-  if (root) PetscCall(CondenseBonded(scene, root, condensed));
-  for (int b = 0; b < scene->n_bodies && all; b++) condensed[b] = 1;
-  PetscCallMPI(MPI_Bcast(condensed, scene->n_bodies, MPI_INT, 0, mesh->comm));
-  for (int b = 0; b < scene->n_bodies; b++) scene->bodies[b].condensed = condensed[b];
-  PetscCall(PetscFree(condensed));
+  PetscCallMPI(MPI_Bcast(&all, 1, MPI_INT, 0, mesh->comm));
+  for (int b = 0; b < scene->n_bodies; b++) scene->bodies[b].condensed = all;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sets the components of the bodies. Elements of second order condense their pressures where bodies of different
+   materials share nodes: on the same mesh the force of two bonded blocks is 0.3 % off then, 1.5 % with components. */
+static PetscErrorCode SetComponents(Scene scene, const RootMesh *root, Mesh mesh)
+{
+  const int n = scene->n_bodies;
+  int      *component;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * n, &component));
+  if (root) PetscCall(SeparateBonded(scene, root, (int)mesh->dim, component, component + n));
+  PetscCallMPI(MPI_Bcast(component, 2 * n, MPI_INT, 0, mesh->comm));
+  for (int b = 0; b < n; b++) {
+    scene->bodies[b].component = component[b] < mesh->dim ? component[b] : 0;
+    scene->bodies[b].condensed |= component[n + b];
+  }
+  PetscCall(RefuseCrowded(scene, root, mesh, component));
+  PetscCall(PetscFree(component));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -72,14 +182,15 @@ static PetscErrorCode Condense(Scene scene, const RootMesh *root, Mesh mesh)
   Collective
 
   Input Parameters:
-+ scene - its bodies, of which condensed is set
++ scene - its bodies, of which condensed and component are set
 . root  - on rank 0, NULL on other ranks
 - mesh  - has_pressures is set
 @*/
 PetscErrorCode PressureNodesExist(Scene scene, const RootMesh *root, Mesh mesh)
 {
   PetscFunctionBeginUser;
-  PetscCall(Condense(scene, root, mesh));
+  PetscCall(CondenseAll(scene, root, mesh));
+  PetscCall(SetComponents(scene, root, mesh));
   for (PetscInt c = 0; root && c < root->n_cells && !mesh->has_pressures; c++)
     mesh->has_pressures = HasPressures(scene, root->cell_body[c], root->cell_block[c]->element->type);
   PetscCallMPI(MPI_Bcast(&mesh->has_pressures, 1, MPIU_BOOL, 0, mesh->comm));
@@ -141,16 +252,18 @@ PetscErrorCode PressureNodesConstrain(Mesh mesh, Scene scene, PetscBool *constra
 
   PetscFunctionBeginUser;
   if (!mesh->has_pressures) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(mesh->n_nodes, &has));
+  PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &has));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
-    for (int k = 0; k < ElementGet(mesh->cell_type[c])->corners && CellHasPressureNodes(mesh, scene, c); k++)
-      has[PressureNodeOf(mesh, mesh->cell_nodes[mesh->cell_ptr[c] + k])] = 1;
-  PetscCall(MeshSumNodes(mesh, 1, has));
-  for (PetscInt i = 0; i < mesh->n_pressure_nodes; i++) {
-    const PetscInt node = PressureNodeOf(mesh, i);
+    for (int k = 0; k < ElementGet(mesh->cell_type[c])->corners && CellHasPressureNodes(mesh, scene, c); k++) {
+      const PetscInt node = PressureNodeOf(mesh, mesh->cell_nodes[mesh->cell_ptr[c] + k]);
 
-    for (int d = 0; d < mesh->dim; d++) constrained[node * mesh->dim + d] = (PetscBool)(d > 0 || has[node] == 0);
-    mesh->saddle = (PetscBool)(mesh->saddle || has[node] > 0);
+      has[node * mesh->dim + scene->bodies[mesh->cell_body[c]].component] = 1;
+    }
+  PetscCall(MeshSumNodes(mesh, mesh->dim, has));
+  for (PetscInt k = PressureNodeOf(mesh, 0) * mesh->dim; k < PressureNodeOf(mesh, mesh->n_pressure_nodes) * mesh->dim;
+       k++) {
+    constrained[k] = (PetscBool)(has[k] == 0);
+    mesh->saddle   = (PetscBool)(mesh->saddle || has[k] > 0);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mesh->saddle, 1, MPIU_BOOL, MPI_LOR, mesh->comm));
   PetscCall(PetscFree(has));

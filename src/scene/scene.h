@@ -40,6 +40,7 @@ typedef struct {
   int locks;
   int enclosed;  /* 1 if its volume is kept exactly and no free displacement changes it; EnclosedBodiesFind() sets it */
   int condensed; /* as in a KernelCase; PressureNodesExist() and EnclosedBodiesFind() set it */
+  int component; /* as in a KernelCase; PressureNodesExist() sets it */
   /* Of a rigid tool. Of a bolt that is tightened the component 0 is free: the shortening of its unloaded length. */
   Motion motion;
   int    bolt;    /* 1 if the body is a bolt that is tightened */

@@ -12,4 +12,19 @@ for name, overrides in (("two rubbers", ()), ("one rubber", ("bodies.1.material.
         for simplex in (0, 1)
     ]
     check.near(f"{name}: force of triangles over that of quadrilaterals", force[1] / force[0], 1, 0.01)
+# Elements of first order, whose nodes have a pressure for each rubber: with one for both the force is 1.43
+# with 4 elements through a block, where the limit is 1.55.
+excess = []
+for n in (8, 16):
+    force = [
+        run(args, SCENES / "bonded_rubber.yaml", out=f"first order {n} {simplex}",
+            overrides=["mesh.order=1", f"mesh.parameters.n={n}", f"mesh.parameters.simplex={simplex}"]
+            ).summary()["probes"]["push"] for simplex in (0, 1)
+    ]
+    excess.append(force[1] / force[0] - 1)
+check.near("first order: force of triangles over that of quadrilaterals", excess[0], 0, 0.03)
+check.holds("first order: the difference falls with the size of elements", abs(excess[1]) < 0.65 * abs(excess[0]),
+            f"{excess[0]:.4f} to {excess[1]:.4f}")
+said = run(args, SCENES / "bonded_three.yaml", out="three", must=1).text
+check.holds("three rubbers at a node of a plane model", "whose pressures leave none" in said and "[B128]" in said, said)
 check.finish()

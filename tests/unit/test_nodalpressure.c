@@ -70,7 +70,8 @@ static void CaseCreate(Case *c, KernelCase kernel, double nu)
   }
 }
 
-/* Triangles in the plane and axisymmetric, and tetrahedra, of both orders, with small strains and every law. Plastic
+/* Triangles in the plane and axisymmetric, and tetrahedra, of both orders, with small strains and every law, and with
+   pressures in the first or second component. Plastic
    elements of second order have no pressures of nodes. */
 static int NextCase(KernelCase *kernel)
 {
@@ -91,7 +92,8 @@ static int NextCase(KernelCase *kernel)
                            .geometry    = shapes[next % SHAPES].geometry,
                            .kinematics  = law == MATERIAL_LAWS ? KINEMATICS_SMALL : KINEMATICS_FINITE,
                            .law         = law == MATERIAL_LAWS ? MATERIAL_LINEAR : (MaterialLaw)law,
-                           .formulation = FORMULATION_MIXED};
+                           .formulation = FORMULATION_MIXED,
+                           .component   = next % 2};
     if (law == MATERIAL_LINEAR || !ElementKernelExists(kernel)) continue;
     if (ElementGet(kernel->type)->order == 2 && MaterialGetLaw(kernel->law)->plastic) {
       assert_true(ElementPressures(kernel) > 0);
@@ -193,12 +195,12 @@ static void OnlyDifferencesOfPressuresAreResisted(void **state)
       const double *K = &c.K[lane];
 
       for (int a = 0; a < c.pressures; a++) {
-        const int p = (c.n + a) * c.dim;
+        const int p = (c.n + a) * c.dim + kernel.component;
         double    sum = 0;
 
         for (int r = 0; r < c.n * c.dim; r++)
           assert_near(K[(r * c.dofs + p) * KERNEL_LANES], -K[(p * c.dofs + r) * KERNEL_LANES], 0);
-        for (int b = 0; b < c.pressures; b++) sum += K[(p * c.dofs + (c.n + b) * c.dim) * KERNEL_LANES];
+        for (int b = 0; b < c.pressures; b++) sum += K[(p * c.dofs + (c.n + b) * c.dim + kernel.component) * KERNEL_LANES];
         assert_near(sum, 0, 1e-14 * young);
         assert_true(second ? K[(p * c.dofs + p) * KERNEL_LANES] == 0 : K[(p * c.dofs + p) * KERNEL_LANES] > 0);
       }
@@ -236,7 +238,7 @@ static void PressuresOfSecondOrderHaveForces(void **state)
     CaseCreate(&c, kernel, infinite);
     Evaluate(&c, c.f, c.K);
     for (int a = 0; a < c.pressures; a++) {
-      for (int r = 0; r < c.n * c.dim; r++) G[a][r] = c.K[(r * c.dofs + (c.n + a) * c.dim) * KERNEL_LANES];
+      for (int r = 0; r < c.n * c.dim; r++) G[a][r] = c.K[(r * c.dofs + (c.n + a) * c.dim + kernel.component) * KERNEL_LANES];
       for (int r = 0; r < c.n * c.dim; r++) size = fmax(size, fabs(G[a][r]));
       assert_true(Orthogonalise(c.n * c.dim, a, G) > 0.01 * size * size);
     }

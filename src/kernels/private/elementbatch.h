@@ -57,6 +57,7 @@ typedef struct {
   Lanes         kappa, mu, rest; /* rest: 1 - kappa / projected part */
   Lanes         modulus;         /* the projected part */
   double        length;          /* of KernelCase */
+  int           component;       /* of KernelCase */
   const double *multiplier;
   int           held; /* of StressReference */
   double       *theta, *pressure, *follow;
