@@ -93,6 +93,14 @@ def shear(result, allowed):
     return [scatter("traction in stick", result.traction(), allowed)]
 
 
+def balance(result):
+    """Outer forces and moments out of balance, over the sums of their amounts: in a ring that is turned these moments
+    are those of friction."""
+    found = result.summary["certificate"]
+    return [(f"{name}s out of balance", found[f"{name}_balance"], found[f"{name}_balance"],
+             100 * found[f"{name}_balance"], allowed) for name, allowed in (("force", 1e-10), ("moment", 1e-4))]
+
+
 def rings(result, state):
     found = [scatter("traction", result.traction(), {"stick": 1.5, "jitter": 4, "slip": 1}[state])]
     if state == "slip":
@@ -101,7 +109,7 @@ def rings(result, state):
         found.append(("traction over 0.2 times the pressure", 1 + ratio.mean(), 1, 100 * abs(ratio).max(), 1))
         work = numpy.diff(result.steps["dissipated"])[4:]
         found.append(("torque, swing", work.mean(), work.mean(), 100 * (work.max() - work.min()) / work.mean(), 0.5))
-    return found
+    return found + balance(result)
 
 
 def belt(result, _):

@@ -205,6 +205,12 @@ JOBS = [
     Job("clip_on_rod", "clip pushed over a rod and pulled back", [
         Answer("push", 2.098, 2.1, "limit"),  # it varies by that with the mesh
     ], steps=12),
+    Job("brake_band", "brake band around a drum that turns", [
+        Answer("torque", 1658.7, 0.02, "limit"),
+    ], steps=10, stiff=["contact.0.penalty={scale: 100}"]),
+    Job("cork", "cork pushed into the neck of a bottle", [
+        Answer("push", 185.1, 1, "limit"),  # it varies by that with the mesh
+    ], steps=12, picture=["--mirror", "x"]),
     Job("brake_block", "brake block on a drum that turns", [
         Answer("torque", -7178.4, 0.05, "limit"),
     ], steps=12),
