@@ -131,7 +131,7 @@ static void BoxWithImages(ContactSearch s, PetscReal box[6])
 static PetscErrorCode SlaveBox(NodeDepths depths, const PetscReal *u, PetscReal t, PetscReal box[6])
 {
   PetscFunctionBeginUser;
-  SearchMasterBox(depths->search, u, t, box);
+  SearchMasterBox(depths->search, u, t, NULL, box);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, 3, MPIU_REAL, MPI_MIN, depths->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &box[3], 3, MPIU_REAL, MPI_MAX, depths->mesh->comm));
   BoxWithImages(depths->search, box);

@@ -488,6 +488,20 @@ void SearchSetRungs(ContactSearch s, const int *first)
 }
 
 /*@
+  SearchListsDistance - returns the distance (length) from the slave points within which faces are collected for lists.
+
+  Not collective
+
+  Input Parameters:
++ s      - the search
+- motion - relative motion (length) for which the lists must be good
+@*/
+PetscReal SearchListsDistance(ContactSearch s, PetscReal motion)
+{
+  return s->reach + PetscMax(s->margin, SearchFitReach(s)) + 2 * motion;
+}
+
+/*@
   SearchLists - lists for every slave point of this rank the facets near it and the points of which these are made, from
   whatever rank.
 
@@ -508,7 +522,7 @@ void SearchSetRungs(ContactSearch s, const int *first)
 @*/
 PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *out)
 {
-  const PetscReal distance = s->reach + PetscMax(s->margin, SearchFitReach(s)) + 2 * motion;
+  const PetscReal distance = SearchListsDistance(s, motion);
   PetscReal       box[6];
   SearchField     field;
   NeighbourLists  lists;
