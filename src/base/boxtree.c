@@ -19,9 +19,10 @@ typedef struct {
 
 struct _n_Tree {
   int     dim, n;
-  double *box;   /* [2n-1][2][dim]: lower and upper corners of the nodes */
-  int    *order; /* box numbers in the order of the leaves */
-  Range  *queue; /* [n + 1]: heap of BoxTreeClosest(), nearest first */
+  double *box;    /* [2n-1][2][dim]: lower and upper corners of the nodes */
+  int    *order;  /* box numbers in the order of the leaves */
+  Range  *queue;  /* [n + 1]: heap of BoxTreeClosest(), nearest first */
+  double *facing; /* [2n-1][2][dim]: lower and upper components of the directions below each node; NULL: none */
 };
 
 /* The boxes while the tree is built */
@@ -169,6 +170,7 @@ void BoxTreeDestroy(BoxTree *tree)
   free((*tree)->box);
   free((*tree)->order);
   free((*tree)->queue);
+  free((*tree)->facing);
   free(*tree);
   *tree = NULL;
 }
@@ -305,13 +307,68 @@ static int Nearer(BoxTree tree, const Range *a, const Range *b)
   return a->count == 1 ? tree->order[a->first] < tree->order[b->first] : a->node < b->node;
 }
 
-/* Adds a subtree to the queue and returns the new length. */
-static int Push(BoxTree tree, Range range, const double *point, int length)
+/* Sets the components of the directions below a subtree. */
+static void SpanDirections(BoxTree tree, const double *direction, Range range)
+{
+  const int dim  = tree->dim;
+  double   *mine = tree->facing + (size_t)range.node * 2 * dim;
+  Range     half[2];
+
+  for (int k = 0; k < dim; ++k) mine[k] = mine[dim + k] = direction[(size_t)tree->order[range.first] * dim + k];
+  if (range.count == 1) return;
+  half[0] = Left(&range);
+  half[1] = Right(&range);
+  for (int i = 0; i < 2; ++i) {
+    const double *below = tree->facing + (size_t)half[i].node * 2 * dim;
+
+    SpanDirections(tree, direction, half[i]);
+    for (int k = 0; k < dim; ++k) {
+      mine[k]       = fmin(mine[k], below[k]);
+      mine[dim + k] = fmax(mine[dim + k], below[dim + k]);
+    }
+  }
+}
+
+/*@
+  BoxTreeSetDirections - gives each box a direction, for BoxTreeClosest() with a direction
+
+  Not collective, plain C
+
+  Input Parameters:
++ tree      - the tree
+- direction - [n][dim], not kept
+
+  Note:
+  Returns 0, or 1 if there is not enough memory.
+@*/
+int BoxTreeSetDirections(BoxTree tree, const double *direction)
+{
+  free(tree->facing);
+  tree->facing = malloc(sizeof(*tree->facing) * ((size_t)2 * tree->n + 1) * 2 * tree->dim);
+  if (!tree->facing) return 1;
+  if (tree->n) SpanDirections(tree, direction, (Range){0, 0, 0, tree->n});
+  return 0;
+}
+
+/* May a direction below a node be opposed to `own`? */
+static int MayOppose(BoxTree tree, int node, const double *own)
+{
+  const double *lower = tree->facing + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
+  double        most = 0;
+
+  for (int k = 0; k < tree->dim; ++k) most += fmax(-own[k] * lower[k], -own[k] * upper[k]);
+  return most > 0;
+}
+
+/* Adds a subtree to the queue and returns the new length. One that is beyond the bound, or that has no direction
+   opposed to `own`, is left out. */
+static int Push(BoxTree tree, Range range, const double *point, const double *own, double bound, int length)
 {
   Range *queue = tree->queue;
   int    i     = length;
 
   range.distance = SquaredDistance(tree, range.node, point);
+  if (range.distance > bound * bound || (own && !MayOppose(tree, range.node, own))) return length;
   for (; i > 0 && Nearer(tree, &range, &queue[(i - 1) / 2]); i = (i - 1) / 2) queue[i] = queue[(i - 1) / 2];
   queue[i] = range;
   return length + 1;
@@ -342,6 +399,7 @@ static Range Pop(BoxTree tree, int length)
   Input Parameters:
 + tree    - the tree
 . point   - [dim] coordinates (length)
+. own     - [dim], boxes whose direction is not opposed to it may be left out; NULL: all are visited
 . bound   - largest distance (length), which may be INFINITY
 . visit   - is called with the context, the number of a box and the bound, which it may lower
 - context - for visit
@@ -349,11 +407,12 @@ static Range Pop(BoxTree tree, int length)
   Note:
   Boxes of equal distance are visited by number. A box whose distance equals the bound is visited too, so that of two
   equally near facets both are seen. visit must not call BoxTreeClosest() on the same tree, which keeps the queue.
+  With `own` the tree needs BoxTreeSetDirections(). A direction is opposed if its product with `own` is below 0.
 @*/
-void BoxTreeClosest(BoxTree tree, const double *point, double *bound,
+void BoxTreeClosest(BoxTree tree, const double *point, const double *own, double *bound,
                     void (*visit)(void *context, int index, double *bound), void *context)
 {
-  int length = tree->n ? Push(tree, (Range){0, 0, 0, tree->n}, point, 0) : 0;
+  int length = tree->n ? Push(tree, (Range){0, 0, 0, tree->n}, point, own, *bound, 0) : 0;
 
   while (length) {
     const Range range = Pop(tree, length--);
@@ -362,8 +421,8 @@ void BoxTreeClosest(BoxTree tree, const double *point, double *bound,
     if (range.count == 1)
       visit(context, tree->order[range.first], bound);
     else {
-      length = Push(tree, Left(&range), point, length);
-      length = Push(tree, Right(&range), point, length);
+      length = Push(tree, Left(&range), point, own, *bound, length);
+      length = Push(tree, Right(&range), point, own, *bound, length);
     }
   }
 }

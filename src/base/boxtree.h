@@ -2,8 +2,9 @@
 
    BoxTreeBuild() makes the tree and is the only function that allocates memory; BoxTreeDestroy() frees it.
    BoxTreeNear() gives all boxes around a point, BoxTreeMeet() all that a box meets. BoxTreeClosest() is for a search
-   in which each box that was seen may make the rest superfluous, such as that for the closest facet. The tree keeps
-   the queue of BoxTreeClosest(), so that one such search runs in it at a time. */
+   in which each box that was seen may make the rest superfluous, such as that for the closest facet; after
+   BoxTreeSetDirections() it leaves out what faces away. The tree keeps the queue of BoxTreeClosest(), so that one such
+   search runs in it at a time. */
 #pragma once
 
 typedef struct _n_Tree *BoxTree;
@@ -12,5 +13,6 @@ int  BoxTreeBuild(int dim, int n, const double *lower, const double *upper, BoxT
 void BoxTreeDestroy(BoxTree *tree);
 int  BoxTreeNear(BoxTree, const double *point, double radius, int max, int *found);
 int  BoxTreeMeet(BoxTree, const double *lower, const double *upper, int max, int *found);
-void BoxTreeClosest(BoxTree, const double *point, double *bound, void (*visit)(void *context, int index, double *bound),
-                    void *context);
+int  BoxTreeSetDirections(BoxTree, const double *direction);
+void BoxTreeClosest(BoxTree, const double *point, const double *own, double *bound,
+                    void (*visit)(void *context, int index, double *bound), void *context);

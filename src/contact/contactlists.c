@@ -236,10 +236,29 @@ static PetscErrorCode PairExtrapolateOffsets(ContactPair *pair, const PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Offsets of both sides at a state. */
-static PetscErrorCode PairTakeOffsets(ContactPair *pair, const PetscReal *u, PetscReal t)
+/* Wants offsets on the faces of both sides that are near the other side, as lists that are good for a motion see no
+   others. */
+static PetscErrorCode PairWantOffsets(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion,
+                                      PetscBool begins)
+{
+  PetscBool *slave, *master;
+
+  PetscFunctionBeginUser;
+  if (!pair->slave_offsets || !pair->master_offsets) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(pair->slave->n_faces, &slave, pair->master->n_faces, &master));
+  PetscCall(SearchNearFaces(pair->search, u, t, motion, slave, master));
+  PetscCall(OffsetsWant(pair->slave_offsets, slave, begins));
+  PetscCall(OffsetsWant(pair->master_offsets, master, begins));
+  PetscCall(PetscFree2(slave, master));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Offsets of both sides at a state, where lists that are good for a motion need them. */
+static PetscErrorCode PairTakeOffsets(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion,
+                                      PetscBool begins)
 {
   PetscFunctionBeginUser;
+  PetscCall(PairWantOffsets(pair, u, t, motion, begins));
   if (pair->slave_offsets) PetscCall(OffsetsTake(pair->slave_offsets, u, t));
   if (pair->master_offsets) PetscCall(OffsetsTake(pair->master_offsets, u, t));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -272,7 +291,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
 
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(PetscLogEventBegin(contact->event_offset, 0, 0, 0, 0));
-    PetscCall(PairTakeOffsets(pair, u, t));
+    PetscCall(PairTakeOffsets(pair, u, t, needed, PETSC_TRUE));
     if (pair->slave_offsets) PetscCall(PetscLogEventEnd(contact->event_offset, 0, 0, 0, 0));
     for (PetscInt q = 0; q < pair->slaves->n; q++) changed = (PetscBool)(changed || pair->first_rung[q]);
     PetscCall(PetscArrayzero(pair->first_rung, pair->slaves->n));
@@ -341,7 +360,8 @@ static PetscBool PairDrifts(const ContactPair *pair)
    gap must agree. On fits the gap changes a little with their frames, so frames and points must agree, and with
    offsets the gap must agree within `drift`. Area factors must agree on both, weighted by the term's pressure over
    the pair's largest one, or be as close to a jump of what the solution asks for: factor_drift. depth is the largest
-   penetration of the pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead. */
+   penetration of the pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead.
+ */
 static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscInt c, PetscReal gap,
                             const PetscReal *factor, PetscReal t, PetscReal depth, PetscReal pressure, PetscReal drift,
                             PetscReal factor_drift)
@@ -362,8 +382,7 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
     PetscReal      low, high;
 
     FactorBracket(pair, q, factor[q], &low, &high);
-    if (share * PetscMin(PetscAbsReal(factor[q] - pair->factor[q]), high - low) > factor_drift)
-      return PETSC_FALSE;
+    if (share * PetscMin(PetscAbsReal(factor[q] - pair->factor[q]), high - low) > factor_drift) return PETSC_FALSE;
     if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
   }
   if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(gap - old) <= tolerance);
@@ -377,7 +396,7 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
-  drift   = PairDrifts(pair) ? lag * CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
+  drift = PairDrifts(pair) ? lag * CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
   if (pair->friction) factor_drift = PetscMin(factor_drift, lag * CONTACT_OFFSET_AGREES);
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
@@ -493,7 +512,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
 
     if (pair->friction) PetscCall(FrictionAnchorLate(pair, t, &late));
     PetscCall(PairListsMotion(contact, pair, t, &needed));
-    PetscCall(PairTakeOffsets(pair, u, t));
+    PetscCall(PairTakeOffsets(pair, u, t, needed, PETSC_FALSE));
     PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(ContactNoteLost(pair, t));
     ContactNoteTunnelled(pair, t);

@@ -144,7 +144,7 @@ PetscErrorCode MeshPointsInBody(Mesh mesh, int body, double core, PetscInt n, co
     double bound = 0; /* the boxes that hold the point */
     Locate look  = {mesh, cells, core, &x[i * mesh->dim], PETSC_FALSE};
 
-    BoxTreeClosest(tree, look.x, &bound, VisitCell, &look);
+    BoxTreeClosest(tree, look.x, NULL, &bound, VisitCell, &look);
     found[i] = look.inside;
   }
   BoxTreeDestroy(&tree);

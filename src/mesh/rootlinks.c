@@ -94,7 +94,7 @@ static PetscErrorCode LinkPair(const RootMesh *root, int slave_group, int master
     Nearest   nearest = {.cells = &master, .point = &slave.centre[3 * i], .closest = -1};
     PetscReal bound   = LINK_REACH * CellSize(root, slave.cell[i], nearest.point);
 
-    BoxTreeClosest(tree, nearest.point, &bound, VisitCentre, &nearest);
+    BoxTreeClosest(tree, nearest.point, NULL, &bound, VisitCentre, &nearest);
     if (nearest.closest < 0 || master.cell[nearest.closest] == slave.cell[i]) continue;
     links->cell[2 * links->n]       = slave.cell[i];
     links->cell[2 * links->n++ + 1] = master.cell[nearest.closest];

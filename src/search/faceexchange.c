@@ -1,7 +1,15 @@
 /* The exchange of master faces: boxes of the ranks, and the faces that may reach them. */
 #include "searchimpl.h"
 
-static void BoxEmpty(PetscReal box[6])
+/*@
+  SearchBoxEmpty - makes a box without any point.
+
+  Not collective
+
+  Output Parameter:
+. box - lower then upper corner
+@*/
+void SearchBoxEmpty(PetscReal box[6])
 {
   for (int d = 0; d < 3; d++) {
     box[d]     = PETSC_MAX_REAL;
@@ -9,7 +17,19 @@ static void BoxEmpty(PetscReal box[6])
   }
 }
 
-static void BoxAdd(PetscReal box[6], int dim, const PetscReal *x)
+/*@
+  SearchBoxAdd - makes a box so large that it holds a point.
+
+  Not collective
+
+  Input Parameters:
++ dim - 2 or 3
+- x   - x[dim], the point
+
+  Input/Output Parameter:
+. box - lower then upper corner
+@*/
+void SearchBoxAdd(PetscReal box[6], int dim, const PetscReal *x)
 {
   for (int d = 0; d < dim; d++) {
     box[d]     = PetscMin(box[d], x[d]);
@@ -57,19 +77,34 @@ void SearchRigidPosition(ContactSearch s, PetscInt n, PetscReal t, PetscReal x[3
   LoadsRigidMotion(s->loads, s->master->body, t, X, x);
 }
 
-/* Positions of the nodes of a master face. */
-static void FacePointPositions(ContactSearch s, PetscInt f, const PetscReal *u, PetscReal t, PetscReal *x)
+/*@
+  SearchFacePositions - computes the positions of the nodes of a face of this rank.
+
+  Not collective
+
+  Input Parameters:
++ s       - the search
+. surface - its master or its slave
+. f       - number of the face
+. u       - local displacements (length); NULL: of a rigid tool
+- t       - load parameter, for rigid tools
+
+  Output Parameter:
+. x - x[nodes of the face][dim] (length)
+@*/
+void SearchFacePositions(ContactSearch s, ContactSurface surface, PetscInt f, const PetscReal *u, PetscReal t,
+                         PetscReal *x)
 {
   const int    dim   = s->mesh->dim;
-  const Facet *facet = &s->master->faces[f];
+  const Facet *facet = &surface->faces[f];
 
   for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
     PetscReal y[3];
 
-    if (s->master->rigid) SearchRigidPosition(s, facet->nodes[a], t, y);
+    if (surface->rigid) SearchRigidPosition(s, facet->nodes[a], t, y);
     for (int d = 0; d < dim; d++)
       x[a * dim + d] =
-        s->master->rigid ? y[d] : s->mesh->coords[facet->nodes[a] * dim + d] + u[facet->nodes[a] * dim + d];
+        surface->rigid ? y[d] : s->mesh->coords[facet->nodes[a] * dim + d] + u[facet->nodes[a] * dim + d];
   }
 }
 
@@ -88,12 +123,12 @@ void SearchSlaveBox(ContactSearch s, PetscReal box[6])
 {
   const int dim = s->mesh->dim;
 
-  BoxEmpty(box);
+  SearchBoxEmpty(box);
   for (PetscInt q = 0; q < s->slaves->n; q++) {
     PetscReal x[3];
 
     SlavePointsPosition(s->slaves, q, x);
-    BoxAdd(box, dim, x);
+    SearchBoxAdd(box, dim, x);
   }
 }
 
@@ -103,9 +138,10 @@ void SearchSlaveBox(ContactSearch s, PetscReal box[6])
   Not collective
 
   Input Parameters:
-+ s - the search
-. u - local displacements (length)
-- t - load parameter, for rigid tools
++ s    - the search
+. u    - local displacements (length)
+. t    - load parameter, for rigid tools
+- some - some[faces]: only these faces count; NULL: all do
 
   Output Parameter:
 . box - lower then upper corner
@@ -113,16 +149,17 @@ void SearchSlaveBox(ContactSearch s, PetscReal box[6])
   Note:
   A rigid tool has all its faces on every rank.
 @*/
-void SearchMasterBox(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal box[6])
+void SearchMasterBox(ContactSearch s, const PetscReal *u, PetscReal t, const PetscBool *some, PetscReal box[6])
 {
   const int dim = s->mesh->dim;
 
-  BoxEmpty(box);
+  SearchBoxEmpty(box);
   for (PetscInt f = 0; f < s->master->n_faces; f++) {
     PetscReal x[FACE_MAX_NODES * 3];
 
-    FacePointPositions(s, f, u, t, x);
-    for (int a = 0; a < ElementGet(s->master->faces[f].type)->nodes; a++) BoxAdd(box, dim, &x[a * dim]);
+    if (some && !some[f]) continue;
+    SearchFacePositions(s, s->master, f, u, t, x);
+    for (int a = 0; a < ElementGet(s->master->faces[f].type)->nodes; a++) SearchBoxAdd(box, dim, &x[a * dim]);
   }
 }
 
@@ -135,10 +172,10 @@ static PetscBool SomeImageMeets(ContactSearch s, int n, const PetscReal *x, cons
     PetscReal face[6], y[3];
 
     if (s->images[m].left_out) continue;
-    BoxEmpty(face);
+    SearchBoxEmpty(face);
     for (int a = 0; a < n; a++) {
       SurfaceReflect(&s->images[m], dim, &x[a * dim], y);
-      BoxAdd(face, dim, y);
+      SearchBoxAdd(face, dim, y);
     }
     if (SearchBoxesMeet(face, box, dim, distance)) return PETSC_TRUE;
   }
@@ -158,7 +195,7 @@ static PetscBool ReachesBox(const void *context, PetscInt f, PetscMPIInt r)
   const Reach *reach = context;
   PetscReal    x[FACE_MAX_NODES * 3];
 
-  FacePointPositions(reach->s, f, reach->u, 0, x);
+  SearchFacePositions(reach->s, reach->s->master, f, reach->u, 0, x);
   return SomeImageMeets(reach->s, ElementGet(reach->s->master->faces[f].type)->nodes, x, &reach->boxes[6 * r],
                         reach->distance);
 }
@@ -216,7 +253,7 @@ PetscErrorCode SearchPickRigidFaces(ContactSearch s, const NodeGeometry *geometr
   for (PetscInt f = 0; f < s->master->n_faces; f++) {
     PetscReal x[FACE_MAX_NODES * 3];
 
-    FacePointPositions(s, f, NULL, t, x);
+    SearchFacePositions(s, s->master, f, NULL, t, x);
     if (!SomeImageMeets(s, ElementGet(s->master->faces[f].type)->nodes, x, box, distance)) continue;
     FaceRecordFromSurface(s->master, geometry, s->offset, f, &(*records)[(*n_records)++]);
   }

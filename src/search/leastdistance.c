@@ -104,7 +104,7 @@ PetscErrorCode SearchLeastDistance(ContactSearch s, const PetscReal *u, PetscRea
   for (PetscInt q = 0; q < n; q++) {
     LeastDistance look = {dim, master->faces, x, &points[q * dim]};
 
-    BoxTreeClosest(tree, look.point, distance, VisitFace, &look);
+    BoxTreeClosest(tree, look.point, NULL, distance, VisitFace, &look);
   }
   BoxTreeDestroy(&tree);
   PetscCall(PetscFree3(x, lower, upper));

@@ -131,7 +131,7 @@ static void BoxWithImages(ContactSearch s, PetscReal box[6])
 static PetscErrorCode SlaveBox(NodeDepths depths, const PetscReal *u, PetscReal t, PetscReal box[6])
 {
   PetscFunctionBeginUser;
-  SearchMasterBox(depths->search, u, t, box);
+  SearchMasterBox(depths->search, u, t, NULL, box);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, 3, MPIU_REAL, MPI_MIN, depths->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &box[3], 3, MPIU_REAL, MPI_MAX, depths->mesh->comm));
   BoxWithImages(depths->search, box);
@@ -259,7 +259,7 @@ static PetscReal NodeDepthIn(DepthSearch *look, BoxTree tree, const DepthNode *n
 
   look->x     = node->x;
   look->least = PETSC_MAX_REAL;
-  BoxTreeClosest(tree, node->x, &bound, VisitFacet, look);
+  BoxTreeClosest(tree, node->x, NULL, &bound, VisitFacet, look);
   if (look->least > reach) return 0;
   n = BoxTreeNear(tree, node->x, look->least + FACET_COINCIDENT * reach, (int)field->n_candidates, room->found);
   for (int i = 0; i < n; i++) room->facets[i] = RelativeFacet(look, room->found[i], i * FACE_MAX_NODES, room->x);

@@ -21,6 +21,7 @@ struct _n_Offsets {
   PetscInt       n;
   PetscReal *used, *now, *before; /* used: those of the present solve; now, before: of the last two accepted states */
   PetscReal  t_now, t_before;
+  PetscBool *wanted; /* of each face: its offsets are taken; others are NAN in now, before and last, and 0 in use */
   /* The offsets that were taken last, with the displacements and the load parameter there. t_last is NAN before the
      first. */
   PetscReal *last, *u_last, t_last;
@@ -74,6 +75,8 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
   PetscCall(PetscCalloc5(o->n, &o->used, o->n, &o->now, o->n, &o->before, o->n, &o->last, mesh->n_nodes * mesh->dim,
                          &o->u_last));
   PetscCall(PetscCalloc3(o->n, &o->held, o->n, &o->asked, o->n, &o->change));
+  PetscCall(PetscMalloc1(surface->n_faces, &o->wanted));
+  for (PetscInt f = 0; f < surface->n_faces; f++) o->wanted[f] = PETSC_TRUE;
   PetscCall(SearchCreate(mesh, scene, loads, surface, surface->max_size, n_images, images, &o->fit, NULL, NULL, NULL,
                          &o->search));
   *out = o;
@@ -96,6 +99,7 @@ PetscErrorCode OffsetsDestroy(Offsets *offsets)
   PetscCall(FaceMapsDestroy(&(*offsets)->maps));
   PetscCall(PetscFree5((*offsets)->used, (*offsets)->now, (*offsets)->before, (*offsets)->last, (*offsets)->u_last));
   PetscCall(PetscFree3((*offsets)->held, (*offsets)->asked, (*offsets)->change));
+  PetscCall(PetscFree((*offsets)->wanted));
   PetscCall(PetscFree(*offsets));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -187,8 +191,9 @@ static int CandidateCompare(const void *a, const void *b)
 /* Handles a face while fits about it can be made. */
 typedef PetscErrorCode (*OffsetFaceFn)(Offsets, FitSupport *, const OffsetFace *, PetscInt f, void *context);
 
-/* Visits all own faces with the surface at (u, t). */
-static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, OffsetFaceFn visit, void *context)
+/* Visits own faces, some[] of them or all, with the surface at (u, t). */
+static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, const PetscBool *some,
+                                   OffsetFaceFn visit, void *context)
 {
   ContactSearch  s   = o->search;
   const int      dim = s->mesh->dim;
@@ -199,7 +204,7 @@ static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, O
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&lists));
-  SearchMasterBox(s, u, t, box);
+  SearchMasterBox(s, u, t, some, box);
   PetscCall(SearchFieldCreate(s, u, t, box, SearchFitReach(s), lists, &field));
   PetscCall(FitSupportCreate(s, lists, &field, &fit));
   for (PetscInt f = 0; f < o->surface->n_faces; f++) {
@@ -209,6 +214,7 @@ static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, O
     OffsetFace face = {.candidate = own - field.candidates, .facet = facet, .rule = FaceRuleGet(facet->type, o->finer)};
     double     area[FACE_RULE_POINTS];
 
+    if (some && !some[f]) continue;
     for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
       for (int d = 0; d < dim; d++) face.x[a * dim + d] = fit.view.x[own->facet.nodes[a] * dim + d];
     FaceRuleAreas(face.rule, facet->type, dim, GEOMETRY_SOLID, face.x, area, face.normal);
@@ -298,7 +304,7 @@ static PetscErrorCode OffsetsMap(Offsets o, const PetscReal *zero)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(o->surface->n_faces + 1, &o->maps.ptr));
-  PetscCall(OffsetsVisit(o, zero, 0, MapFace, &making));
+  PetscCall(OffsetsVisit(o, zero, 0, NULL, MapFace, &making));
   PetscCall(PetscFree(making.place));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -315,18 +321,38 @@ static PetscErrorCode TakeOnce(Offsets o, PetscBool *done)
     if (o->kind == OFFSETS_LIVE)
       PetscCall(OffsetsMap(o, zero));
     else
-      PetscCall(OffsetsVisit(o, zero, 0, TakeFace, o->used));
+      PetscCall(OffsetsVisit(o, zero, 0, NULL, TakeFace, o->used));
     PetscCall(PetscFree(zero));
     o->taken = PETSC_TRUE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The offsets at (u, t). They are asked for twice for each solution: when its lists are checked, and where the next
-   step begins. The second time the stored ones are used. */
+/* Takes the offsets of the wanted faces at (u, t) that are not among the last ones. */
+static PetscErrorCode TakeWanted(Offsets o, const PetscReal *u, PetscReal t)
+{
+  const PetscInt block = FACE_RULE_POINTS * o->search->mesh->dim;
+  PetscBool     *missing;
+  int            any = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(o->surface->n_faces, &missing));
+  for (PetscInt f = 0; f < o->surface->n_faces; f++) {
+    missing[f] = (PetscBool)(o->wanted[f] && PetscIsNanReal(o->last[f * block]));
+    any        = any || missing[f];
+    if (missing[f]) PetscCall(PetscArrayzero(&o->last[f * block], block));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, o->search->mesh->comm));
+  if (any) PetscCall(OffsetsVisit(o, u, t, missing, TakeFace, o->last));
+  PetscCall(PetscFree(missing));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The offsets at (u, t), NAN on faces that are not wanted. They are asked for twice for each solution: when its lists
+   are checked, and where the next step begins. The second time the stored ones are used. */
 static PetscErrorCode OffsetsAt(Offsets o, const PetscReal *u, PetscReal t, PetscReal *values)
 {
-  const PetscInt n = o->search->mesh->n_nodes * o->search->mesh->dim;
+  const PetscInt n = o->search->mesh->n_nodes * o->search->mesh->dim, block = FACE_RULE_POINTS * o->search->mesh->dim;
   PetscBool      same;
   int            all;
 
@@ -335,11 +361,39 @@ static PetscErrorCode OffsetsAt(Offsets o, const PetscReal *u, PetscReal t, Pets
   all = same && t == o->t_last;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, o->search->mesh->comm));
   if (!all) {
-    PetscCall(OffsetsVisit(o, u, t, TakeFace, o->last));
+    for (PetscInt i = 0; i < o->n; i++) o->last[i] = NAN;
     PetscCall(PetscArraycpy(o->u_last, u, n));
     o->t_last = t;
   }
-  PetscCall(PetscArraycpy(values, o->last, o->n));
+  PetscCall(TakeWanted(o, u, t));
+  for (PetscInt i = 0; i < o->n; i++) values[i] = o->wanted[i / block] ? o->last[i] : NAN;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Offsets in use are 0 on faces that are not wanted. */
+static PetscReal InUse(PetscReal offset)
+{
+  return PetscIsNanReal(offset) ? 0 : offset;
+}
+
+/*@
+  OffsetsWant - says on which faces offsets are needed.
+
+  Collective
+
+  Input Parameters:
++ o      - the offsets
+. wanted - wanted[faces of the surface on this rank]
+- anew   - a step begins; otherwise faces that were wanted before stay so
+
+  Note:
+  Only held offsets that are taken again and again are left out elsewhere: they are 0 there. What is first wanted in a
+  step is not extrapolated over it.
+@*/
+PetscErrorCode OffsetsWant(Offsets o, const PetscBool *wanted, PetscBool anew)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < o->surface->n_faces; f++) o->wanted[f] = (PetscBool)(wanted[f] || (!anew && o->wanted[f]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -378,11 +432,11 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
   PetscCall(OffsetsAt(o, u, t, o->now));
   /* Past a breakpoint the loads take another direction. */
   if (o->t_before >= 0 && !SceneBreaks(o->search->scene, t)) ahead = (t_next - t) / (t - o->t_before);
-  for (PetscInt i = 0; i < o->n; i++) o->used[i] = o->now[i] + ahead * (o->now[i] - o->before[i]);
+  for (PetscInt i = 0; i < o->n; i++) o->used[i] = InUse(o->now[i]) + ahead * InUse(o->now[i] - o->before[i]);
   PetscCall(PetscArraycpy(o->held, o->used, o->n));
   o->replaced = o->turning = PETSC_FALSE;
-  o->turns    = 0;
-  o->taken    = PETSC_TRUE;
+  o->turns                 = 0;
+  o->taken                 = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -402,7 +456,9 @@ PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
 
   PetscFunctionBeginUser;
   PetscCall(TakeOnce(o, &done));
-  if (!done) PetscCall(OffsetsAt(o, u, t, o->used));
+  if (done) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OffsetsAt(o, u, t, o->used));
+  for (PetscInt i = 0; i < o->n; i++) o->used[i] = InUse(o->used[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -419,8 +475,8 @@ PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
 
   Note:
   A soft body may answer to a change of its offsets by more than that change the other way, as a ring that rolls in its
-  groove. Solutions then never settle. From OFFSET_TURNS such answers in a row on, the offsets are set on the line through the last
-  two that solutions asked for, where their secant sees no change any more.
+  groove. Solutions then never settle. From OFFSET_TURNS such answers in a row on, the offsets are set on the line
+through the last two that solutions asked for, where their secant sees no change any more.
 
   Source: Anderson, Iterative procedures for nonlinear integral equations, J. ACM 12 (1965) 547-560.
 @*/

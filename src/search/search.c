@@ -335,7 +335,7 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   lists->facet_ptr[q] = buffer->n;
   lists->kappa[q]     = 0;
   lists->nearest[q]   = -1;
-  BoxTreeClosest(tree, look->x, &bound, NearestVisit, look);
+  BoxTreeClosest(tree, look->x, look->one_body ? &lists->slave_normal[3 * q] : NULL, &bound, NearestVisit, look);
   lists->averse[q] = (PetscBool)(look->best < 0 && look->averse);
   lists->share[q]  = 0;
   if (look->best >= 0 && FaceMarksTreated(look->marks, field->records[look->candidates[look->best].record].marks))
@@ -356,6 +356,20 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gives the tree the normals of the candidates. */
+static PetscErrorCode SetDirections(int dim, const SearchField *field, BoxTree tree)
+{
+  PetscReal *normal;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(field->n_candidates * dim, &normal));
+  for (PetscInt c = 0; c < field->n_candidates; c++)
+    for (int d = 0; d < dim; d++) normal[c * dim + d] = field->candidates[c].normal[d];
+  PetscCheck(!BoxTreeSetDirections(tree, normal), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the tree");
+  PetscCall(PetscFree(normal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Fills the lists of all slave points. fit is NULL where the facets are used. */
 static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, const SearchField *field,
                                          FitSupport *fit, PetscReal motion)
@@ -369,6 +383,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscCall(PetscMalloc3(field->n_candidates, &found, field->n_candidates, &ends, lists->n_points, &buffer.position));
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
   PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, &tree));
+  if (s->one_body) PetscCall(SetDirections(dim, field, tree)); /* no face of one's own body is averse */
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     Nearest look = {.lists      = lists,
                     .slaves     = s->slaves,
@@ -488,6 +503,20 @@ void SearchSetRungs(ContactSearch s, const int *first)
 }
 
 /*@
+  SearchListsDistance - returns the distance (length) from the slave points within which faces are collected for lists.
+
+  Not collective
+
+  Input Parameters:
++ s      - the search
+- motion - relative motion (length) for which the lists must be good
+@*/
+PetscReal SearchListsDistance(ContactSearch s, PetscReal motion)
+{
+  return s->reach + PetscMax(s->margin, SearchFitReach(s)) + 2 * motion;
+}
+
+/*@
   SearchLists - lists for every slave point of this rank the facets near it and the points of which these are made, from
   whatever rank.
 
@@ -508,7 +537,7 @@ void SearchSetRungs(ContactSearch s, const int *first)
 @*/
 PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *out)
 {
-  const PetscReal distance = s->reach + PetscMax(s->margin, SearchFitReach(s)) + 2 * motion;
+  const PetscReal distance = SearchListsDistance(s, motion);
   PetscReal       box[6];
   SearchField     field;
   NeighbourLists  lists;

@@ -46,5 +46,7 @@ void           SearchSetTool(ContactSearch, const MeshTool *);
 void           SearchSetMarks(ContactSearch, const FaceMarks *);
 void           SearchSetRungs(ContactSearch, const int *first);
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
+PetscErrorCode SearchNearFaces(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *slave,
+                               PetscBool *master);
 PetscErrorCode SearchLeastDistance(ContactSearch, const PetscReal *u, PetscReal t, PetscReal *distance);
 PetscErrorCode SearchDistance(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap);

@@ -205,7 +205,7 @@ static PetscErrorCode PieceVotes(ContactSurface tool, ContactSurface slave, cons
     ToolNearest      look  = {tool, x, faces, &mesh->coords[node * dim], -1, {0}};
 
     if (mesh->node_owner[node] != rank || (own[0] == 0 && own[1] == 0 && own[2] == 0)) continue;
-    BoxTreeClosest(tree, look.point, &bound, VisitFace, &look);
+    BoxTreeClosest(tree, look.point, NULL, &bound, VisitFace, &look);
     gap[voters]    = PetscAbsReal(look.foot.gap);
     vote[voters++] = NodeVote(&look, TOOL_TOUCHES * slave->mean_size, own);
     nearest        = PetscMin(nearest, PetscAbsReal(look.foot.gap));

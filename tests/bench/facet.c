@@ -164,7 +164,7 @@ static int BenchTree(int n)
     const double *data[3]  = {lower, upper, point};
     double        bound    = INFINITY;
 
-    BoxTreeClosest(tree, point, &bound, VisitCentre, data);
+    BoxTreeClosest(tree, point, NULL, &bound, VisitCentre, data);
   }
   closest = Seconds() - begin;
   snprintf(row, sizeof(row), "%d", n);

@@ -68,7 +68,7 @@ static PetscErrorCode AddPair(Study *study, const MeshGroup *slave, const MeshGr
     Nearest nearest = {.dim = dim, .centres = masters, .point = slaves + f * dim};
     double  bound   = DBL_MAX;
 
-    BoxTreeClosest(tree, nearest.point, &bound, VisitCentre, &nearest);
+    BoxTreeClosest(tree, nearest.point, NULL, &bound, VisitCentre, &nearest);
     study->slave[study->n_slaves]      = slave->face_cell[f];
     study->opposite[study->n_slaves++] = master->face_cell[nearest.closest];
   }

@@ -1,5 +1,6 @@
 /* The tree of boxes finds the same boxes as a loop over all of them, and the search for the closest one visits few. */
 #include <math.h>
+#include <string.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -55,7 +56,7 @@ static void CheckNear(int dim, int n, BoxTree tree, const double *point, double 
 
 static void CheckMeet(int dim, int n, BoxTree tree)
 {
-  static int found[MAX_BOXES];
+  static int  found[MAX_BOXES];
   static char has[MAX_BOXES];
   double      low[3], high[3];
   int         count, few;
@@ -151,20 +152,67 @@ static void TestClosest(void **state)
              search         = {.dim = dim, .point = point, .least = INFINITY, .shrink = 1};
       double bound          = INFINITY;
 
-      BoxTreeClosest(tree, point, &bound, Visit, &all);
+      BoxTreeClosest(tree, point, NULL, &bound, Visit, &all);
       assert_int_equal(all.visited, n);
-      BoxTreeClosest(tree, point, &bound, Visit, &search);
+      BoxTreeClosest(tree, point, NULL, &bound, Visit, &search);
       assert_int_equal(search.best, all.best);
       assert_true(bound == search.least);
       visited += search.visited;
       bound  = 0.1;
       search = (Search){.dim = dim, .point = point, .least = INFINITY};
-      BoxTreeClosest(tree, point, &bound, Visit, &search);
+      BoxTreeClosest(tree, point, NULL, &bound, Visit, &search);
       for (int i = 0; i < n; ++i) search.visited -= BoxDistance(dim, i, point) <= 0.1;
       assert_int_equal(search.visited, 0);
     }
     print_message("%dD: %.1f of %d boxes visited for the closest\n", dim, visited / 100.0, n);
     assert_true(visited <= 100 * 10);
+    BoxTreeDestroy(&tree);
+  }
+}
+
+/* Marks the boxes that were visited. */
+static void VisitMark(void *context, int index, double *bound)
+{
+  (void)bound;
+  ((int *)context)[index] = 1;
+}
+
+/* With directions no box within the bound is missed that is opposed. Directions that turn with the place, as those of a
+   surface do, let most of the others be left out. */
+static void TestDirections(void **state)
+{
+  static double direction[MAX_BOXES * 3];
+  static int    seen[MAX_BOXES];
+
+  (void)state;
+  for (int dim = 2; dim <= 3; ++dim) {
+    const int n    = 1000;
+    int       left = 0, turned = 0;
+    BoxTree   tree;
+
+    RandomBoxes(dim, n, 0.02);
+    for (int i = 0; i < n; ++i)
+      for (int k = 0; k < dim; ++k) direction[i * dim + k] = lower[i * dim + k] - 0.5;
+    assert_int_equal(BoxTreeBuild(dim, n, lower, upper, &tree), 0);
+    assert_int_equal(BoxTreeSetDirections(tree, direction), 0);
+    for (int trial = 0; trial < 100; ++trial) {
+      const double point[3] = {Random(0, 1), Random(0, 1), Random(0, 1)},
+                   own[3]   = {Random(-1, 1), Random(-1, 1), Random(-1, 1)};
+      double bound          = 0.5;
+
+      memset(seen, 0, sizeof(seen));
+      BoxTreeClosest(tree, point, own, &bound, VisitMark, seen);
+      for (int i = 0; i < n; ++i) {
+        double product = 0;
+
+        for (int k = 0; k < dim; ++k) product += own[k] * direction[i * dim + k];
+        if (BoxDistance(dim, i, point) > bound) continue;
+        if (product < 0) assert_int_equal(seen[i], 1);
+        turned += product >= 0;
+        left += product >= 0 && !seen[i];
+      }
+    }
+    assert_true(left > 0.9 * turned);
     BoxTreeDestroy(&tree);
   }
 }
@@ -186,7 +234,7 @@ static void TestEqualBoxes(void **state)
   CheckNear(2, n, tree, point, 2, MAX_BOXES);
   CheckNear(2, n, tree, point, 2, 10);
   CheckNear(2, n, tree, point, 1, 10);
-  BoxTreeClosest(tree, point, &bound, Visit, &search);
+  BoxTreeClosest(tree, point, NULL, &bound, Visit, &search);
   assert_int_equal(search.visited, n);
   assert_int_equal(search.best, 0);
   BoxTreeDestroy(&tree);
@@ -201,7 +249,7 @@ static void TestEmpty(void **state)
 
   (void)state;
   assert_int_equal(BoxTreeBuild(2, 0, NULL, NULL, &tree), 0);
-  BoxTreeClosest(tree, point, &bound, Visit, &search);
+  BoxTreeClosest(tree, point, NULL, &bound, Visit, &search);
   assert_int_equal(search.visited, 0);
   BoxTreeDestroy(&tree);
   BoxTreeDestroy(&tree);
@@ -210,7 +258,8 @@ static void TestEmpty(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestNear), cmocka_unit_test(TestClosest),
-                                     cmocka_unit_test(TestEqualBoxes), cmocka_unit_test(TestEmpty)};
+                                     cmocka_unit_test(TestDirections), cmocka_unit_test(TestEqualBoxes),
+                                     cmocka_unit_test(TestEmpty)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

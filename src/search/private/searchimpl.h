@@ -112,10 +112,13 @@ PetscReal      CandidateBoxDistance(int dim, const Candidate *, const PetscReal 
 PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, BoxTree *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
 /* faceexchange.c */
-void           SearchSlaveBox(ContactSearch, PetscReal box[6]);
-void           SearchMasterBox(ContactSearch, const PetscReal *u, PetscReal t, PetscReal box[6]);
-PetscBool      SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, PetscReal distance);
-void           SearchRigidPosition(ContactSearch, PetscInt n, PetscReal t, PetscReal x[3]);
+void      SearchSlaveBox(ContactSearch, PetscReal box[6]);
+void      SearchMasterBox(ContactSearch, const PetscReal *u, PetscReal t, const PetscBool *some, PetscReal box[6]);
+void      SearchBoxEmpty(PetscReal box[6]);
+void      SearchBoxAdd(PetscReal box[6], int dim, const PetscReal *x);
+void      SearchFacePositions(ContactSearch, ContactSurface, PetscInt f, const PetscReal *u, PetscReal t, PetscReal *x);
+PetscBool SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, PetscReal distance);
+void      SearchRigidPosition(ContactSearch, PetscInt n, PetscReal t, PetscReal x[3]);
 PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const PetscReal *u, const PetscReal *boxes,
                                    PetscReal distance, PetscInt *n, FaceRecord **);
 PetscErrorCode SearchPickRigidFaces(ContactSearch, const NodeGeometry *, PetscReal t, const PetscReal box[6],
@@ -128,6 +131,8 @@ void           NeighbourListsPointGeometry(ContactSearch, NeighbourLists, const 
                                            NodeGeometry *of_points);
 PetscErrorCode NeighbourListsUpdateNodes(ContactSearch, NeighbourLists, const PetscReal *u, PetscReal t);
 void           NeighbourListsCentre(NeighbourLists, PetscInt q, PetscReal centre[2]);
+/* search.c */
+PetscReal SearchListsDistance(ContactSearch, PetscReal motion);
 /* fitsupport.c */
 PetscReal      SearchFitReach(ContactSearch);
 PetscErrorCode FitSupportCreate(ContactSearch, NeighbourLists, const SearchField *, FitSupport *);
