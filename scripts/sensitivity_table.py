@@ -46,7 +46,7 @@ CASES = {
          plane_force=("loads.0.pressure=200", ), apex_thickness=("bodies.0.material.E=50000", )),
     "plate_cylinder":
     Case("runs/plate_cylinder.yaml",
-         ("mesh.parameters={h_contact: 2, h_far: 8, n_thick: 2, n_width: 1}", FIXED,
+         ("mesh.parameters={h_contact: 1, h_far: 8, n_thick: 1, n_width: 1}", FIXED,
           "contact.0.formulation=surface_to_surface"),
          tip_uy=("contact.0.master.cylinder.radius=20", "bodies.0.material.E=200000"),
          cylinder_fy=("loads.0.pressure=200", )),

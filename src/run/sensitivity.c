@@ -90,7 +90,8 @@ static PetscErrorCode TwinCreate(const Sensitivities *all, const char *key, Pets
   *twin = (Twin){.scene = NULL};
   PetscCall(SceneReadChanged(run->scene, run->comm, key, (double)value, &twin->scene));
   PetscCall(PetscStrncpy(file, run->mesh_file, sizeof(file)));
-  if (MovesMesh(key)) PetscCall(MeshGenerate(run->comm, twin->scene, "out", all->input->trust, file, &seconds));
+  if (MovesMesh(key) || all->input->restart) /* a restart does not keep the file that its checkpoint has */
+    PetscCall(MeshGenerate(run->comm, twin->scene, "out", all->input->trust, file, &seconds));
   PetscCall(MeshCreate(run->comm, twin->scene, file, &twin->mesh));
   PetscCall(MeshCheckFormulations(twin->mesh, twin->scene));
   PetscCall(ModelCreate(twin->scene, twin->mesh, &twin->model));
