@@ -3,7 +3,8 @@ and number and prints the table; --print tables an existing record, --only runs 
     python scripts/sensitivity_table.py [--burnish BINARY] [--record FILE] [--only NAME ...]
 Runs are solved to a residual of 1e-12. The differences are those between 1e-4 more and 1e-4 less of the number, and
 between half of that, from which the error of second order is extrapolated. Penalties are fixed, as the run holds their
-factors when it differentiates."""
+factors when it differentiates. The runs of the differences are asked for the derivative, too, so that their contact
+lists are those of the solution."""
 import csv
 import shutil
 import subprocess
@@ -45,7 +46,7 @@ CASES = {
          plane_force=("loads.0.pressure=200", ), apex_thickness=("bodies.0.material.E=50000", )),
     "plate_cylinder":
     Case("runs/plate_cylinder.yaml",
-         ("mesh.parameters={h_contact: 2, h_far: 8, n_thick: 2, n_width: 1}", FIXED,
+         ("mesh.parameters={h_contact: 1, h_far: 8, n_thick: 1, n_width: 1}", FIXED,
           "contact.0.formulation=surface_to_surface"),
          tip_uy=("contact.0.master.cylinder.radius=20", "bodies.0.material.E=200000"),
          cylinder_fy=("loads.0.pressure=200", )),
@@ -68,11 +69,12 @@ def difference(args, name, probe, key, number, part):
     """Central difference of a probe between two whole runs."""
     values = []
     for sign in (1, -1):
-        out = solve(args, name, [f"{key}={number * (1 + sign * part)!r}"])
+        changed = [f"{key}={number * (1 + sign * part)!r}"]
+        out = solve(args, name, changed, "-sensitivity", f"{probe}:{key}")
         if not out:
-            return None
-        with open(out / "steps.csv", newline="") as file:
-            values.append(float(list(csv.DictReader(file, skipinitialspace=True))[-1][probe]))
+            return float("nan")
+        with open(out / "sensitivity.csv", newline="") as file:
+            values.append(float(next(csv.DictReader(file))["value"]))
     return (values[0] - values[1]) / (2 * part * number)
 
 

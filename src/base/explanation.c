@@ -31,6 +31,24 @@ static const Explanation Input[] = {
    "`during` names a step that `stepping.steps` lacks, steps that do not follow each other, or stands beside "
    "`history`.",
    "Take names of `stepping.steps`, one after the other, and an entry of its own for what acts again later."},
+  {"B143",
+   {"is no key for a sensitivity", "has no number other than 0 in the scene, for a sensitivity",
+    "names no probe and key"},
+   "a number of the scene can have no sensitivity",
+   "`sensitivity` needs a probe and the path of a number that the scene gives and that may change a little.",
+   "Write PROBE:KEY, such as `force:bodies.0.material.E`, and give the key a number if it has its default."},
+  {"B144",
+   {"as the answer depends on the way to it", "with augmented pressures, which stay", "multipliers of its elements",
+    "is not available where a fluid enters"},
+   "the scene has no sensitivities",
+   "The answer depends on the way to it (friction, yielding), or on multipliers or fluids, of which no derivative is "
+   "known.",
+   "Take differences of two runs with `-set`, or leave the effect out."},
+  {"B145",
+   {"allowed for a sensitivity: parameters that"},
+   "a parameter changes the connections of the mesh",
+   "A sensitivity moves the nodes of the mesh. The generator has made other nodes or cells for the parameter.",
+   "Take a parameter of a structured mesh, such as a radius, and no number or size of elements."},
   {"B123",
    {"geometry: plane_stress"},
    "the law or the element has no plane stress",
@@ -288,7 +306,10 @@ typedef struct {
   size_t             n;
 } Table;
 
-#define TABLE(entries) {entries, sizeof(entries) / sizeof(entries)[0]}
+#define TABLE(entries)                            \
+  {                                               \
+    entries, sizeof(entries) / sizeof(entries)[0] \
+  }
 static const Table Tables[] = {TABLE(Input), TABLE(Unsolved), TABLE(Others), TABLE(Warnings)};
 enum { TABLES = sizeof(Tables) / sizeof(Tables)[0] };
 

@@ -106,7 +106,6 @@ static PetscErrorCode RunSetUp(Run *run, const RunInput *input)
     PetscCall(CheckpointCreate(run->comm, run->directory, run->mesh_file, &run->checkpoint));
   PetscCall(MeshCheckFormulations(run->mesh, run->scene));
   PetscCall(ModelCreate(run->scene, run->mesh, &run->model));
-  PetscCall(SensitivitiesCheckModel(run));
   PetscCall(ProbesCreate(run->model, run->scene, &run->probes));
   if (!input->restart) {
     PetscCall(ModelPlace(run->model, input->task == RUN_SOLVE ? run->scene->stepping.initial : 0));
@@ -114,6 +113,7 @@ static PetscErrorCode RunSetUp(Run *run, const RunInput *input)
     PetscCall(PrecheckModel(run->model, input->task == RUN_CHECK ? PETSC_TRUE : PETSC_FALSE, stdout));
     TimingBegin(TIMING_SETUP);
     PetscCall(ModelSetUp(run->model));
+    PetscCall(SensitivitiesCheckModel(run, input));
   }
   TimingEnd(TIMING_SETUP);
   PetscFunctionReturn(PETSC_SUCCESS);

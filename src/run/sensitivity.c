@@ -10,8 +10,14 @@
 /* By this part of itself a number is changed. Differences of residuals have no error of an iteration, so that the part
    may be small. Contacts close and open over lengths of the penetration, which may be a millionth of the bodies. */
 #define SENSITIVITY_STEP 1e-7
-/* A twin whose residual is beyond this part of the forces is in another state than the model. */
-#define SENSITIVITY_APART 1e-3
+/* Twins whose mean residual is beyond this part of the forces, and beyond the second part of what the number changes,
+   are in another state than the model. */
+#define SENSITIVITY_APART 1e-6
+#define SENSITIVITY_BEND  1e-2
+/* The direct way solves on until a correction is below this part of the response, or so many times. Each correction for
+   what contact lists change is some tenth of the one before. */
+#define SENSITIVITY_CORRECTED 1e-6
+enum { SENSITIVITY_CORRECTIONS = 20 };
 
 enum { SENSITIVITY_ROW = 1536 };
 
@@ -36,7 +42,9 @@ typedef struct {
   Run            *run;
   const RunInput *input;
   SensitiveProbe *probe;
-  Vec             F; /* residual of the model (force) */
+  Vec             F;       /* residual of the model (force) */
+  Vec             place;   /* free displacements at which contact lists are made (length) */
+  PetscBool       settled; /* the solution with these lists is known */
   PetscReal      *derivative, *cpu_s;
   const char    **why; /* it has no derivative */
 } Sensitivities;
@@ -64,27 +72,10 @@ PetscErrorCode SensitivitiesCheck(Run *run)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SensitivitiesCheckModel - refuses a model whose solution is no function of its displacements.
-
-  Collective
-
-  Input Parameter:
-. run - with its model
-
-  Note:
-  Pressures of elements that keep their volume exactly are multipliers, which follow a number of the scene as
-  displacements do.
-@*/
-PetscErrorCode SensitivitiesCheckModel(Run *run)
+/* Is a number one of the mesh? */
+static PetscBool MovesMesh(const char *key)
 {
-  PetscFunctionBeginUser;
-  if (run->scene->n_sensitivities && ElasticityAugments(run->model->problem->elasticity))
-    PetscCall(RefuseInput(run->comm,
-                          "%s: a body keeps its volume by multipliers of its elements, which have no sensitivity; "
-                          "allowed: nu below 0.499, or elements of second order with pressures at nodes",
-                          SceneWhere(run->scene, "sensitivity", NULL)));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return (PetscBool)!strncmp(key, "mesh.", strlen("mesh."));
 }
 
 /* Makes a twin. */
@@ -99,7 +90,7 @@ static PetscErrorCode TwinCreate(const Sensitivities *all, const char *key, Pets
   *twin = (Twin){.scene = NULL};
   PetscCall(SceneReadChanged(run->scene, run->comm, key, (double)value, &twin->scene));
   PetscCall(PetscStrncpy(file, run->mesh_file, sizeof(file)));
-  if (!strncmp(key, "mesh.", strlen("mesh.")))
+  if (MovesMesh(key) || all->input->restart) /* a restart does not keep the file that its checkpoint has */
     PetscCall(MeshGenerate(run->comm, twin->scene, "out", all->input->trust, file, &seconds));
   PetscCall(MeshCreate(run->comm, twin->scene, file, &twin->mesh));
   PetscCall(MeshCheckFormulations(twin->mesh, twin->scene));
@@ -130,6 +121,43 @@ static PetscErrorCode TwinDestroy(Twin *twin)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  SensitivitiesCheckModel - refuses what the model shows to have no derivative: multipliers of elements, and parameters
+  that change the connections of the mesh.
+
+  Collective
+
+  Input Parameters:
++ run   - with its model, after ModelSetUp()
+- input - what the user asks for
+
+  Note:
+  Pressures of elements that keep their volume exactly are multipliers, which follow a number of the scene as
+  displacements do.
+@*/
+PetscErrorCode SensitivitiesCheckModel(Run *run, const RunInput *input)
+{
+  const Sensitivities all = {.run = run, .input = input};
+
+  PetscFunctionBeginUser;
+  if (run->scene->n_sensitivities && ElasticityAugments(run->model->problem->elasticity))
+    PetscCall(RefuseInput(run->comm,
+                          "%s: a body keeps its volume by multipliers of its elements, which have no sensitivity; "
+                          "allowed: nu below 0.499, or elements of second order with pressures at nodes",
+                          SceneWhere(run->scene, "sensitivity", NULL)));
+  for (int i = 0; i < run->scene->n_sensitivities; i++) {
+    const SceneSensitivity *s = &run->scene->sensitivities[i];
+
+    for (int side = -1; side <= 1 && MovesMesh(s->key); side += 2) {
+      Twin twin;
+
+      PetscCall(TwinCreate(&all, s->key, (PetscReal)s->value * (1 + side * SENSITIVITY_STEP), &twin));
+      PetscCall(TwinDestroy(&twin));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Residual and probes of a twin at free displacements. */
 static PetscErrorCode TwinEvaluate(Twin *twin, Vec x, PetscReal t, PetscBool *ok)
 {
@@ -145,17 +173,20 @@ static PetscErrorCode TwinEvaluate(Twin *twin, Vec x, PetscReal t, PetscBool *ok
 /* Do the residuals of the twins lie on either side of that of the model? */
 static PetscErrorCode Beside(const Sensitivities *all, const Twin twin[2], PetscBool *beside)
 {
-  PetscReal norm;
+  PetscReal norm, between;
   Vec       mean;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(all->F, &mean));
   PetscCall(VecCopy(twin[0].F, mean));
-  PetscCall(VecAXPY(mean, 1, twin[1].F));
+  PetscCall(VecAXPY(mean, -1, twin[1].F));
+  PetscCall(VecNorm(mean, NORM_2, &between));
+  PetscCall(VecAXPY(mean, 2, twin[1].F));
   PetscCall(VecAXPY(mean, -2, all->F));
   PetscCall(VecNorm(mean, NORM_2, &norm));
   PetscCall(VecDestroy(&mean));
-  *beside = (PetscBool)(norm <= 2 * SENSITIVITY_APART * ProblemForceScale(all->run->model->problem));
+  *beside = (PetscBool)(norm <= 2 * PetscMax(SENSITIVITY_APART * ProblemForceScale(all->run->model->problem),
+                                             SENSITIVITY_BEND * between));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -174,29 +205,62 @@ static PetscErrorCode AddAdjoints(const Sensitivities *all, const Twin twin[2], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same for the probes that take the direct way: the twins go along with the solution. */
-static PetscErrorCode Direct(const Sensitivities *all, Twin twin[2], PetscReal h, Vec change, PetscReal derivative[],
+/* The derivative of the residual, from the twins. */
+static PetscErrorCode Slope(const Twin twin[2], PetscReal h, Vec slope)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecWAXPY(slope, -1, twin[1].F, twin[0].F));
+  PetscCall(VecScale(slope, 1 / (2 * h)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves the twins along with the solution, contact lists included, and gives what is left of their residuals. */
+static PetscErrorCode Follow(const Sensitivities *all, Twin twin[2], PetscReal h, Vec response, Vec change,
                              PetscBool *ok)
 {
   const Model model = all->run->model;
-  PetscBool   any   = PETSC_FALSE;
-  Vec         response, x;
+  Vec         x;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(response, &x));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(VecWAXPY(x, k ? -h : h, response, all->place));
+    PetscCall(ModelTwinGather(twin[k].model, x, model->t));
+    PetscCall(VecWAXPY(x, k ? -h : h, response, model->x));
+    PetscCall(TwinEvaluate(&twin[k], x, model->t, ok));
+  }
+  PetscCall(Slope(twin, h, change));
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same for the probes that take the direct way. What moves contact lists changes the equations a little besides:
+   the response is corrected for it. */
+static PetscErrorCode Direct(const Sensitivities *all, Twin twin[2], PetscReal h, Vec change, PetscReal derivative[],
+                             PetscBool *ok)
+{
+  PetscBool any     = PETSC_FALSE;
+  PetscReal size[2] = {1, 0}; /* of the last correction, and of the response */
+  Vec       response, more;
 
   PetscFunctionBeginUser;
   for (int p = 0; p < all->run->scene->n_probes; p++)
     any = (PetscBool)(any || (all->probe[p].wanted && !all->probe[p].y));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(change, &response));
-  PetscCall(VecDuplicate(change, &x));
-  PetscCall(ModelRespond(model, change, response, ok));
-  for (int k = 0; k < 2 && *ok; k++) {
-    PetscCall(VecWAXPY(x, k ? -h : h, response, model->x));
-    PetscCall(TwinEvaluate(&twin[k], x, model->t, ok));
+  PetscCall(VecDuplicate(change, &more));
+  PetscCall(VecZeroEntries(response));
+  for (int k = 0; k < SENSITIVITY_CORRECTIONS && *ok && size[0] > SENSITIVITY_CORRECTED * size[1]; k++) {
+    PetscCall(ModelRespond(all->run->model, change, more, ok));
+    PetscCall(VecAXPY(response, 1, more));
+    PetscCall(VecNorm(more, NORM_2, &size[0]));
+    PetscCall(VecNorm(response, NORM_2, &size[1]));
+    if (*ok) PetscCall(Follow(all, twin, h, response, change, ok));
   }
   for (int p = 0; p < all->run->scene->n_probes; p++)
     if (!all->probe[p].y) derivative[p] = (twin[0].value[p] - twin[1].value[p]) / (2 * h);
   PetscCall(VecDestroy(&response));
-  PetscCall(VecDestroy(&x));
+  PetscCall(VecDestroy(&more));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -213,33 +277,46 @@ static PetscErrorCode Differentiate(const Sensitivities *all, const SceneSensiti
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
     PetscCall(TwinCreate(all, s->key, (PetscReal)s->value + (k ? -h : h), &twin[k]));
-    PetscCall(ModelTwinGather(twin[k].model, model->x, model->t));
+    PetscCall(ModelTwinGather(twin[k].model, all->place, model->t));
     PetscCall(TwinEvaluate(&twin[k], model->x, model->t, &ok));
   }
   PetscCall(Beside(all, twin, &beside));
   PetscCall(VecDuplicate(model->x, &change));
-  PetscCall(VecWAXPY(change, -1, twin[1].F, twin[0].F));
-  PetscCall(VecScale(change, 1 / (2 * h)));
+  PetscCall(Slope(twin, h, change));
   PetscCall(AddAdjoints(all, twin, h, change, derivative));
   if (ok && beside) PetscCall(Direct(all, twin, h, change, derivative, &ok));
-  *why = ok && beside ? NULL : "the solution is no function of the scene's end alone, or cannot be solved with";
+  *why = ok && beside && all->settled
+           ? NULL
+           : "the solution is no function of the scene's end alone, or cannot be solved with";
   PetscCall(VecDestroy(&change));
   for (int k = 0; k < 2; k++) PetscCall(TwinDestroy(&twin[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Do contact lists hold what follows the displacements from one solution to the next: supports of fits, offsets and
+   areas of quadrature points? A first variation does not have that. */
+static PetscBool ListsFollow(Contact contact)
+{
+  PetscBool follow = (PetscBool)(contact && ContactHasFits(contact));
+
+  for (int p = 0; contact && p < ContactPairs(contact); p++)
+    follow = (PetscBool)(follow || ContactPairIsSurface(contact, p));
+  return follow;
 }
 
 /* Finds the values of the probes, and the adjoint solutions of those that have a first variation. That of a mean
    pressure leaves areas and normals as they are, which is good enough for an estimate of an error alone. */
 static PetscErrorCode FindAdjoints(Sensitivities *all)
 {
-  Run           *run  = all->run;
-  const int      n    = run->scene->n_probes;
-  const PetscInt dofs = run->mesh->n_nodes * run->mesh->dim;
-  int            m    = 0, *probe;
-  PetscReal     *value;
-  Functional    *functional;
-  Adjoint       *adjoint;
-  PetscBool      ok;
+  Run            *run    = all->run;
+  const int       n      = run->scene->n_probes;
+  const PetscInt  dofs   = run->mesh->n_nodes * run->mesh->dim;
+  int             m      = 0, *probe;
+  const PetscBool direct = ListsFollow(all->run->model->contact);
+  PetscReal      *value;
+  Functional     *functional;
+  Adjoint        *adjoint;
+  PetscBool       ok;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(n, &probe, n, &value, n, &functional, n, &adjoint));
@@ -251,7 +328,7 @@ static PetscErrorCode FindAdjoints(Sensitivities *all)
     const char *why = NULL;
 
     all->probe[p].value = value[p];
-    if (!all->probe[p].wanted || run->scene->probes[p].kind == PROBE_PRESSURE_MEAN) continue;
+    if (direct || !all->probe[p].wanted || run->scene->probes[p].kind == PROBE_PRESSURE_MEAN) continue;
     PetscCall(ProbeVary(run->probes, p, &functional[m], &why));
     if (why) PetscCall(ProbeVariationFree(&functional[m]));
     probe[m] = p;
@@ -334,7 +411,7 @@ static PetscErrorCode Write(const Sensitivities *all)
     const SceneSensitivity *s = &scene->sensitivities[i];
 
     used +=
-      (size_t)snprintf(text + used, size - used, "%s,%s,%.10g,%.10g,%.10g,%s,%.3f\n", scene->probes[s->probe].name,
+      (size_t)snprintf(text + used, size - used, "%s,%s,%.15g,%.15g,%.10g,%s,%.3f\n", scene->probes[s->probe].name,
                        s->key, (double)all->probe[s->probe].value, s->value, (double)all->derivative[i],
                        all->probe[s->probe].y ? "adjoint" : "direct", (double)all->cpu_s[i]);
   }
@@ -367,11 +444,14 @@ PetscErrorCode SensitivitiesFind(Run *run, const RunInput *input)
   PetscCall(PetscCalloc4(probes, &all.probe, n, &all.derivative, n, &all.cpu_s, n, &all.why));
   for (int i = 0; i < n; i++) all.probe[run->scene->sensitivities[i].probe].wanted = PETSC_TRUE;
   PetscCall(VecDuplicate(run->model->x, &all.F));
+  PetscCall(VecDuplicate(run->model->x, &all.place));
+  PetscCall(ModelSettleLists(run->model, all.place, &all.settled));
   PetscCall(FindAdjoints(&all));
   PetscCall(FindAll(&all));
   if (!rank && !input->quiet) Print(&all);
   if (!rank) PetscCall(Write(&all));
   PetscCall(VecDestroy(&all.F));
+  PetscCall(VecDestroy(&all.place));
   for (int p = 0; p < probes; p++) PetscCall(VecDestroy(&all.probe[p].y));
   PetscCall(PetscFree4(all.probe, all.derivative, all.cpu_s, all.why));
   PetscFunctionReturn(PETSC_SUCCESS);

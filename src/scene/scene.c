@@ -319,7 +319,7 @@ PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const
 }
 
 /* The parts of a scene that a restart may change, because the state of the run does not depend on them. */
-static const char *const changeable[] = {"certificate", "output", "solver", "stepping", "units"};
+static const char *const changeable[] = {"certificate", "output", "sensitivity", "solver", "stepping", "units"};
 
 /* Tells whether the first component of a path is one of these parts. One of the characters of `end` follows it. */
 static PetscBool IsChangeable(const char *path, const char *end)

@@ -3,6 +3,55 @@
 #include "bodies/tools.h"
 #include "modelimpl.h"
 
+/* Lists count as those of the solution where new ones move it by no more than this part of its displacements. Each move
+   is some tenth of the one before. */
+#define TWIN_SETTLED 1e-8
+enum { TWIN_SETTLE = 20 };
+
+/*@
+  ModelSettleLists - makes contact lists at the solution and solves on with them, so that a twin can have the same ones.
+
+  Collective
+
+  Input Parameter:
+. model - at the solution of a step, before ModelAccept()
+
+  Output Parameters:
++ place - free displacements (length) at which the lists were made
+- ok    - the solution with the new lists is found
+
+  Note:
+  The lists with which a step was solved were made elsewhere and may differ by what a step tolerates. The solution moves
+  by as much.
+@*/
+PetscErrorCode ModelSettleLists(Model model, Vec place, PetscBool *ok)
+{
+  SolveReport report = {.result = SOLVE_CONVERGED};
+  PetscReal   moved  = PETSC_MAX_REAL, size;
+  Vec         move;
+
+  PetscFunctionBeginUser;
+  *ok = PETSC_TRUE;
+  PetscCall(VecCopy(model->x, place));
+  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(place, &move));
+  PetscCall(VecNorm(model->x, NORM_2, &size));
+  for (int k = 0; k < TWIN_SETTLE && *ok && moved > TWIN_SETTLED * size; k++) {
+    PetscCall(VecCopy(model->x, place));
+    PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+    PetscCall(ProblemGatherLists(model->problem, model->problem->trial, model->t, model->t, 0));
+    model->work->loosely = model->work->soft = model->work->left = PETSC_FALSE;
+    PetscCall(LinearSolverRenew(model->work->solver));
+    PetscCall(ModelNewton(model, &report));
+    *ok = (PetscBool)(report.result == SOLVE_CONVERGED && !model->work->left);
+    PetscCall(VecWAXPY(move, -1, place, model->x));
+    PetscCall(VecNorm(move, NORM_2, &moved));
+  }
+  PetscCall(PetscArraycpy(model->u, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(VecDestroy(&move));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelTwinFollow - gives a fresh twin the penalties of a model.
 

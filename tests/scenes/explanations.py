@@ -43,6 +43,9 @@ INPUT = {
     "B119": (STACK, (), ["loads.0.uy=\"3*q\""]),
     "B121": (STACK, (), ["loads.0.history={csv: \"{}/wrong.csv\"}"]),
     "B122": (STACK, (), ["loads.0.during=press"]),
+    "B143": (STACK, (), ["sensitivity=[\"force:contact.0.name\"]"]),
+    "B144": (STACK, (), ["sensitivity=[\"force:loads.0.uy\"]", "contact.0.friction={mu: 0.1}"]),
+    "B145": (STACK, (), ["sensitivity=[\"force:mesh.parameters.n_lower\"]", "mesh.parameters.n_lower=6"]),
     "B123": (STACK, (), ["geometry=plane_stress", "bodies.0.formulation=fbar"]),
 }
 UNSOLVED = {

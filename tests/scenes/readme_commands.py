@@ -104,6 +104,8 @@ FULL = {
     f"{PYTHON} scripts/michell_table.py": printed("michell_table", "michell"),
     f"{PYTHON} scripts/penalty_table.py --record runs/records/penalty.csv": printed("penalty_table", "penalty"),
     f"{PYTHON} scripts/error_table.py --record runs/records/error.csv": printed("error_table", "error"),
+    f"{PYTHON} scripts/sensitivity_table.py --record runs/records/sensitivity.csv":
+    printed("sensitivity_table", "sensitivity"),
     f"{PYTHON} scripts/hertz_table.py": printed("hertz_table", "hertz"),
     f"{PYTHON} tests/jobs/run.py --record runs/records/jobs.csv":
     f"{PYTHON} tests/jobs/run.py {BURNISH} --out $WORK/out/jobs --job lip_seal --record $WORK/out/jobs.csv",
