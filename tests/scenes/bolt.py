@@ -54,6 +54,15 @@ def opens():
     check.near("sleeve free: tension", finished.summary()["probes"]["tension"], 5, 0.01)
 
 
+def flange():
+    """A scene of the usual kind: contact alone holds the bolt, with friction, springs and a free flange."""
+    finished = run(args, SCENES / "bolted_flange.yaml", out="flange", overrides=["mesh.order=1"])
+    t, tension = columns(finished, "tension")
+    early = t <= 0.5
+    check.near("flange: tension while it is given", tension[early] / 8000, t[early] / 0.5, 1e-6)
+    check.holds("flange: the pull stretches the bolt", numpy.all(tension[~early] > 8000))
+
+
 def refusals():
     for name, override, words in (
             ("axis", "bodies.0.pretension.axis=[1, 0]", "would break the symmetry"),
@@ -68,5 +77,6 @@ args = arguments()
 check = Check()
 forms()
 opens()
+flange()
 refusals()
 check.finish()

@@ -69,6 +69,15 @@ def bodies(kinematics, smoother):
     check.holds(f"bodies, {kinematics}, {smoother}: it comes evenly", numpy.all(numpy.diff(force[t >= 0.6]) > 0))
 
 
+def handover():
+    """A scene of the usual kind: the planes bear the load together, then the second one alone."""
+    finished = run(args, SCENES / "handover.yaml", out="handover")
+    t, first, second = columns(finished, "first", "second")
+    load = 60 * numpy.minimum(t / 0.3, 1)
+    check.near("handover: sum of the forces", -(first + second) / 60, load / 60, 1e-6)
+    check.near("handover: the first plane", -first / 60, numpy.interp(t, [0, 0.3, 0.6, 1], [0, 1, 0.5, 0]), 1e-3)
+
+
 def refusals():
     base = [STEPPING, "supports=[{surface: y_min, uy: 0, ux: 0, uz: 0}]"]
     pair = "contact=[{name: pair, slave: y_max, master: {plane: {point: [0, 1, 0], normal: [0, -1, 0]}}, %s}]"
@@ -90,5 +99,6 @@ for form in GEOMETRIES:
 for kind in ("small", "finite"):
     for of_master in ("facet", "diffuse"):
         bodies(kind, of_master)
+handover()
 refusals()
 check.finish()

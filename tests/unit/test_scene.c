@@ -26,8 +26,8 @@ static const char Everything[] =
   "kinematics: small\n"
   "bodies:\n"
   "  - {volume: block, material: {law: linear, E: 200, nu: -0.25}, formulation: full}\n"
-  "  - volume: plate\n"
-  "    material: {law: neo_hookean, E: 3e5, nu: 0.49}\n"
+  "  - {volume: plate,\n"
+  "    material: {law: neo_hookean, E: 3e5, nu: 0.49}, pretension: {axis: [0, 2, 0], force: 5, locked: 0.5}}\n"
   "  - {surface: die, rigid: {point: [1, 2, 3], motion: [{ux: 1, uy: 2, uz: 3, history: [[0, 0], [0.2, 1], [1, 1]]}, "
   "{rx: 4, ry: 5, rz: 6}]}}\n"
   "supports:\n"
@@ -72,6 +72,8 @@ static const char Everything[] =
   "  - {name: p7, pressure_mean: crown}\n"
   "  - {name: p8, tool_motion: crown, component: z}\n"
   "  - {name: p9, tool_rotation: crown, component: y}\n"
+  "  - {name: bolt_0, bolt_force: plate}\n"
+  "  - {name: bolt_1, bolt_shortening: plate}\n"
   "  - {name: p10, pressure_deviation: crown, measure: rms, excluding: 2}\n"
   "  - {name: p11, pressure_deviation: crown, measure: max, only: 1.5}\n"
   "  - {name: p12, fluid_front: plate_bottom, axis: y, side: min}\n"
@@ -234,7 +236,7 @@ static void ProbesOfEveryKindArrive(void **state)
 
   (void)state;
   ReadOrFail(Everything, 0, NULL, &scene);
-  assert_int_equal(scene->n_probes, 15);
+  assert_int_equal(scene->n_probes, 17);
   probe = scene->probes;
   for (int i = 0; i < PROBE_FRICTION_FORCE; i++) assert_int_equal(probe[i].kind, i);
   for (int i = PROBE_FLUID_FRONT; i < PROBE_KINDS; i++) /* p10 and p11 are one; none is of friction */
@@ -256,10 +258,13 @@ static void ProbesOfEveryKindArrive(void **state)
   assert_true(probe[6].has_at && probe[6].at_axis == 1 && probe[6].at_value == 10);
   assert_false(probe[7].has_at);
   assert_true(probe[8].component == 2 && probe[9].component == 1);
-  assert_true(probe[10].rms && probe[10].edge_filter == 1 && probe[10].edge_faces == 2);
-  assert_true(!probe[11].rms && probe[11].edge_filter == 2 && probe[11].edge_faces == 1.5);
-  assert_true(probe[12].axis == 1 && !probe[12].max_side);
-  assert_string_equal(probe[14].target, "plate_bottom");
+  assert_string_equal(probe[10].target, "plate");
+  assert_true(scene->bodies[1].bolt && scene->bodies[1].axis[1] == 1 && scene->bodies[1].locked == 0.5 &&
+              MotionForce(&scene->bodies[1].motion, 0.5, 0) == 2.5 && SceneBreaks(scene, 0.5));
+  assert_true(probe[12].rms && probe[12].edge_filter == 1 && probe[12].edge_faces == 2);
+  assert_true(!probe[13].rms && probe[13].edge_filter == 2 && probe[13].edge_faces == 1.5);
+  assert_true(probe[14].axis == 1 && !probe[14].max_side);
+  assert_string_equal(probe[16].target, "plate_bottom");
   Free(&scene);
 }
 
