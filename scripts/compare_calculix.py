@@ -1,7 +1,8 @@
 """Burnish beside CalculiX (ccx, Debian's package calculix-ccx) on pipe_pinch, cup_flattening and press_fit, one after
 the other in one run: CPU seconds, iterations, failed steps, and the force against its reference. CalculiX's input is
 written here from the same gmsh meshes: surface to surface penalty contact with Burnish's penalty, finite strain, the
-same law, loads and supports. With friction its stick slope is Burnish's penalty for what sticks.
+same law, loads and supports. With friction its stick slope is Burnish's penalty for what sticks. The pipe also yields,
+and is of rubber.
     compare_calculix.py [--burnish BINARY] [--ccx BINARY] [--repeats N] [--out DIR] [--record FILE] [CASE ...]     runs
     and prints compare_calculix.py --table FILE
     prints only
@@ -35,6 +36,16 @@ AT_ONCE = ("stepping.initial=1", "stepping.at=[]")
 ENHANCED = ("mesh.order=1", "bodies.0.formulation=enhanced")
 
 
+# Laws of pipe and plate besides the scene's own: CalculiX's cards, and Burnish's material. Rubber has E = 20000 and
+# nu = 0.49; the volume terms of the two codes agree to second order.
+LAWS = {
+    "yields": (["*ELASTIC", "20000, 0.3", "*PLASTIC", "200, 0", "400, 1"],
+               "{law: von_mises, E: 20000, nu: 0.3, yield: 200, hardening: {linear: 200}}"),
+    "rubber": (["*HYPERELASTIC, NEO HOOKE", f"{20000 / 5.96}, {0.12 / 20000}"],
+               "{law: isochoric_neo_hookean, E: 20000, nu: 0.49}"),
+}
+
+
 @dataclasses.dataclass
 class Setting:
     """A row of the table: a mesh, and what Burnish overrides or CalculiX is given."""
@@ -52,6 +63,7 @@ class Setting:
     scale: float = 100  # of the penalty, as in the scenes
     mu: float = 0
     turn: float = 0  # of the press fit's bore (radians)
+    law: str = ""  # of LAWS; the scene's own without it
 
     def __str__(self):
         return f"{self.scene} {self.code} {self.name}"
@@ -84,6 +96,13 @@ def ccx_pipe(element, n_arc, n_wall, n_len, n_plate_y, increment, swapped=False,
 def rubbing(setting, mu):
     """With friction."""
     return dataclasses.replace(setting, overrides=(*setting.overrides, f"contact.0.friction={{mu: {mu}}}"), mu=mu)
+
+
+def of_law(setting, law):
+    """With pipe and plate of another law."""
+    overrides = tuple(f"bodies.{body}.material={LAWS[law][1]}" for body in (0, 1))
+    return dataclasses.replace(setting, name=f"{law}, {setting.name}", overrides=(*setting.overrides, *overrides),
+                               law=law)
 
 
 def fit(code, turn):
@@ -160,6 +179,8 @@ SETTINGS = [
     *(rubbing(pipe(f"mu {mu}, enhanced, 20 steps, surface to surface, diffuse", *PIPE_WITH_FRICTION,
                    "stepping.initial=0.05", "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface"),
               mu) for mu in FRICTION),
+    *(of_law(ccx_pipe("C3D8I", *PIPE_WITH_FRICTION, 0.05), law) for law in LAWS),
+    *(of_law(pipe("enhanced, 20 steps", *PIPE_WITH_FRICTION, "stepping.initial=0.05"), law) for law in LAWS),
     *(fit(code, turn) for turn in (STICKS, SLIPS) for code in ("calculix", "burnish")),
 ]
 
@@ -242,8 +263,9 @@ def element_lines(element, name, cells):
     return lines
 
 
-def material(name, young):
-    return [f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young}, 0.3", f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"]
+def material(name, young, law=""):
+    cards = LAWS[law][0] if law else ["*ELASTIC", f"{young}, 0.3"]
+    return [f"*MATERIAL, NAME={name}", *cards, f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"]
 
 
 def surface(name, sides):
@@ -277,8 +299,8 @@ def fixed(mesh, supports):
 def pipe_input(setting, mesh):
     cells = mesh.cells(("pipe", "plate"))
     return [
-        "*NODE", *mesh.nodes.values(), *element_lines(setting.element, "SOLID", cells), *material("SOLID", 20000),
-        *surface("SLAVE", mesh.sides(setting.slave, cells, BRICK_SIDES)),
+        "*NODE", *mesh.nodes.values(), *element_lines(setting.element, "SOLID", cells),
+        *material("SOLID", 20000, setting.law), *surface("SLAVE", mesh.sides(setting.slave, cells, BRICK_SIDES)),
         *surface("MASTER", mesh.sides(setting.master, cells, BRICK_SIDES)),
         *contact(setting, 20000, 20 / setting.parameters["n_plate_y"]), *fixed(mesh, {
             "symmetry_x": "1",
@@ -426,7 +448,8 @@ def record(args, setting, repeat):
     shutil.rmtree(directory, ignore_errors=True)
     directory.mkdir(parents=True)
     row = (run_burnish if setting.code == "burnish" else run_calculix)(args, setting, directory)
-    reference = REFERENCES[setting.scene] if not setting.mu else FIT_TORQUE if setting.turn == SLIPS else None
+    own = not setting.mu and not setting.law  # what the reference is of
+    reference = REFERENCES[setting.scene] if own else FIT_TORQUE if setting.turn == SLIPS else None
     error = 100 * (row["force"] / reference - 1) if row["force"] is not None and reference else None
     row.update(scene=setting.scene, code=setting.code, setting=setting.name, repeat=repeat, error=error)
     return row

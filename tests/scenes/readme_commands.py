@@ -118,6 +118,7 @@ FULL = {
     f"{PYTHON} scripts/smoother_table.py --table runs/records/smoothers.csv",
     f"{PYTHON} scripts/surface_table.py --burnish build/burnish":
     f"{PYTHON} scripts/surface_table.py --table runs/records/surface.csv",
+    f"{PYTHON} scripts/physics_table.py --record runs/records/physics.csv": printed("physics_table", "physics"),
     f"{PYTHON} scripts/augment_table.py --record runs/records/augment.csv": table("augment_table", "rings"),
     f"{PYTHON} scripts/paper.py -j 1 --record runs/records/paper":
     f"{PYTHON} scripts/paper.py cup_flattening -j 1 --quick {BURNISH} --out $WORK/out/paper",
@@ -125,6 +126,8 @@ FULL = {
     f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix.csv",
     f"{PYTHON} scripts/compare_calculix.py --record runs/records/calculix_friction.csv \"mu \"":
     f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix_friction.csv",
+    f"{PYTHON} scripts/compare_calculix.py --record runs/records/calculix_laws.csv yields rubber":
+    f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix_laws.csv",
     f"{PYTHON} scripts/deck_table.py --record runs/records/decks.csv --decks FOLDER": printed("deck_table", "decks"),
     f"{PYTHON} scripts/all_table.py --record runs/records/all.csv": printed("all_table", "all"),
     f"{PYTHON} tests/hard/run.py --group guards":
