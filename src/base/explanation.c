@@ -60,6 +60,12 @@ static const Explanation Input[] = {
    "Pressures jump between bonded bodies of different materials. A node has as many pressures as the model has "
    "dimensions, and the bodies take more.",
    "Take `mesh.order: 2`, whose elements hold their pressures themselves, or merge bodies of nearly the same rubber."},
+  {"B129",
+   {"the run began with pressures"},
+   "a restart has another solver, for which mixed elements hold their pressures elsewhere",
+   "Mixed triangles and tetrahedra of second order have pressures at their corners with the direct solver, and in the "
+   "elements with the iterative one. The checkpoint has the unknowns of the solver with which the run began.",
+   "Restart without `-set solver.type`, or begin anew with the other solver."},
   {"B111",
    {"is inverted ("},
    "cell of a body is inverted",

@@ -1,7 +1,9 @@
 /* A checkpoint is the archive of all objects of a run, with the scene and the mesh file that it began with. */
 #define _GNU_SOURCE /* memfd_create() */
 #include "report/checkpoint.h"
+#include "base/complaint.h"
 #include "base/timing.h"
+#include "mesh/pressurenodes.h"
 #include <errno.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -231,10 +233,37 @@ PetscErrorCode CheckpointSetRun(Checkpoint checkpoint, Scene scene, Model model,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Saves which bodies have pressures at nodes, or refuses to go on with others: the unknowns would not be the same. */
+static PetscErrorCode CheckpointPressures(Checkpoint c, Archive archive)
+{
+  const Scene scene     = c->scene;
+  const Mesh  mesh      = c->model->mesh;
+  Complaint   complaint = {""};
+  PetscInt   *here, *saved;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(scene->n_bodies, &here, scene->n_bodies, &saved));
+  for (PetscInt k = 0; k < mesh->n_cells; k++) here[mesh->cell_body[k]] |= CellHasPressureNodes(mesh, scene, k);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, here, scene->n_bodies, MPIU_INT, MPI_MAX, c->comm));
+  PetscCall(PetscArraycpy(saved, here, scene->n_bodies));
+  PetscCall(ArchiveIntegers(archive, "scene/pressures", scene->n_bodies, saved));
+  for (int b = 0; b < scene->n_bodies; b++)
+    if (saved[b] != here[b])
+      Complain(&complaint,
+               "%s: the run began with pressures of body '%s' %s, and this solver has them %s; allowed: the type with "
+               "which it began",
+               SceneWhere(scene, "solver", "type"), scene->bodies[b].name, saved[b] ? "at nodes" : "in elements",
+               here[b] ? "at nodes" : "in elements");
+  PetscCall(PetscFree2(here, saved));
+  PetscCall(ComplaintRefuse(c->comm, &complaint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Saves or loads what changes from step to step. */
 static PetscErrorCode CheckpointState(Checkpoint c, Archive archive)
 {
   PetscFunctionBeginUser;
+  PetscCall(CheckpointPressures(c, archive));
   PetscCall(ModelArchive(c->model, archive));
   PetscCall(LoadStepperArchive(c->stepper, archive));
   PetscCall(ResultsArchive(c->results, archive));

@@ -1,6 +1,6 @@
 /* Shows that mixed triangles and tetrahedra, whose corners have pressures, have the exact tangent of their force with
- * every law and give the stress of the law in a uniform strain. Those of first order resist no pressure that is the same
- * everywhere: only pressures that differ within an element. Those of second order resist none, and no pressure is
+ * every law and give the stress of the law in a uniform strain. Those of first order resist no pressure that is the
+ * same everywhere: only pressures that differ within an element. Those of second order resist none, and no pressure is
  * without a force. */
 #include <stdarg.h>
 #include <stddef.h>
@@ -60,8 +60,7 @@ static void CaseCreate(Case *c, KernelCase kernel, double nu)
   assert_int_equal(c->dofs, (e->nodes + e->corners) * e->dim);
   assert_int_equal(ElementPressures(&c->kernel), 0);
   for (int lane = 0; lane < KERNEL_LANES; lane++) {
-    for (int k = 0; k < c->material.n_constants; k++)
-      c->constants[k * KERNEL_LANES + lane] = c->material.constants[k];
+    for (int k = 0; k < c->material.n_constants; k++) c->constants[k * KERNEL_LANES + lane] = c->material.constants[k];
     for (int k = 0; k < c->dofs; k++) {
       c->X[k * KERNEL_LANES + lane] =
         Place(c, k / e->dim)[k % e->dim] + (k % e->dim == 0 ? 3 : 0) + 0.2 / e->order * Random();
@@ -151,7 +150,7 @@ static void UniformStrainHasTheStressOfTheLaw(void **state)
   (void)state;
   for (KernelCase kernel; NextCase(&kernel);) {
     const int finite = kernel.kinematics == KINEMATICS_FINITE, plane = kernel.geometry == GEOMETRY_PLANE_STRAIN;
-    double    H[9]   = {a, 0, 0, 0, b, 0, 0, 0, plane ? 0 : a}, P[9], F[3] = {1, 1, 1}, J = 1, tau;
+    double    H[9] = {a, 0, 0, 0, b, 0, 0, 0, plane ? 0 : a}, P[9], F[3] = {1, 1, 1}, J = 1, tau;
     Case      c;
 
     if (kernel.law == MATERIAL_VON_MISES) continue;
@@ -195,12 +194,13 @@ static void OnlyDifferencesOfPressuresAreResisted(void **state)
       const double *K = &c.K[lane];
 
       for (int a = 0; a < c.pressures; a++) {
-        const int p = (c.n + a) * c.dim + kernel.component;
+        const int p   = (c.n + a) * c.dim + kernel.component;
         double    sum = 0;
 
         for (int r = 0; r < c.n * c.dim; r++)
           assert_near(K[(r * c.dofs + p) * KERNEL_LANES], -K[(p * c.dofs + r) * KERNEL_LANES], 0);
-        for (int b = 0; b < c.pressures; b++) sum += K[(p * c.dofs + (c.n + b) * c.dim + kernel.component) * KERNEL_LANES];
+        for (int b = 0; b < c.pressures; b++)
+          sum += K[(p * c.dofs + (c.n + b) * c.dim + kernel.component) * KERNEL_LANES];
         assert_near(sum, 0, 1e-14 * young);
         assert_true(second ? K[(p * c.dofs + p) * KERNEL_LANES] == 0 : K[(p * c.dofs + p) * KERNEL_LANES] > 0);
       }
@@ -238,7 +238,8 @@ static void PressuresOfSecondOrderHaveForces(void **state)
     CaseCreate(&c, kernel, infinite);
     Evaluate(&c, c.f, c.K);
     for (int a = 0; a < c.pressures; a++) {
-      for (int r = 0; r < c.n * c.dim; r++) G[a][r] = c.K[(r * c.dofs + (c.n + a) * c.dim + kernel.component) * KERNEL_LANES];
+      for (int r = 0; r < c.n * c.dim; r++)
+        G[a][r] = c.K[(r * c.dofs + (c.n + a) * c.dim + kernel.component) * KERNEL_LANES];
       for (int r = 0; r < c.n * c.dim; r++) size = fmax(size, fabs(G[a][r]));
       assert_true(Orthogonalise(c.n * c.dim, a, G) > 0.01 * size * size);
     }
