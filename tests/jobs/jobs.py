@@ -240,6 +240,9 @@ JOBS = [
         Answer("end_x", -4.904, 0.21, "limit"),
         Answer("end_y", 3.6454, 0.15, "limit"),
     ], steps=30, pairs=2, picture=["--mirror", "x"]),
+    Job("coin", "disc coined in a collar", [
+        Answer("relief", 0.12704, 0.16, "limit"),
+    ], steps=35, pairs=3, picture=["--mirror", "x"], stiff=["stepping.dt_max=0.04"]),
     Job("bead_pressed", "bead pressed into a strip over a groove", [
         Answer("draw", -5.444, 0.05, "limit"),
     ], steps=25, pairs=2, picture=["--mirror", "x"], stiff=["mesh.order=1", "stepping.dt_max=0.02"]),
