@@ -136,7 +136,7 @@ static const Explanation Input[] = {
    {"is there already; allowed: a new name"},
    "an import finds its scene or mesh there already",
    "A file of the name that -import would write exists. It is not replaced, as it may have been edited.",
-   "Name a new scene, `burnish -import DECK.inp NEW.yaml`, or move the old files away."},
+   "Name a new scene behind the deck's name, or move the old files away."},
   {"B105",
    {"the mesh has no", "has no volume group", "has no cells of a volume group", "is needed: "},
    "the mesh has no group of this name",
