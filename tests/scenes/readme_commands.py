@@ -99,6 +99,8 @@ FULL = {
     f"{PYTHON} scripts/drawn_table.py --record runs/records/drawn.csv": printed("drawn_table", "drawn"),
     f"{PYTHON} scripts/friction_table.py --record runs/records/friction.csv": printed("friction_table", "friction"),
     f"{PYTHON} scripts/plot.py out/press_fit": None,
+    f"{PYTHON} scripts/rubber_jobs_table.py --record runs/records/rubber_jobs.csv":
+    printed("rubber_jobs_table", "rubber_jobs"),
     f"{PYTHON} scripts/ball_table.py": printed("ball_table", "ball"),
     f"{PYTHON} scripts/forming_table.py": printed("forming_table", "forming"),
     f"{PYTHON} scripts/michell_table.py": printed("michell_table", "michell"),
