@@ -2,14 +2,15 @@
 
    A term is a slave node with area. Its gap is the weighted mean over its slave points, and its pressure acts on all of
    them. Node to surface: a term has one slave point, the node itself. Surface to surface: its slave points are the
-   quadrature points of the faces around the node, which it shares with its neighbours. Faces may have terms besides
-   (contactfaces.c): they press and have stiffness as others do, but what is counted and shown is that of the nodes.
+   quadrature points of the faces around the node, which it shares with its neighbours. A node on a sharp edge may
+   have a term for each further side of the edge (contactcorners.c). Faces may have terms besides (contactfaces.c).
+   Both press and have stiffness as others do, but what is counted and shown is that of the nodes.
 
-   The files call each other downwards in this order: contactwork (room), contactpair, contactfaces and contactterm (a
-   pair, the terms of its faces, one of its terms), contacttool (a tool with unknowns), contactpoint (one slave point),
-   contactvariation (first variations that are kept), contactprojection (gaps of all points), contactvectors (first
-   variations over dofs), friction, frictionstep, frictiontangent, contactresidual, contacttangent, contactlists,
-   contact. */
+   The files call each other downwards in this order: contactwork (room), contactpair, contactcorners, contactfaces and
+   contactterm (a pair, the terms of its sharp edges and faces, one of its terms), contacttool (a tool with unknowns),
+   contactpoint (one slave point), contactvariation (first variations that are kept), contactprojection (gaps of all
+   points), contactvectors (first variations over dofs), friction, frictionstep, frictiontangent, contactresidual,
+   contacttangent, contactlists, contact. */
 #pragma once
 #include "matrix/blockmatrix.h"
 #include "contact/activeset.h"
