@@ -185,11 +185,11 @@ static PetscErrorCode GatherChanges(ContactCycle cycle, PetscInt period, GatherT
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++, i++) {
-      const PetscBool face = (PetscBool)(c >= pair->n_nodes);
+      const PetscBool face = (PetscBool)(c >= pair->n_sides);
 
       if (!Changes(cycle, period, i)) continue;
       rows[2 * n]       = 2 * p + (face ? 1 : 0);
-      rows[2 * n++ + 1] = face ? (PetscReal)pair->slaves->faces[pair->face[c - pair->n_nodes]].tag
+      rows[2 * n++ + 1] = face ? (PetscReal)pair->slaves->faces[pair->face[c - pair->n_sides]].tag
                                : (PetscReal)contact->mesh->node_tag[pair->node[c]];
     }
   }

@@ -63,7 +63,7 @@ PetscErrorCode ContactFacesAdd(ContactPair *pair, const PetscReal turn[])
     PetscInt c = pair->n;
 
     if (!SlavePointIsOwn(slaves, slaves->first[f], rank)) continue;
-    pair->face[c - pair->n_nodes] = f;
+    pair->face[c - pair->n_sides] = f;
     pair->node[c]                 = slaves->nodes[slaves->faces[f].nodes[0]].local;
     pair->size[c]                 = slaves->size[slaves->first[f]];
     pair->turn[c]                 = turn[pair->node[c]];
@@ -101,8 +101,8 @@ void ContactFacesPoints(ContactPair *pair)
 {
   const SlavePoints slaves = pair->slaves;
 
-  for (PetscInt c = pair->n_nodes; c < pair->n; c++) {
-    const PetscInt f = pair->face[c - pair->n_nodes];
+  for (PetscInt c = pair->n_sides; c < pair->n; c++) {
+    const PetscInt f = pair->face[c - pair->n_sides];
 
     for (PetscInt q = slaves->first[f]; q < slaves->first[f + 1]; q++) {
       const PetscInt at = pair->term_ptr[c + 1]++;
@@ -125,7 +125,7 @@ void ContactFacesPoints(ContactPair *pair)
 @*/
 PetscReal ContactTermPenalty(const ContactPair *pair, PetscInt c, PetscReal penalty)
 {
-  return c < pair->n_nodes ? penalty : PetscMin(penalty, FACE_STIFFEST * pair->automatic);
+  return c < pair->n_sides ? penalty : PetscMin(penalty, FACE_STIFFEST * pair->automatic);
 }
 
 /*@
@@ -139,7 +139,7 @@ PetscReal ContactTermPenalty(const ContactPair *pair, PetscInt c, PetscReal pena
 @*/
 PetscBool ContactTermAtBound(const ContactPair *pair, PetscInt c)
 {
-  return (PetscBool)(c >= pair->n_nodes && pair->now.penalty[c] >= (1 - PETSC_SMALL) * FACE_STIFFEST * pair->automatic);
+  return (PetscBool)(c >= pair->n_sides && pair->now.penalty[c] >= (1 - PETSC_SMALL) * FACE_STIFFEST * pair->automatic);
 }
 
 /*@
@@ -154,5 +154,6 @@ PetscBool ContactTermAtBound(const ContactPair *pair, PetscInt c)
 PetscInt ContactTermId(const ContactPair *pair, PetscInt c)
 {
   if (c < pair->n_nodes) return pair->mesh->node_id[pair->node[c]];
-  return -1 - (PetscInt)pair->slaves->faces[pair->face[c - pair->n_nodes]].tag;
+  if (c < pair->n_sides) return ContactCornerId(pair, c);
+  return -1 - (PetscInt)pair->slaves->faces[pair->face[c - pair->n_sides]].tag;
 }

@@ -23,7 +23,10 @@ PetscErrorCode ContactSetCarried(Contact contact, int p, const PetscReal *carrie
 
   PetscFunctionBeginUser;
   if (!pair->carried) PetscCall(PetscMalloc1(pair->n, &pair->carried));
-  for (PetscInt c = 0; c < pair->n; c++) pair->carried[c] = carried[pair->node[c]] / pair->area[c];
+  for (PetscInt c = 0; c < pair->n_nodes; c++) { /* a fluid leaves no terms of faces, see ContactFacesServe() */
+    pair->carried[c] = carried[pair->node[c]] / pair->whole[c];
+    for (PetscInt i = pair->first_side[c]; i < pair->first_side[c + 1]; i++) pair->carried[i] = pair->carried[c];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -119,7 +119,7 @@ static void OverlapPoints(Contact contact, const ContactPair *pair, PetscInt *n,
   const int  dim  = mesh->dim;
 
   *n = 0;
-  for (PetscInt c = 0; c < pair->n_nodes; c++) {
+  for (PetscInt c = 0; c < pair->n_sides; c++) {
     const PetscReal *X = &mesh->coords[pair->node[c] * dim];
 
     if (!(pair->now.gap[c] < -ContactTouchTolerance(pair, c))) continue;
@@ -145,7 +145,7 @@ static PetscErrorCode OverlapIsDeep(Contact contact, const ContactPair *pair, co
 
   PetscFunctionBeginUser;
   PetscCall(
-    PetscMalloc2(pair->n_nodes * pair->n_images * mesh->dim, &x, pair->n_nodes * pair->n_images * mesh->dim, &y));
+    PetscMalloc2(pair->n_sides * pair->n_images * mesh->dim, &x, pair->n_sides * pair->n_images * mesh->dim, &y));
   OverlapPoints(contact, pair, &n, x, y);
   PetscCall(AskBodies(mesh, contact->scene->n_bodies, bodies, IMMERSED_WIDE, n, x, &at));
   PetscCall(AskBodies(mesh, contact->scene->n_bodies, bodies, IMMERSED_WIDE, n, y, &deeper));
@@ -175,7 +175,8 @@ static PetscErrorCode FindPointless(Contact contact, const ContactPair *pair, co
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(room, mesh->n_nodes));
-  for (PetscInt c = 0; c < pair->n_nodes; c++) room[pair->node[c]] = !PetscIsNanReal(pair->now.gap[c]);
+  for (PetscInt c = 0; c < pair->n_nodes; c++)
+    room[pair->node[c]] = !PetscIsNanReal(pair->now.gap[ContactNodeTerm(pair, &pair->now, c)]);
   PetscCall(MeshSumNodes(mesh, 1, room));
   PetscCall(FindImmersed(mesh, contact->scene->n_bodies, bodies, pair->slave, PETSC_TRUE, room, X, found));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -212,8 +213,9 @@ PetscErrorCode ContactRefuseImmersed(Contact contact, int p)
     int any = 0;
 
     PetscCall(PetscCalloc1(mesh->n_nodes, &overlaps));
-    for (PetscInt c = 0; c < pair->n_nodes; c++) overlaps[pair->node[c]] = pair->now.gap[c] < 0;
-    for (PetscInt c = 0; c < pair->n_nodes; c++) any = any || pair->now.gap[c] < -ContactTouchTolerance(pair, c);
+    for (PetscInt c = 0; c < pair->n_nodes; c++)
+      overlaps[pair->node[c]] = pair->now.gap[ContactNodeTerm(pair, &pair->now, c)] < 0;
+    for (PetscInt c = 0; c < pair->n_sides; c++) any = any || pair->now.gap[c] < -ContactTouchTolerance(pair, c);
     PetscCall(MeshSumNodes(mesh, 1, overlaps));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, mesh->comm));
     PetscCall(FindImmersed(mesh, scene->n_bodies, master, pair->slave, PETSC_FALSE, overlaps, X, &found));

@@ -15,7 +15,9 @@ static PetscErrorCode AllowOverlap(Contact contact, const ContactPair *pair, Pet
   PetscCall(PetscCalloc2(mesh->n_nodes, &offset, mesh->n_nodes, &terms));
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
     offset[pair->node[c]] = ContactTermOffset(pair, c, t);
-    terms[pair->node[c]]  = 1;
+    for (PetscInt i = pair->first_side[c]; i < pair->first_side[c + 1]; i++)
+      offset[pair->node[c]] = PetscMin(offset[pair->node[c]], ContactTermOffset(pair, i, t));
+    terms[pair->node[c]] = 1;
   }
   PetscCall(MeshSumNodes(mesh, 1, offset));
   PetscCall(MeshSumNodes(mesh, 1, terms));

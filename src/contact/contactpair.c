@@ -60,8 +60,8 @@ static PetscErrorCode PairCreateNodePoints(Mesh mesh, ContactPair *pair)
   PetscCall(PetscMalloc2(mesh->n_nodes, &of_nodes, pair->n, &height));
   PetscCall(NodeHeights(mesh, pair->slave, of_nodes));
   for (PetscInt c = 0; c < pair->n; c++) height[c] = of_nodes[pair->node[c]];
-  PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, pair->size, height, HasLevers(pair),
-                                   &pair->slaves));
+  PetscCall(
+    SlavePointsCreateNodes(pair->slave, pair->n, pair->node, pair->size, height, HasLevers(pair), &pair->slaves));
   PetscCall(PetscFree2(of_nodes, height));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -97,9 +97,10 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
 {
   const MeshGroup *group = pair->slave->group;
   const PetscBool  hats  = pair->formulation.surface;
-  const PetscInt   room  = group->n_nodes + (pair->formulation.faces ? pair->slaves->n_faces : 0);
-  PetscReal       *area, *size, *turn, *share, sum[2] = {0, 0};
-  PetscMPIInt      rank;
+  const PetscInt   faces = pair->slaves ? pair->slaves->n_faces : 0,
+                 room    = group->n_nodes + (1 + FACE_MAX_NODES) * faces; /* for terms of sides and faces, too */
+  PetscReal  *area, *size, *turn, *share, sum[2] = {0, 0};
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
@@ -129,6 +130,8 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
     pair->n++;
   }
   pair->n_nodes = pair->n;
+  PetscCall(ContactCornersAdd(pair));
+  pair->n_sides = pair->n;
   if (pair->formulation.faces) PetscCall(ContactFacesAdd(pair, turn));
   PetscCall(PetscFree4(area, size, turn, share));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -140,21 +143,25 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
 {
   SlavePoints     slaves = pair->slaves;
   const PetscReal share  = ContactFacesShare(pair);
-  PetscInt       *term, n = 0;
+  PetscInt       *term, *of, n = 0; /* of: term of each node of each point */
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(slaves->n_nodes, &term)); /* of each node that the points are made of; -1: none */
   for (PetscInt i = 0; i < slaves->n_nodes; i++) term[i] = -1;
   for (PetscInt c = 0; c < pair->n_nodes; c++)
     term[NodeKeysFind(slaves->n_nodes, slaves->nodes, mesh->node_id[pair->node[c]])] = c;
+  PetscCall(PetscMalloc1(slaves->ptr[slaves->n], &of));
+  for (PetscInt k = 0; k < slaves->ptr[slaves->n]; k++) of[k] = slaves->hat[k] == 0 ? -1 : term[slaves->node[k]];
+  PetscCall(PetscFree(term));
+  ContactCornersTake(pair, of);
   PetscCall(PetscCalloc1(pair->n + 2, &pair->term_ptr));
   for (PetscInt k = 0; k < slaves->ptr[slaves->n]; k++) {
-    if (term[slaves->node[k]] < 0 || slaves->hat[k] == 0) continue;
-    pair->term_ptr[term[slaves->node[k]] + 2]++;
+    if (of[k] < 0) continue;
+    pair->term_ptr[of[k] + 2]++;
     n++;
   }
-  for (PetscInt c = pair->n_nodes; c < pair->n; c++) {
-    const PetscInt f = pair->face[c - pair->n_nodes];
+  for (PetscInt c = pair->n_sides; c < pair->n; c++) {
+    const PetscInt f = pair->face[c - pair->n_sides];
 
     pair->term_ptr[c + 2] = slaves->first[f + 1] - slaves->first[f];
     n += pair->term_ptr[c + 2];
@@ -163,10 +170,10 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
   for (PetscInt c = 0; c <= pair->n; c++) pair->term_ptr[c + 1] += pair->term_ptr[c];
   for (PetscInt q = 0; q < slaves->n; q++) {
     for (PetscInt k = slaves->ptr[q]; k < slaves->ptr[q + 1]; k++) {
-      const PetscInt c = term[slaves->node[k]];
+      const PetscInt c = of[k];
       PetscInt       at;
 
-      if (c < 0 || slaves->hat[k] == 0) continue;
+      if (c < 0) continue;
       at                   = pair->term_ptr[c + 1]++; /* after the loop it is the start of the next term */
       pair->term_point[at] = q;
       pair->term_weight[at] =
@@ -174,9 +181,10 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
     }
   }
   ContactFacesPoints(pair);
-  PetscCall(PetscFree(term));
+  PetscCall(PetscFree(of));
   PetscCall(PetscCalloc5(pair->n, &pair->force, 3 * pair->n, &pair->normal, pair->n, &pair->pressure, pair->n,
                          &pair->stiffness, pair->n, &pair->stiffness_before));
+  PetscCall(PetscCalloc2(pair->n_nodes, &pair->shown_gap, 3 * pair->n_nodes, &pair->shown_normal));
   PetscCall(PetscCalloc6(slaves->n, &pair->factor, slaves->n, &pair->next_factor, slaves->n, &pair->seed, slaves->n,
                          &pair->point_gap, 3 * slaves->n, &pair->point_normal, slaves->n, &pair->point_force));
   PetscCall(PetscCalloc4(slaves->n, &pair->factor_before, slaves->n, &pair->factor_change, slaves->n, &pair->factor_low,
@@ -362,10 +370,10 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));
   PetscCall(SurfaceFindFreeEdges(pair->slave, pair->n_images, pair->images));
-  pair->automatic    = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
-  pair->most         = PETSC_MAX_REAL;
-  penalty            = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
-  pair->initial      = penalty;
+  pair->automatic = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
+  pair->most      = PETSC_MAX_REAL;
+  penalty         = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
+  pair->initial   = penalty;
   PetscCall(ContactStateCreate(pair->n, penalty, friction, &pair->now));
   PetscCall(ContactStateCreate(pair->n, penalty, friction, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images,
@@ -407,6 +415,9 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(ContactStateDestroy(&pair->now));
   PetscCall(ContactStateDestroy(&pair->accepted));
   PetscCall(PetscFree4(pair->node, pair->area, pair->size, pair->turn));
+  PetscCall(PetscFree2(pair->first_side, pair->whole));
+  PetscCall(PetscFree2(pair->shown_gap, pair->shown_normal));
+  PetscCall(PetscFree(pair->corner));
   PetscCall(PetscFree(pair->face));
   PetscCall(PetscFree(pair->term_ptr));
   PetscCall(PetscFree2(pair->term_point, pair->term_weight));

@@ -92,17 +92,19 @@ PetscErrorCode ContactPairGaps(Contact contact, int p, ContactGaps *gaps)
   PetscCall(PetscMalloc1(pair->n, &depth));
   for (PetscInt c = pair->n_nodes; c < pair->n; c++) depth[c] = NAN;
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
-    const PetscReal gap = PetscAbsReal(pair->now.gap[c]) <= QUALITY_ROUND_OFF * pair->size[c] ? 0 : pair->now.gap[c];
+    const PetscInt  term = ContactNodeTerm(pair, &pair->now, c);
+    const PetscReal here = pair->now.gap[term],
+                    gap  = PetscAbsReal(here) <= QUALITY_ROUND_OFF * pair->size[c] ? 0 : here;
 
     PetscReal explained;
 
     depth[c] = -gap;
     if (PetscIsNanReal(gap)) continue;
-    if (gap < 0) PetscCall(TermOverlapExplained(pair, c, &explained));
+    if (gap < 0) PetscCall(TermOverlapExplained(pair, term, &explained));
     count[1]++;
     count[2] += gap < 0;
     count[3] += gap < 0 && gap < -explained;
-    if (gap < 0) area += pair->area[c];
+    if (gap < 0) area += pair->area[term];
     range[1] = PetscMax(range[1], gap);
     range[0] = PetscMax(range[0], -gap);
   }
@@ -187,7 +189,7 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   PetscCall(PetscMalloc1(pair->n, &depth));
   PetscCall(ContactPairPressing(pair, &pressing));
   for (PetscInt c = 0; c < pair->n; c++) {
-    const PetscBool counts = (PetscBool)((c >= pair->n_nodes) == pressing.faces);
+    const PetscBool counts = (PetscBool)((c >= pair->n_sides) == pressing.faces);
 
     depth[c] =
       counts && pair->now.status[c] == CONTACT_CLOSED ? ContactTermOffset(pair, c, pair->t) - pair->now.gap[c] : NAN;

@@ -30,7 +30,7 @@ static PetscErrorCode LeastPenetration(Contact contact, PetscReal largest, Petsc
   for (int p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    for (PetscInt c = 0; c < pair->n_nodes; c++)
+    for (PetscInt c = 0; c < pair->n_sides; c++)
       if (pair->now.status[c] == CONTACT_CLOSED && ContactTermForce(pair, c) > PENALTY_LOADED * largest)
         *least = PetscMin(*least, ContactTermOffset(pair, c, pair->t) - pair->now.gap[c]);
   }
@@ -49,8 +49,14 @@ static PetscErrorCode Dissipated(Contact contact, PetscReal *energy)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Counts the closed terms from number first to end - 1, and makes most[2] as large as their largest penetration
-   (length) and the largest one over the face size. */
+/* Status of a term; of a node, that of the side with the least gap. */
+static ContactStatus StatusAt(const ContactPair *pair, const ContactState *state, PetscInt c)
+{
+  return state->status[c < pair->n_nodes ? ContactNodeTerm(pair, state, c) : c];
+}
+
+/* Counts the closed terms from number first to end - 1, each node once, and makes most[2] as large as their largest
+   penetration (length) and the largest one over the face size. */
 static PetscInt FindDeepest(const ContactPair *pair, PetscInt first, PetscInt end, PetscReal most[2])
 {
   PetscInt closed = 0;
@@ -58,8 +64,8 @@ static PetscInt FindDeepest(const ContactPair *pair, PetscInt first, PetscInt en
   for (PetscInt c = first; c < end; c++) {
     const PetscReal penetration = ContactTermOffset(pair, c, pair->t) - pair->now.gap[c];
 
+    if (c < pair->n_nodes || c >= pair->n_sides) closed += StatusAt(pair, &pair->now, c) == CONTACT_CLOSED;
     if (pair->now.status[c] != CONTACT_CLOSED) continue;
-    closed++;
     most[0] = PetscMax(most[0], penetration);
     most[1] = PetscMax(most[1], penetration / pair->size[c]);
   }
@@ -85,8 +91,8 @@ PetscErrorCode ContactPairPressing(const ContactPair *pair, ContactPressing *pre
   PetscBool faces;
 
   PetscFunctionBeginUser;
-  count[0] = FindDeepest(pair, 0, pair->n_nodes, &most[0]);
-  count[1] = FindDeepest(pair, pair->n_nodes, pair->n, &most[2]);
+  count[0] = FindDeepest(pair, 0, pair->n_sides, &most[0]);
+  count[1] = FindDeepest(pair, pair->n_sides, pair->n, &most[2]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, pair->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 4, MPIU_REAL, MPI_MAX, pair->mesh->comm));
   if (ContactPairPresence(pair, pair->t) < 1) PetscCall(PetscArrayzero(most, 4)); /* what comes or goes is no error */
@@ -164,8 +170,12 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
     depth  = PetscMax(depth, one.depth);
     over_h = PetscMax(over_h, one.over_h);
     for (PetscInt c = 0; c < pair->n_nodes; c++) {
-      count[0] += pair->now.status[c] == CONTACT_CLOSED && pair->accepted.status[c] == CONTACT_OPEN;
-      count[1] += pair->now.status[c] == CONTACT_OPEN && pair->accepted.status[c] == CONTACT_CLOSED;
+      const ContactStatus now = StatusAt(pair, &pair->now, c), before = StatusAt(pair, &pair->accepted, c);
+
+      count[0] += now == CONTACT_CLOSED && before == CONTACT_OPEN;
+      count[1] += now == CONTACT_OPEN && before == CONTACT_CLOSED;
+    }
+    for (PetscInt c = 0; c < pair->n_sides; c++) {
       most[0] = PetscMax(most[0], -pair->now.penalty[c]);
       most[1] = PetscMax(most[1], pair->now.penalty[c]);
       most[2] = PetscMax(most[2], ContactTermForce(pair, c));
@@ -233,8 +243,9 @@ static PetscErrorCode AddPartner(Contact contact, const ContactPair *pair, const
     const PetscReal own   = pair->scene->share * pressure[c];
     PetscReal       other = 0;
 
-    for (int d = 0; d < dim; d++) other += reaction[node * dim + d] * pair->normal[3 * c + d];
-    pressure[c] = own + (area[node] > CONTACT_NO_SHAPE_AREA * pair->area[c] ? other / area[node] : own);
+    for (int d = 0; d < dim; d++)
+      other += reaction[node * dim + d] * pair->normal[3 * ContactNodeTerm(pair, &pair->now, c) + d];
+    pressure[c] = own + (area[node] > CONTACT_NO_SHAPE_AREA * pair->whole[c] ? other / area[node] : own);
   }
   PetscCall(PetscFree(area));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -307,14 +318,20 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
   PetscCall(PetscMalloc1(contact->mesh->n_nodes, &area));
   PetscCall(ContactNodePressures(contact, p, u, pair->force, partner >= 0 ? contact->pairs[partner].reaction : NULL,
                                  area, pair->pressure));
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
+    const PetscInt term = ContactNodeTerm(pair, &pair->now, c);
+
+    pair->shown_gap[c] = pair->now.gap[term];
+    for (int d = 0; d < 3; d++) pair->shown_normal[3 * c + d] = pair->normal[3 * term + d];
+  }
   *nodes = (ContactNodes){.n        = pair->n_nodes,
                           .node     = pair->node,
-                          .area     = pair->area,
-                          .gap      = pair->now.gap,
+                          .area     = pair->whole,
+                          .gap      = pair->shown_gap,
                           .penalty  = pair->now.penalty,
                           .force    = pair->force,
                           .pressure = pair->pressure,
-                          .normal   = pair->normal};
+                          .normal   = pair->shown_normal};
   if (pair->friction) PetscCall(FrictionShow(pair, area, nodes));
   PetscCall(PetscFree(area));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -374,9 +391,11 @@ PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscRea
     for (int d = 0; d < mesh->dim; d++) found[2 + d] = mesh->coords[node * mesh->dim + d] + u[node * mesh->dim + d];
   }
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
-    if (mesh->node_id[pair->node[c]] != node_id || PetscIsNanReal(pair->now.gap[c])) continue;
+    const PetscReal here = pair->now.gap[ContactNodeTerm(pair, &pair->now, c)];
+
+    if (mesh->node_id[pair->node[c]] != node_id || PetscIsNanReal(here)) continue;
     found[0] = 2;
-    found[1] = pair->now.gap[c];
+    found[1] = here;
   }
   PetscCall(LargestOfRanks(mesh->comm, found[0], NULL, &rank, NULL));
   PetscCallMPI(MPI_Bcast(found, 5, MPIU_REAL, rank, mesh->comm));
@@ -631,7 +650,7 @@ PetscErrorCode ContactPairTermStiffness(Contact contact, int pair, PetscReal *st
   PetscReal          sum[2] = {0, (PetscReal)p->n_nodes};
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < p->n_nodes; c++) sum[0] += p->area[c];
+  for (PetscInt c = 0; c < p->n_nodes; c++) sum[0] += p->whole[c];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, contact->mesh->comm));
   *stiffness = sum[1] > 0 ? p->automatic * sum[0] / sum[1] : 0;
   PetscFunctionReturn(PETSC_SUCCESS);

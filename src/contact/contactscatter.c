@@ -87,8 +87,8 @@ static void SumScatter(const ContactPair *pair, const NodeValue *jumps, PetscRea
     const NodeValue *jump = &jumps[pair->node[c]];
 
     if (jump->valid == 0) continue;
-    sum[0] += pair->area[c] * PetscSqr(jump->value);
-    sum[1] += pair->area[c] * PetscSqr(pair->pressure[c] - jump->value);
+    sum[0] += pair->whole[c] * PetscSqr(jump->value);
+    sum[1] += pair->whole[c] * PetscSqr(pair->pressure[c] - jump->value);
     sum[2] += 1;
   }
 }

@@ -73,7 +73,7 @@ static PetscErrorCode TouchStepRows(Contact contact, PetscReal **rows)
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  for (int p = 0; p < contact->n_pairs; p++) n += contact->pairs[p].n_nodes;
+  for (int p = 0; p < contact->n_pairs; p++) n += contact->pairs[p].n_sides;
   PetscCall(PetscMalloc1(3 * n, rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -115,7 +115,7 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
 
     PetscCall(PairMeasure(pair, u_0, t_0, &before));
     PetscCall(PairMeasure(pair, u, t, &after));
-    for (PetscInt c = 0; c < pair->n_nodes; c++) {
+    for (PetscInt c = 0; c < pair->n_sides; c++) {
       PetscReal gap[2], beta;
 
       TermGaps(pair, c, &before, &after, gap);
@@ -167,7 +167,7 @@ PetscErrorCode ContactChanges(Contact contact, PetscReal t_0, PetscBool by_area,
   for (int p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    for (PetscInt c = 0; c < pair->n_nodes; c++) {
+    for (PetscInt c = 0; c < pair->n_sides; c++) {
       const PetscReal weight = by_area ? pair->area[c] : 1,
                       gap    = pair->accepted.gap[c] - ContactTermOffset(pair, c, t_0);
       const PetscBool resting =

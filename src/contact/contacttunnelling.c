@@ -51,7 +51,7 @@ static void KeepDeepest(ContactPair *pair, const ContactLost *lost)
 PetscErrorCode ContactNoteLost(ContactPair *pair, PetscReal t)
 {
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < pair->n_nodes; c++) {
+  for (PetscInt c = 0; c < pair->n_sides; c++) {
     for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
       ContactLost lost;
 
@@ -101,7 +101,7 @@ static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q,
 @*/
 void ContactNoteTunnelled(ContactPair *pair, PetscReal t)
 {
-  for (PetscInt c = 0; c < pair->n_nodes; c++) {
+  for (PetscInt c = 0; c < pair->n_sides; c++) {
     for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
       ContactLost lost;
 
@@ -126,7 +126,7 @@ void ContactNoteTunnelled(ContactPair *pair, PetscReal t)
 void ContactNoteJumps(ContactPair *pair, PetscReal motion)
 {
   if (!pair->master) return;
-  for (PetscInt c = 0; c < pair->n_nodes; c++) {
+  for (PetscInt c = 0; c < pair->n_sides; c++) {
     const PetscReal   jump = pair->now.gap[c] - pair->accepted.gap[c];
     const ContactLost lost = {-pair->accepted.gap[c], pair->now.gap[c], pair->size[c], pair->node[c]};
 

@@ -19,7 +19,7 @@ static PetscErrorCode PairTurn(Contact contact, ContactPair *pair, const PetscRe
   PetscCall(ContactPairProject(contact, pair, u, t));
   PetscCall(PetscArraycpy(before, pair->point_normal, 3 * lists->n_slaves));
   PetscCall(ContactPairProject(contact, pair, u_ahead, t));
-  for (PetscInt c = 0; c < pair->n_nodes; c++) {
+  for (PetscInt c = 0; c < pair->n_sides; c++) {
     for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
       const PetscInt q    = pair->term_point[k];
       PetscReal      turn = 0;

@@ -795,7 +795,7 @@ PetscErrorCode FrictionNodalForces(const ContactPair *pair, const PetscReal *for
       for (int d = 0; d < dim; d++)
         values[lists->slave_node[node] * dim + d] -= pair->slaves->hat[k] * force[3 * q + d];
   PetscCall(NeighbourListsReduce(lists, values, nodal));
-  for (PetscInt c = 0; c < pair->n; c++)
+  for (PetscInt c = 0; c < pair->n_nodes; c++)
     for (int d = 0; d < dim; d++) on_node[3 * c + d] = nodal[pair->node[c] * dim + d];
   PetscCall(PetscFree2(values, nodal));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -902,9 +902,11 @@ PetscErrorCode FrictionShow(const ContactPair *pair, const PetscReal *area, Cont
   const Friction f = pair->friction;
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < pair->n; c++) {
+  for (PetscInt c = 0; c < pair->n_nodes; c++) {
+    const PetscInt term = ContactNodeTerm(pair, &pair->now, c);
+
     for (int d = 0; d < 3; d++) f->traction[3 * c + d] = f->nodal[3 * c + d] / area[pair->node[c]];
-    f->status[c] = pair->now.status[c] == CONTACT_OPEN ? 0 : pair->now.slips[c] ? 2 : 1;
+    f->status[c] = pair->now.status[term] == CONTACT_OPEN ? 0 : pair->now.slips[term] ? 2 : 1;
   }
   nodes->traction = f->traction;
   nodes->slid     = pair->now.slid;

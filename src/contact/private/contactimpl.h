@@ -2,14 +2,15 @@
 
    A term is a slave node with area. Its gap is the weighted mean over its slave points, and its pressure acts on all of
    them. Node to surface: a term has one slave point, the node itself. Surface to surface: its slave points are the
-   quadrature points of the faces around the node, which it shares with its neighbours. Faces may have terms besides
-   (contactfaces.c): they press and have stiffness as others do, but what is counted and shown is that of the nodes.
+   quadrature points of the faces around the node, which it shares with its neighbours. A node on a sharp edge may
+   have a term for each further side of the edge (contactcorners.c). Faces may have terms besides (contactfaces.c).
+   Both press and have stiffness as others do, but what is counted and shown is that of the nodes.
 
-   The files call each other downwards in this order: contactwork (room), contactpair, contactfaces and contactterm (a
-   pair, the terms of its faces, one of its terms), contacttool (a tool with unknowns), contactpoint (one slave point),
-   contactvariation (first variations that are kept), contactprojection (gaps of all points), contactvectors (first
-   variations over dofs), friction, frictionstep, frictiontangent, contactresidual, contacttangent, contactlists,
-   contact. */
+   The files call each other downwards in this order: contactwork (room), contactpair, contactcorners, contactfaces and
+   contactterm (a pair, the terms of its sharp edges and faces, one of its terms), contacttool (a tool with unknowns),
+   contactpoint (one slave point), contactvariation (first variations that are kept), contactprojection (gaps of all
+   points), contactvectors (first variations over dofs), friction, frictionstep, frictiontangent, contactresidual,
+   contacttangent, contactlists, contact. */
 #pragma once
 #include "matrix/blockmatrix.h"
 #include "contact/activeset.h"
@@ -70,7 +71,13 @@ typedef struct {
   ContactSearch       search;
   FaceMarks          *marks; /* of each slave point, where other pairs treat some of its partners; else NULL */
 
-  PetscInt   n, n_nodes;            /* terms; the first n_nodes are those of nodes, the others those of faces */
+  /* Terms: the first n_nodes are those of nodes, up to n_sides those of further sides of sharp edges, the others those
+     of faces. */
+  PetscInt   n, n_nodes, n_sides;
+  PetscInt  *corner; /* FACE_MAX_NODES for each face of the slave points: term of a further side, or -1; NULL: none */
+  PetscInt  *first_side; /* of each node: its further sides have the terms first_side[c] to first_side[c + 1] - 1 */
+  PetscReal *whole;      /* reference area of each node, all sides together */
+  PetscReal *shown_gap, *shown_normal; /* what ContactGetNodes() shows of nodes: of the side with the least gap */
   PetscInt  *node, *face;           /* local node of each term, of a face its first one; face of each term of a face */
   PetscReal *area, *size, *turn;    /* reference area; size of the faces around (length); turn of their normals */
   PetscInt  *term_ptr, *term_point; /* slave points of each term */
@@ -172,6 +179,11 @@ void ContactPairHold(Contact, const ContactPair *, PetscReal t, const PetscReal 
 PetscErrorCode ContactNodePressures(Contact, int pair, const PetscReal *u, const PetscReal *force,
                                     const PetscReal *reaction, PetscReal *area, PetscReal *pressure);
 PetscErrorCode ContactPairPressing(const ContactPair *, ContactPressing *);
+/* contactcorners.c */
+PetscErrorCode ContactCornersAdd(ContactPair *);
+void           ContactCornersTake(const ContactPair *, PetscInt term[]);
+PetscInt       ContactCornerId(const ContactPair *, PetscInt term);
+PetscInt       ContactNodeTerm(const ContactPair *, const ContactState *, PetscInt c);
 /* contactfaces.c */
 PetscBool      ContactFacesServe(const ContactPair *, Scene, int order);
 PetscErrorCode ContactFacesAdd(ContactPair *, const PetscReal turn[]);
