@@ -1,6 +1,7 @@
 /* Creation of the distributed mesh from gmsh's file, and coordinates of its nodes. */
 #include "mesh/mesh.h"
 #include "cellfaces.h"
+#include "formulationchoice.h"
 #include "gmsh.h"
 #include "meshdistribution.h"
 #include "meshimport.h"
@@ -154,6 +155,8 @@ static PetscErrorCode MeshBuild(Scene scene, const char *file, RootMesh *root, M
   PetscCall(RootRigidCreate(scene, root, mesh));
   PetscCall(PartitionBodies(scene, root, mesh));
   PetscCall(MeshToolsList(scene, mesh));
+  PetscCall(FormulationsChoose(scene, root, mesh));
+  PetscCall(ContactFormulationsChoose(scene, root, mesh));
   PetscCall(PressureNodesExist(scene, root, mesh));
   PetscCall(MeshDistribute(root, mesh));
   PetscCall(MeshToolsMeasureBolts(scene, mesh));

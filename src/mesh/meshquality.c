@@ -76,23 +76,6 @@ static PetscBool HasFormulation(Mesh mesh, Scene scene, PetscInt c)
    times the shear modulus. */
 #define LOCKING_NU 0.49
 
-/* Makes a body full for which fbar was chosen, where no cell has it. */
-static PetscErrorCode DropFormulations(Mesh mesh, Scene scene)
-{
-  PetscBool *has;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(scene->n_bodies, &has));
-  for (PetscInt c = 0; c < mesh->n_cells; c++)
-    if (HasFormulation(mesh, scene, c)) has[mesh->cell_body[c]] = PETSC_TRUE;
-  for (int b = 0; b < scene->n_bodies; b++) {
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &has[b], sizeof(PetscBool), MPI_BYTE, MPI_BOR, mesh->comm));
-    if (scene->bodies[b].chosen && !has[b] && !scene->bodies[b].rigid) scene->bodies[b].formulation = FORMULATION_FULL;
-  }
-  PetscCall(PetscFree(has));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Finds the bodies with cells of first order and full integration that lock: by the scene, or because there are no
    others of their shape. */
 static PetscErrorCode FindLocking(Mesh mesh, Scene scene)
@@ -119,7 +102,7 @@ static PetscErrorCode FindLocking(Mesh mesh, Scene scene)
 
   Input Parameters:
 + mesh  - the mesh
-- scene - its bodies; one for which fbar was chosen becomes full where no cell has it, and locks is set
+- scene - its bodies, of which locks is set
 
   Note:
   The refusal names the cell's tag, its body and its element.
@@ -129,7 +112,6 @@ PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
   Complaint complaint = {""};
 
   PetscFunctionBeginUser;
-  PetscCall(DropFormulations(mesh, scene));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const SceneBody *body = &scene->bodies[mesh->cell_body[c]];
 

@@ -1,6 +1,7 @@
 /* Nodes for the pressures of mixed triangles and tetrahedra, see pressurenodes.h. */
 #include "kernels/elementkernel.h"
 #include "mesh/meshdofs.h"
+#include "formulationchoice.h"
 #include "pressurenodesimpl.h"
 #include "base/complaint.h"
 
@@ -170,6 +171,7 @@ static PetscErrorCode SetComponents(Scene scene, const RootMesh *root, Mesh mesh
   for (int b = 0; b < n; b++) {
     scene->bodies[b].component = component[b] < mesh->dim ? component[b] : 0;
     scene->bodies[b].condensed |= component[n + b];
+    if (component[b] >= mesh->dim) FormulationsCrowded(&scene->bodies[b]);
   }
   PetscCall(RefuseCrowded(scene, root, mesh, component));
   PetscCall(PetscFree(component));

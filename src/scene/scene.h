@@ -99,6 +99,7 @@ typedef struct {
   double             share; /* part of the slave's area that counts: 1/2 if its master is a slave of it too, else 1 */
   int                smoother; /* index in Smoothers[] */
   ContactFormulation formulation;
+  int                formulation_chosen; /* 1 if `auto` chose it */
   int                live_offset;   /* of surface_to_surface: 1 if the offsets follow the nodes within a solve */
   int                find_symmetry; /* 1 if the scene does not name planes of symmetry */
   int                n_symmetry;

@@ -234,11 +234,12 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   Node symmetry = SceneNode(scene, contact->path, "symmetry");
 
   PetscFunctionBeginUser;
-  contact->master_normal = (MasterNormal)SchemaChoice(SceneDocument(scene), "%s.master_normal", contact->path);
-  contact->law           = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
-  contact->smoother      = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
-  contact->formulation   = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
-  if (contact->formulation == CONTACT_FORMULATION_AUTO)
+  contact->master_normal      = (MasterNormal)SchemaChoice(SceneDocument(scene), "%s.master_normal", contact->path);
+  contact->law                = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
+  contact->smoother           = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
+  contact->formulation        = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
+  contact->formulation_chosen = contact->formulation == CONTACT_FORMULATION_AUTO;
+  if (contact->formulation_chosen)
     contact->formulation =
       contact->master && strcmp(contact->slave, contact->master) ? CONTACT_SURFACE_TO_SURFACE : CONTACT_NODE_TO_SURFACE;
   contact->live_offset = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);

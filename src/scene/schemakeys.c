@@ -150,7 +150,7 @@ const SchemaKey SchemaKeys[] = {
    .help = "formulation of the elements; enhanced and fbar are for first-order quadrilaterals and bricks, of which "
            "enhanced bends without locking and fbar keeps its volume without locking. mixed has pressures of its own, "
            "for materials that keep their volume nearly or exactly. auto: mixed where the bulk modulus is above 20 times the shear modulus (nu above 0.475), "
-           "otherwise full; von_mises takes fbar at order 1 and mixed at order 2, umat fbar and full"},
+           "otherwise full; von_mises takes fbar for quadrilaterals and bricks of order 1 and mixed for the others, umat fbar and full"},
   {"bodies.*.pretension", MAP,
    .help = "tightens the body, which is the shank of a bolt: its unloaded length becomes shorter by what the force "
            "needs. What it clamps must hold it from the start, so touch: nothing else resists the force"},
@@ -261,7 +261,8 @@ const SchemaKey SchemaKeys[] = {
    .help = "surface of the master in the contact: its faces (facet) or a smooth surface near them (diffuse)"},
   {"contact.*.formulation", CHOICE, .values = "node_to_surface | surface_to_surface | auto", .preset = "auto",
    .help = "where the gap is measured: at the nodes of the slave, or at quadrature points of its faces; auto: "
-           "surface_to_surface, and node_to_surface where the master is an analytic surface or the slave itself"},
+           "surface_to_surface, and node_to_surface where the master is an analytic surface (but for faces of 6-node "
+           "triangles) or the slave itself"},
   {"contact.*.offset", CHOICE, .values = "held | live", .preset = "held",
    .help = "of surface_to_surface; held: the offsets are computed before each solve; live: they follow the nodes "
            "within the solve"},
