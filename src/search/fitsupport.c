@@ -20,6 +20,12 @@
    at the rim of a cone; three faces of a drawing die had 5. */
 #define FIT_MISSES 0.25
 
+/* A linear fit, the last rung, is a chord across what bends: it is wrong by the sagitta of its whole support, where the
+   facets are wrong by that of one face. It is taken only where its points lie in a plane up to this part of their
+   spacing. That is about as deep as the automatic penalty lets a node go. Past the end of a bore the chords of a larger
+   value closed gaps that are open, by several times the overlap of a press fit. */
+#define FIT_LINEAR_MISSES 1e-3
+
 /* The ladder of fall-backs: wider supports, then lower degrees, until every guard holds. Degree 0 means the degree
    of the scene. */
 static const struct {
@@ -315,12 +321,15 @@ static inline PetscReal FitResidual(const int dim, const FitProblem *problem, co
   return most;
 }
 
-/* Does a fit miss the points through which it is made, by more than FIT_MISSES of their spacing? area: of a point, in
-   2D its length. */
+/* Does a fit miss the points through which it is made, by more than FIT_MISSES of their spacing, a linear one by more
+   than FIT_LINEAR_MISSES? area: of a point, in 2D its length. */
 static PetscBool FitMisses(FitSupport *fit, const FitProblem *problem, const FitResult *result, PetscReal area)
 {
+  const PetscReal part    = problem->degree % FIT_REVOLVED == 1 ? FIT_LINEAR_MISSES : FIT_MISSES;
+  const PetscReal spacing = problem->dim == 3 ? PetscSqrtReal(area) : area;
+
   fit->residual = problem->dim == 3 ? FitResidual(3, problem, result) : FitResidual(2, problem, result);
-  return (PetscBool)(fit->residual > FIT_MISSES * (problem->dim == 3 ? PetscSqrtReal(area) : area));
+  return (PetscBool)(fit->residual > part * spacing);
 }
 
 /* Tries one rung of the ladder at a foot and writes points, frame and metric into fit and problem. *holds is true if
