@@ -21,9 +21,10 @@
 #define FIT_MISSES 0.25
 
 /* A linear fit, the last rung, is a chord across what bends: it is wrong by the sagitta of its whole support, where the
-   facets are wrong by that of one face. It is taken only where its points lie in a plane up to this part of their
-   spacing. That is about as deep as the automatic penalty lets a node go. Past the end of a bore the chords of a larger
-   value closed gaps that are open, by several times the overlap of a press fit. */
+   facets are wrong by that of one face. Past a free edge of the master all its points lie on one side, and it is taken
+   only where they lie in a plane up to this part of their spacing. That is about as deep as the automatic penalty lets
+   a node go. Past the end of a bore the chords of a larger value closed gaps that are open, by several times the
+   overlap of a press fit. */
 #define FIT_LINEAR_MISSES 1e-3
 
 /* The ladder of fall-backs: wider supports, then lower degrees, until every guard holds. Degree 0 means the degree
@@ -321,11 +322,12 @@ static inline PetscReal FitResidual(const int dim, const FitProblem *problem, co
   return most;
 }
 
-/* Does a fit miss the points through which it is made, by more than FIT_MISSES of their spacing, a linear one by more
-   than FIT_LINEAR_MISSES? area: of a point, in 2D its length. */
-static PetscBool FitMisses(FitSupport *fit, const FitProblem *problem, const FitResult *result, PetscReal area)
+/* Does a fit miss the points through which it is made, by more than FIT_MISSES of their spacing, a linear one past a
+   free edge by more than FIT_LINEAR_MISSES? area: of a point, in 2D its length. */
+static PetscBool FitMisses(FitSupport *fit, const FitFoot *at, const FitProblem *problem, const FitResult *result,
+                           PetscReal area)
 {
-  const PetscReal part    = problem->degree % FIT_REVOLVED == 1 ? FIT_LINEAR_MISSES : FIT_MISSES;
+  const PetscReal part    = at->past && problem->degree % FIT_REVOLVED == 1 ? FIT_LINEAR_MISSES : FIT_MISSES;
   const PetscReal spacing = problem->dim == 3 ? PetscSqrtReal(area) : area;
 
   fit->residual = problem->dim == 3 ? FitResidual(3, problem, result) : FitResidual(2, problem, result);
@@ -383,7 +385,7 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
     DiffuseFitEvaluate(problem, FIT_GAP, fit->workspace, result) && (result->guards & ~FIT_FEW_POINTS) == FIT_HOLDS
       ? PETSC_TRUE
       : PETSC_FALSE;
-  if (*holds && FitMisses(fit, problem, result, area)) *holds = PETSC_FALSE;
+  if (*holds && FitMisses(fit, at, problem, result, area)) *holds = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -423,6 +425,23 @@ static PetscBool FitStrays(const Nearest *look, const FitResult *result)
                      PetscAbsReal(result->gap - look->foot.gap) > FIT_STRAYS * look->size);
 }
 
+/* Is the slave point past a free edge of the master: its foot on the facets lies there, and the way to it leads along
+   the facet? */
+static PetscBool FootPast(const Nearest *look)
+{
+  const Foot      *foot   = &look->foot;
+  const Candidate *best   = &look->candidates[look->best];
+  const PetscBool  edge   = (PetscBool)(look->lists->dim == 2 || foot->region == FOOT_EDGE);
+  PetscReal        cosine = 0;
+
+  if (foot->beyond > 0) return PETSC_TRUE;
+  if (foot->region == FOOT_INTERIOR || !(edge ? best->facet.free_edges >> foot->feature & 1 : best->facet.free_edges))
+    return PETSC_FALSE;
+  for (int d = 0; d < look->lists->dim; d++) cosine += foot->normal[d] * best->normal[d];
+  return (PetscBool)(PetscAbsReal(foot->gap) * PetscSqrtReal(PetscMax(0, 1 - cosine * cosine)) >
+                     SEARCH_FIT_TIE * look->size);
+}
+
 /*@
   FitSupportSlave - fits the surface for one slave point and writes a fit that holds into its list.
 
@@ -444,7 +463,7 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
 {
   NeighbourLists   lists = fit->lists;
   const Candidate *best  = &look->candidates[look->best];
-  FitFoot          at    = {.facet = look->best, .xi = {look->foot.xi[0], look->foot.xi[1]}};
+  FitFoot          at    = {.facet = look->best, .xi = {look->foot.xi[0], look->foot.xi[1]}, .past = FootPast(look)};
   FitProblem       problem;
   FitResult        result;
 
