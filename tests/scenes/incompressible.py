@@ -152,7 +152,8 @@ def enclosed():
 
 
 def said(what, expected, *overrides, status=1, scene="lame"):
-    path = SCENES / f"{scene}.yaml" if (SCENES / f"{scene}.yaml").exists() else SCENES.parent.parent / f"runs/{scene}.yaml"
+    own = SCENES / f"{scene}.yaml"
+    path = own if own.exists() else SCENES.parent.parent / f"runs/{scene}.yaml"
     finished = run(args, path, out="said", overrides=overrides, must=status)
     check.holds(what, expected in finished.text, finished.text if expected not in finished.text else "")
 

@@ -9,7 +9,8 @@ check = Check()
 for order in 1, 2:
     probes = {}
     for name, overrides in ("shaft", []), ("hub", EXCHANGED):
-        finished = run(args, SCENES / "long_shaft.yaml", out=f"{name}_{order}", overrides=[f"mesh.order={order}", *overrides])
+        finished = run(args, SCENES / "long_shaft.yaml", out=f"{name}_{order}",
+                       overrides=[f"mesh.order={order}", *overrides])
         probes[name] = finished.summary()["probes"]
         check.holds(f"order {order}, {name} as slave: no failed steps", finished.summary()["steps_failed"] == 0)
     check.near(f"order {order}: mean pressure", probes["shaft"]["mean"] / LENGTHS / probes["hub"]["mean"], 1, 0.01)
