@@ -41,8 +41,8 @@ static const Explanation Input[] = {
    {"as the answer depends on the way to it", "with augmented pressures, which stay", "multipliers of its elements",
     "is not available where a fluid enters"},
    "the scene has no sensitivities",
-   "The answer depends on the way to it (friction, yielding), or on multipliers or fluids, of which no derivative is "
-   "known.",
+   "The answer depends on the way to it (friction, yielding, locked bolts), or on multipliers or fluids, of which no "
+   "derivative is known.",
    "Take differences of two runs with `-set`, or leave the effect out."},
   {"B145",
    {"allowed for a sensitivity: parameters that"},

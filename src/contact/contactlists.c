@@ -183,8 +183,9 @@ static PetscErrorCode PairTakeNext(ContactPair *pair)
 /* Pressure of a term at a gap (force per area); negative: the term is open. */
 static PetscReal TermPressure(const ContactPair *pair, PetscInt c, PetscReal gap, PetscReal t)
 {
-  return pair->now.multiplier[c] +
-         ContactTermPenalty(pair, c, pair->now.penalty[c]) * (ContactTermOffset(pair, c, t) - gap);
+  const PetscReal penalty = ContactPairPenaltyFactor(pair, t) * ContactTermPenalty(pair, c, pair->now.penalty[c]);
+
+  return pair->now.multiplier[c] + penalty * (ContactTermOffset(pair, c, t) - gap);
 }
 
 /* Largest penetration and largest pressure of the pair at the last residual, over all ranks. */

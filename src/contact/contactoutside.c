@@ -29,8 +29,7 @@ const Motion *ContactPairMotion(Contact contact, int p)
 /* Adds the forces that hold the tool of a pair to out, by components of its motion. values: forces over the contact
    nodes, subtracted as external ones are. Contact does not change when slave and tool move together as one rigid body,
    so that the slave nodes tell everything. */
-void ContactPairHold(Contact contact, const ContactPair *pair, PetscReal t, const PetscReal *values,
-                     PetscReal *out)
+void ContactPairHold(Contact contact, const ContactPair *pair, PetscReal t, const PetscReal *values, PetscReal *out)
 {
   const Motion        *motion = ContactPairMotion(contact, (int)(pair - contact->pairs));
   const NeighbourLists lists  = pair->lists;
@@ -88,16 +87,18 @@ static void AddPressure(const ContactPair *pair, PetscInt c, PetscReal t_0, Pair
 {
   const ContactState *accepted = &pair->accepted;
   const PetscReal     fluid    = pair->carried ? pair->carried[c] : 0;
-  const LawState      now = ContactTermState(pair, c, pair->t, pair->most),
-                 before   = {.penalty    = ContactTermPenalty(pair, c, accepted->penalty[c]),
-                             .offset     = ContactTermOffset(pair, c, t_0),
-                             .multiplier = accepted->multiplier[c] - fluid};
+  const LawState      now      = ContactTermState(pair, c, pair->t, pair->most),
+                 before        = {.penalty =
+                                    ContactPairPenaltyFactor(pair, t_0) * ContactTermPenalty(pair, c, accepted->penalty[c]),
+                                  .offset     = ContactTermOffset(pair, c, t_0),
+                                  .multiplier = accepted->multiplier[c] - fluid};
   LawValue  value, then = {0, 0, 0};
   PetscReal area, held, gap;
 
   ContactTermLaw(pair, c, pair->t, &value, &gap, &area);
   if (PetscIsNanReal(gap)) return;
-  if (!PetscIsNanReal(accepted->gap[c])) pair->law->evaluate(accepted->gap[c], &before, &then);
+  if (!PetscIsNanReal(accepted->gap[c]) && ContactPairPresence(pair, t_0) > 0)
+    pair->law->evaluate(accepted->gap[c], &before, &then);
   held = PetscSqr(PetscMax(now.multiplier, 0)) / (2 * now.penalty);
   if (value.pressure > 0) energy->stored += area * (value.psi - held);
   if (PetscIsNanReal(accepted->gap[c])) return;

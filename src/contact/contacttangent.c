@@ -7,12 +7,12 @@
 static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
 {
   const ContactState *accepted = &pair->accepted;
+  const PetscReal     penalty  = ContactPairPenaltyFactor(pair, t) * ContactTermPenalty(pair, c, accepted->penalty[c]);
 
   if (!pair->holding) return value->pressure;
   if (pair->touching) return 0;
   return accepted->status[c] == CONTACT_CLOSED
-           ? accepted->multiplier[c] +
-               ContactTermPenalty(pair, c, accepted->penalty[c]) * (ContactTermOffset(pair, c, t) - accepted->gap[c])
+           ? accepted->multiplier[c] + penalty * (ContactTermOffset(pair, c, t) - accepted->gap[c])
            : 0;
 }
 

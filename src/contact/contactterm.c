@@ -201,10 +201,23 @@ PetscReal ContactPairPresence(const ContactPair *pair, PetscReal t)
   return pair->scene->presence.n ? HistoryValue(&pair->scene->presence, t) : 1;
 }
 
-/* Factor on the penalties of a pair of which a part p is there. The pair is a spring in series with its bodies. Its
-   stiffness then is p / (1 - p) times theirs, so that its force falls evenly with p where the bodies do not follow. */
-static PetscReal PresenceFactor(PetscReal p)
+/*@
+  ContactPairPenaltyFactor - returns the factor on the penalties of a pair of which only a part is there.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+- t    - load parameter
+
+  Note:
+  The pair is a spring in series with its bodies. Where a part p is there, its stiffness is p / (1 - p) times theirs, so
+  that its force falls evenly with p where the bodies do not follow.
+@*/
+PetscReal ContactPairPenaltyFactor(const ContactPair *pair, PetscReal t)
 {
+  const PetscReal p = ContactPairPresence(pair, t);
+
   return PetscMax(p / (p + (1 - p) * PRESENCE_STIFF), PRESENCE_LEAST);
 }
 
@@ -222,7 +235,7 @@ static PetscReal PresenceFactor(PetscReal p)
 @*/
 LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t, PetscReal most)
 {
-  const PetscReal part = PresenceFactor(ContactPairPresence(pair, t));
+  const PetscReal part = ContactPairPenaltyFactor(pair, t);
 
   return (LawState){.penalty    = part * PetscMin(most, ContactTermPenalty(pair, c, pair->now.penalty[c])),
                     .offset     = ContactTermOffset(pair, c, t),

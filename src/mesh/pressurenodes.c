@@ -161,8 +161,9 @@ static PetscErrorCode CondenseAll(Scene scene, const RootMesh *root, Mesh mesh)
    materials share nodes: on the same mesh the force of two bonded blocks is 0.3 % off then, 1.5 % with components. */
 static PetscErrorCode SetComponents(Scene scene, const RootMesh *root, Mesh mesh)
 {
-  const int n = scene->n_bodies;
-  int      *component;
+  const int      n = scene->n_bodies;
+  int           *component;
+  PetscErrorCode refused;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(2 * n, &component));
@@ -173,8 +174,9 @@ static PetscErrorCode SetComponents(Scene scene, const RootMesh *root, Mesh mesh
     scene->bodies[b].condensed |= component[n + b];
     if (component[b] >= mesh->dim) FormulationsCrowded(&scene->bodies[b]);
   }
-  PetscCall(RefuseCrowded(scene, root, mesh, component));
+  refused = RefuseCrowded(scene, root, mesh, component);
   PetscCall(PetscFree(component));
+  PetscCall(refused);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -127,6 +127,15 @@ static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
   fprintf(stream, "\n");
 }
 
+/* Says whether pairs come and go. These are judged only while they are wholly there. */
+static PetscBool PairsFade(const Scene scene)
+{
+  PetscBool fade = PETSC_FALSE;
+
+  for (int p = 0; p < scene->n_contacts; p++) fade = (PetscBool)(fade || scene->contacts[p].presence.n);
+  return fade;
+}
+
 /* Prints what is certified. */
 static void PrintCertificate(const RunFigures *figures, FILE *stream)
 {
@@ -140,6 +149,7 @@ static void PrintCertificate(const RunFigures *figures, FILE *stream)
     (long long)(found->steps - found->refused), (double)found->over_h, (double)found->ratio, (double)found->force);
   if (figures->scene->geometry != GEOMETRY_AXISYMMETRIC) fprintf(stream, ", moments to %.1e", (double)found->moment);
   if (found->refused) fprintf(stream, "; %lld steps did not hold and were cut", (long long)found->refused);
+  if (PairsFade(figures->scene)) fprintf(stream, "; pairs that come and go were judged while they were wholly there");
   fprintf(stream, "\n");
 }
 
@@ -231,9 +241,10 @@ static void PrintEnergy(const EnergyFigures *energy, FILE *stream)
   fprintf(stream, "; largest plastic strain %.4g, growth in a step up to %.2g\n", (double)energy->strain,
           (double)energy->growth);
   if (energy->lag > 0) /* of routines of users alone none is known */
-    fprintf(stream,
-            "         stresses lag behind the turns of plastic flow by %.2g %% in the mean, as far as the steps show it\n",
-            100 * (double)(energy->lag / energy->plastic));
+    fprintf(
+      stream,
+      "         stresses lag behind the turns of plastic flow by %.2g %% in the mean, as far as the steps show it\n",
+      100 * (double)(energy->lag / energy->plastic));
 }
 
 /* The stream, and how many changes to try have been printed */

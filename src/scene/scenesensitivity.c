@@ -91,6 +91,11 @@ static PetscErrorCode CheckPath(Scene scene)
                        "is not available with augmented pressures, which stay from one solve to the next; "
                        "allowed: penalties"));
   }
+  for (int b = 0; b < scene->n_bodies; b++)
+    if (scene->bodies[b].bolt && scene->bodies[b].locked < 1)
+      PetscCall(Refuse(scene, NULL,
+                       "is not available where a bolt is locked at a length that comes from an earlier force, as the "
+                       "answer depends on the way to it; allowed: bolts that keep their force"));
   for (int l = 0; l < scene->n_loads; l++)
     if (scene->loads[l].open)
       PetscCall(Refuse(scene, NULL, "is not available where a fluid enters between surfaces; allowed: other loads"));

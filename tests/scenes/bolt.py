@@ -2,7 +2,7 @@
 and kinematics, with and without contact, against closed forms; what cannot be is refused."""
 import numpy
 
-from harness import Check, arguments, run, SCENES
+from harness import Check, arguments, run, run_in_parts, SCENES
 
 E, LENGTH, DEPTH, FORCE, PULL = 1000, 4, 0.5, 2, 1
 SHANK = {"plane_strain": 1, "solid": DEPTH, "axisymmetric": numpy.pi}
@@ -54,6 +54,17 @@ def opens():
     check.near("sleeve free: tension", finished.summary()["probes"]["tension"], 5, 0.01)
 
 
+def parts():
+    """A run that goes on from a checkpoint after each step keeps the length at which the bolt was locked."""
+    overrides = options("plane_strain", "mesh.parameters.apart=1", "stepping.initial=0.1",
+                        "contact=[{name: seat, slave: crown, master: seat, smoother: facet, initial_overlap: ignore}]")
+    whole = columns(run(args, SCENE, out="whole", overrides=overrides), "tension", "shortening")
+    several = columns(run_in_parts(args, SCENE, "parts", overrides), "tension", "shortening")
+    check.holds("in parts: there are parts", len(whole[0]) > 4, str(len(whole[0])))
+    for name, one, other in zip(("t", "tension", "shortening"), whole, several):
+        check.near(f"in parts: {name}", other / numpy.max(numpy.abs(one)), one / numpy.max(numpy.abs(one)), 1e-12)
+
+
 def flange():
     """A scene of the usual kind: contact alone holds the bolt, with friction, springs and a free flange. The joint rests on
     the edge of the hole, and the head beyond it. The pull turns the flange about that edge, and the head sinks."""
@@ -84,6 +95,7 @@ args = arguments()
 check = Check()
 forms()
 opens()
+parts()
 flange()
 refusals()
 check.finish()

@@ -2,7 +2,7 @@
 3D, against closed forms; what cannot be is refused."""
 import numpy
 
-from harness import Check, arguments, run, SCENES
+from harness import Check, arguments, run, run_in_parts, SCENES
 
 E, PENALTY, WAY = 1000, 1e6, 0.01
 STEPS = "[{name: close, until: 0.2}, {name: hold, until: 0.5}, {name: open, until: 0.6}, {name: push, until: 1}]"
@@ -74,6 +74,10 @@ def handover():
     finished = run(args, SCENES / "handover.yaml", out="handover")
     t, first, second = columns(finished, "first", "second")
     load = 60 * numpy.minimum(t / 0.3, 1)
+    check.holds("handover: the certificate says when", "judged while they were wholly there" in finished.text)
+    parts = columns(run_in_parts(args, SCENES / "handover.yaml", "handover_in_parts"), "first", "second")
+    for name, one, other in zip(("t", "first", "second"), (t, first, second), parts):
+        check.near(f"handover in parts: {name}", other, one, 1e-9 * numpy.max(numpy.abs(one)))
     check.near("handover: sum of the forces", -(first + second) / 60, load / 60, 1e-6)
     check.near("handover: the first plane", -first / 60, numpy.interp(t, [0, 0.3, 0.6, 1], [0, 1, 0.5, 0]), 1e-3)
 

@@ -97,3 +97,18 @@ def run(args, scene, *options, out="run", ranks=None, overrides=(), keep=False, 
     if must is not None and finished.returncode != must:
         sys.exit(f"{' '.join(command)}\n{finished.stdout}\nexit status {finished.returncode} instead of {must}")
     return Run(finished.returncode, finished.stdout, directory)
+
+
+def run_in_parts(args, scene, out, overrides=(), most=200):
+    """Runs a scene one step at a time, each from the checkpoint of the one before."""
+    part = run(args, scene, "-quiet", "-time_limit", "1e-9", out=out, overrides=overrides, must=None)
+    launcher = ["mpirun", "-n", str(args.ranks)] if args.ranks > 1 else []
+    again = [*launcher, args.burnish, "-restart", str(part.directory), "-quiet", "-time_limit", "1e-9"]
+    for _ in range(most):
+        if part.status != 3:
+            break
+        finished = subprocess.run(again, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        part = Run(finished.returncode, finished.stdout, part.directory)
+    if part.status != 0:
+        sys.exit(f"{scene} in parts\n{part.text}\nexit status {part.status} instead of 0")
+    return part

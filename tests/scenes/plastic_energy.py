@@ -1,8 +1,9 @@
-"""The balance of energies of a plastic block: the work on it is what it stores and dissipates, and the work from outside is
-that and what contact stores and friction takes. This holds whatever does the work, a tool that is pushed, moved or
+"""The balance of energies of a plastic block: the work on it is what it stores and dissipates, and the work from outside
+is that and what contact stores and friction takes. This holds whatever does the work, a tool that is pushed, moved or
 turned, friction, its weight, springs below it, a pressure that follows it, displacements, an overlap that grows or is
-there at the start, or a fluid that enters below it. The bound is the error of the trapezoidal rule over 50 steps, and of friction's own rule,
-which takes the traction at the end of a step for all of its slip."""
+there at the start, a pair that comes or fades, or a fluid that enters below it. The bound is the error of the
+trapezoidal rule over 50 steps, and of friction's own rule, which takes the traction at the end of a step for all of its
+slip."""
 from harness import SCENES, Check, arguments, run
 
 BOUND, SLIP = 2e-3, 0.03
@@ -13,6 +14,7 @@ FRICTION = ["contact.0.friction.mu=0.3"]
 NOTHING = ["contact=[]", "probes=[]"]
 BACKSTRESSES = "{law: von_mises, E: 1000, nu: 0.3, yield: 20, kinematic: [{C: 300, gamma: 10}, {C: 50}]}"
 GROWTH = 5e-3
+SHORT = ("pair that fades", "pair that comes")  # a pair comes or goes in part of the way: steps of a quarter
 CASES = {
     "tool that is pushed": PUSHED,
     "pushed, friction": PUSHED + FRICTION,
@@ -22,6 +24,14 @@ CASES = {
     "overlap resolved at once": [
         "contact.0.master={cylinder: {point: [5, 7.995], radius: 3, motion: [{uy: -0.8, ux: 0.3}]}}",
         "contact.0.initial_overlap=resolve"
+    ],
+    "pair that fades": [
+        TOOL + "motion: [{uy: -0.8, history: [[0, 0], [0.4, 1]]}]}}",
+        "contact.0.history=[[0, 1], [0.4, 1], [0.8, 0]]"
+    ],
+    "pair that comes": [
+        TOOL + "motion: [{uy: -0.8, history: [[0, 0], [0.4, 1]]}]}}",
+        "contact.0.history=[[0, 0], [0.4, 0], [1, 1]]"
     ],
     "augmented": MOVED + ["contact.0.penalty={augment: true, g_max: 1e-3, unit: length}"],
     "springs and weight": [*PUSHED, "supports.0={surface: y_min, spring: [500, 500]}",
@@ -49,6 +59,7 @@ for name, overrides in CASES.items():
     finished = run(args, SCENES / "tool.yaml", "-quiet", out=name.replace(" ", "_").replace(",", ""),
                    overrides=COMMON + overrides + [
                        "bodies.0.material={law: von_mises, E: 1000, nu: 0.3, yield: 20, hardening: {linear: 50}}",
+                       "stepping={dt_max: 0.005, initial: 0.005}" if name in SHORT else
                        "stepping={dt_max: 0.02, initial: 0.02}"
                    ])
     energy = finished.summary()["energy"]

@@ -35,6 +35,8 @@ for key, number in (("bodies.0.material.E", 1000), ("bodies.1.material.nu", 0.3)
     compare(STACK, "force", key, number, "adjoint")
 SEAL = ["mesh.parameters.n=6", FIXED.format(0), FIXED.format(1)]
 compare(RUNS / "o_ring.yaml", "force", "bodies.2.rigid.motion.0.uy", -0.706, "direct", *SEAL)
+bolt = run(args, SCENES / "bolt.yaml", out="bolt", must=1, overrides=['sensitivity=["tension:bodies.0.material.E"]'])
+check.holds("a locked bolt is refused", "where a bolt is locked" in bolt.text and "[B144]" in bolt.text, bolt.text)
 check.holds("nothing unless asked for",
             not (run(args, STACK, out="none").directory / "sensitivity.csv").exists())
 check.finish()
