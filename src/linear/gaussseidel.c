@@ -342,6 +342,30 @@ PetscErrorCode GaussSeidelSet(PC pc, PetscReal least, PetscReal largest)
 }
 
 /*@
+  GaussSeidelForget - frees the copy of the matrix, which the next set-up makes anew.
+
+  Not collective
+
+  Input Parameter:
+. pc - after GaussSeidelSet()
+
+  Note:
+  Where options have replaced the preconditioner it does nothing.
+@*/
+PetscErrorCode GaussSeidelForget(PC pc)
+{
+  GaussSeidel g;
+  PetscBool   ours;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &ours));
+  if (!ours) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PCShellGetContext(pc, &g));
+  PetscCall(Reset(g));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   GaussSeidelGetMat - creates a matrix that stands for the preconditioner's, for GaussSeidelResidual().
 
   Collective

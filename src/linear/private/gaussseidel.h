@@ -15,5 +15,6 @@
 #include "base/petsccompat.h"
 
 PetscErrorCode GaussSeidelSet(PC, PetscReal least, PetscReal largest);
+PetscErrorCode GaussSeidelForget(PC);
 PetscErrorCode GaussSeidelGetMat(PC, Mat *);
 PetscErrorCode GaussSeidelResidual(Mat, Vec right, Vec x, Vec residual);

@@ -1,0 +1,18 @@
+/* Memory that is free in the process and not in the system, see freememory.h. */
+#include <malloc.h>
+#include "base/freememory.h"
+
+/*@
+  FreeMemoryReturn - gives what this process has freed back to the system.
+
+  Not collective
+
+  Note:
+  It does nothing where the C library is not glibc.
+@*/
+void FreeMemoryReturn(void)
+{
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
