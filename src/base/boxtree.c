@@ -330,7 +330,7 @@ static void SpanDirections(BoxTree tree, const double *direction, Range range)
 }
 
 /*@
-  BoxTreeSetDirections - gives each box a direction, for BoxTreeClosest() with a direction
+  BoxTreeSetDirections - gives each box a direction, for BoxTreeClosest() with a side
 
   Not collective, plain C
 
@@ -360,15 +360,28 @@ static int MayOppose(BoxTree tree, int node, const double *own)
   return most > 0;
 }
 
-/* Adds a subtree to the queue and returns the new length. One that is beyond the bound, or that has no direction
-   opposed to `own`, is left out. */
-static int Push(BoxTree tree, Range range, const double *point, const double *own, double bound, int length)
+/* Is a node's box wholly behind the plane through the point across `own`? */
+static int IsBehind(BoxTree tree, int node, const double *point, const double *own)
+{
+  const double *lower = tree->box + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
+  double        most = 0;
+
+  for (int k = 0; k < tree->dim; ++k) most += own[k] * ((own[k] > 0 ? upper[k] : lower[k]) - point[k]);
+  return most < 0;
+}
+
+/* Adds a subtree to the queue and returns the new length. One that is beyond the bound, or that the side of the point
+   leaves out, is not added. */
+static int Push(BoxTree tree, Range range, const double *point, const BoxTreeSide *side, double bound, int length)
 {
   Range *queue = tree->queue;
   int    i     = length;
 
   range.distance = SquaredDistance(tree, range.node, point);
-  if (range.distance > bound * bound || (own && !MayOppose(tree, range.node, own))) return length;
+  if (range.distance > bound * bound) return length;
+  if (side && side->opposed && !MayOppose(tree, range.node, side->own)) return length;
+  if (side && range.distance > side->behind * side->behind && IsBehind(tree, range.node, point, side->own))
+    return length;
   for (; i > 0 && Nearer(tree, &range, &queue[(i - 1) / 2]); i = (i - 1) / 2) queue[i] = queue[(i - 1) / 2];
   queue[i] = range;
   return length + 1;
@@ -399,7 +412,7 @@ static Range Pop(BoxTree tree, int length)
   Input Parameters:
 + tree    - the tree
 . point   - [dim] coordinates (length)
-. own     - [dim], boxes whose direction is not opposed to it may be left out; NULL: all are visited
+. side    - which boxes may be left out besides; NULL: all are visited
 . bound   - largest distance (length), which may be INFINITY
 . visit   - is called with the context, the number of a box and the bound, which it may lower
 - context - for visit
@@ -407,12 +420,12 @@ static Range Pop(BoxTree tree, int length)
   Note:
   Boxes of equal distance are visited by number. A box whose distance equals the bound is visited too, so that of two
   equally near facets both are seen. visit must not call BoxTreeClosest() on the same tree, which keeps the queue.
-  With `own` the tree needs BoxTreeSetDirections(). A direction is opposed if its product with `own` is below 0.
+  A side that asks for opposed directions needs BoxTreeSetDirections().
 @*/
-void BoxTreeClosest(BoxTree tree, const double *point, const double *own, double *bound,
+void BoxTreeClosest(BoxTree tree, const double *point, const BoxTreeSide *side, double *bound,
                     void (*visit)(void *context, int index, double *bound), void *context)
 {
-  int length = tree->n ? Push(tree, (Range){0, 0, 0, tree->n}, point, own, *bound, 0) : 0;
+  int length = tree->n ? Push(tree, (Range){0, 0, 0, tree->n}, point, side, *bound, 0) : 0;
 
   while (length) {
     const Range range = Pop(tree, length--);
@@ -421,8 +434,8 @@ void BoxTreeClosest(BoxTree tree, const double *point, const double *own, double
     if (range.count == 1)
       visit(context, tree->order[range.first], bound);
     else {
-      length = Push(tree, Left(&range), point, own, *bound, length);
-      length = Push(tree, Right(&range), point, own, *bound, length);
+      length = Push(tree, Left(&range), point, side, *bound, length);
+      length = Push(tree, Right(&range), point, side, *bound, length);
     }
   }
 }

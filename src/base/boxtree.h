@@ -3,16 +3,23 @@
    BoxTreeBuild() makes the tree and is the only function that allocates memory; BoxTreeDestroy() frees it.
    BoxTreeNear() gives all boxes around a point, BoxTreeMeet() all that a box meets. BoxTreeClosest() is for a search
    in which each box that was seen may make the rest superfluous, such as that for the closest facet; after
-   BoxTreeSetDirections() it leaves out what faces away. The tree keeps the queue of BoxTreeClosest(), so that one such
-   search runs in it at a time. */
+   BoxTreeSetDirections() it leaves out what faces away, and what lies behind. The tree keeps the queue of
+   BoxTreeClosest(), so that one such search runs in it at a time. */
 #pragma once
 
 typedef struct _n_Tree *BoxTree;
+
+/* What a search for the closest boxes may leave out because of the side to which its point looks */
+typedef struct {
+  const double *own;     /* [dim] direction of any length */
+  int           opposed; /* boxes whose direction has a product with `own` that is not below 0 */
+  double        behind;  /* boxes wholly behind the plane through the point across `own` that are farther (length) */
+} BoxTreeSide;
 
 int  BoxTreeBuild(int dim, int n, const double *lower, const double *upper, BoxTree *tree);
 void BoxTreeDestroy(BoxTree *tree);
 int  BoxTreeNear(BoxTree, const double *point, double radius, int max, int *found);
 int  BoxTreeMeet(BoxTree, const double *lower, const double *upper, int max, int *found);
 int  BoxTreeSetDirections(BoxTree, const double *direction);
-void BoxTreeClosest(BoxTree, const double *point, const double *own, double *bound,
+void BoxTreeClosest(BoxTree, const double *point, const BoxTreeSide *side, double *bound,
                     void (*visit)(void *context, int index, double *bound), void *context);

@@ -50,6 +50,22 @@ PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot
 }
 
 /*@
+  OwnBodyBehind - returns the distance (length) beyond which no candidate that lies wholly behind the plane of the slave
+  point's face counts: OwnBodyHides() or OwnBodyTurnsFrom() leaves it out, and it is not averse.
+
+  Not collective
+
+  Input Parameter:
+. look - the slave point, where any side of the bodies may meet any other one
+@*/
+PetscReal OwnBodyBehind(const Nearest *look)
+{
+  const PetscReal entered = SEARCH_ENTERED * look->height;
+
+  return look->one_body ? entered : PetscMax(entered, look->size);
+}
+
+/*@
   OwnBodyTurnsFrom - says whether a foot lies on the wrong side of the slave point's own face: behind it with a gap, or
 in front of it with a penetration.
 

@@ -326,16 +326,17 @@ static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *
 static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, BoxTree tree, FitSupport *fit,
                                 PetscReal motion, Nearest *look, int *found, int *ends, ListBuffer *buffer)
 {
-  const PetscInt q = look->q, first = buffer->n_points;
-  double         bound = look->least + look->tie, margin;
-  int            count, facing;
+  const PetscInt    q = look->q, first = buffer->n_points;
+  const BoxTreeSide side  = {&lists->slave_normal[3 * q], look->one_body, OwnBodyBehind(look)};
+  double            bound = look->least + look->tie, margin;
+  int               count, facing;
 
   PetscFunctionBeginUser;
   lists->list_ptr[q]  = first;
   lists->facet_ptr[q] = buffer->n;
   lists->kappa[q]     = 0;
   lists->nearest[q]   = -1;
-  BoxTreeClosest(tree, look->x, look->one_body ? &lists->slave_normal[3 * q] : NULL, &bound, NearestVisit, look);
+  BoxTreeClosest(tree, look->x, look->listed ? &side : NULL, &bound, NearestVisit, look);
   lists->averse[q] = (PetscBool)(look->best < 0 && look->averse);
   lists->share[q]  = 0;
   if (look->best >= 0 && FaceMarksTreated(look->marks, field->records[look->candidates[look->best].record].marks))

@@ -196,12 +196,13 @@ static void TestDirections(void **state)
     assert_int_equal(BoxTreeBuild(dim, n, lower, upper, &tree), 0);
     assert_int_equal(BoxTreeSetDirections(tree, direction), 0);
     for (int trial = 0; trial < 100; ++trial) {
-      const double point[3] = {Random(0, 1), Random(0, 1), Random(0, 1)},
-                   own[3]   = {Random(-1, 1), Random(-1, 1), Random(-1, 1)};
-      double bound          = 0.5;
+      const double point[3]   = {Random(0, 1), Random(0, 1), Random(0, 1)},
+                   own[3]     = {Random(-1, 1), Random(-1, 1), Random(-1, 1)};
+      const BoxTreeSide side  = {own, 1, INFINITY};
+      double            bound = 0.5;
 
       memset(seen, 0, sizeof(seen));
-      BoxTreeClosest(tree, point, own, &bound, VisitMark, seen);
+      BoxTreeClosest(tree, point, &side, &bound, VisitMark, seen);
       for (int i = 0; i < n; ++i) {
         double product = 0;
 
@@ -213,6 +214,54 @@ static void TestDirections(void **state)
       }
     }
     assert_true(left > 0.9 * turned);
+    BoxTreeDestroy(&tree);
+  }
+}
+
+/* Is a box wholly behind the plane through the point across a direction? */
+static int Behind(int dim, int box, const double *point, const double *own)
+{
+  double most = -INFINITY;
+
+  for (int corner = 0; corner < 1 << dim; ++corner) {
+    double sum = 0;
+
+    for (int k = 0; k < dim; ++k) sum += own[k] * ((corner >> k & 1 ? upper : lower)[box * dim + k] - point[k]);
+    most = fmax(most, sum);
+  }
+  return most < 0;
+}
+
+/* Of the boxes within the bound those are left out that lie behind and are farther than may be, and no others. */
+static void TestBehind(void **state)
+{
+  static int seen[MAX_BOXES];
+
+  (void)state;
+  for (int dim = 2; dim <= 3; ++dim) {
+    const int n    = 1000;
+    int       left = 0;
+    BoxTree   tree;
+
+    RandomBoxes(dim, n, 0.02);
+    assert_int_equal(BoxTreeBuild(dim, n, lower, upper, &tree), 0);
+    for (int trial = 0; trial < 100; ++trial) {
+      const double point[3]   = {Random(0, 1), Random(0, 1), Random(0, 1)},
+                   own[3]     = {Random(-1, 1), Random(-1, 1), Random(-1, 1)};
+      const BoxTreeSide side  = {own, 0, 0.1};
+      double            bound = 0.5;
+
+      memset(seen, 0, sizeof(seen));
+      BoxTreeClosest(tree, point, &side, &bound, VisitMark, seen);
+      for (int i = 0; i < n; ++i) {
+        const double distance = BoxDistance(dim, i, point);
+        const int    out      = distance > side.behind && Behind(dim, i, point, own);
+
+        assert_int_equal(seen[i], distance <= bound && !out);
+        left += distance <= bound && out;
+      }
+    }
+    assert_true(left > 0);
     BoxTreeDestroy(&tree);
   }
 }
@@ -257,9 +306,9 @@ static void TestEmpty(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestNear), cmocka_unit_test(TestClosest),
-                                     cmocka_unit_test(TestDirections), cmocka_unit_test(TestEqualBoxes),
-                                     cmocka_unit_test(TestEmpty)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestNear),       cmocka_unit_test(TestClosest),
+                                     cmocka_unit_test(TestDirections), cmocka_unit_test(TestBehind),
+                                     cmocka_unit_test(TestEqualBoxes), cmocka_unit_test(TestEmpty)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
