@@ -350,24 +350,29 @@ int BoxTreeSetDirections(BoxTree tree, const double *direction)
   return 0;
 }
 
-/* May a direction below a node be opposed to `own`? */
-static int MayOppose(BoxTree tree, int node, const double *own)
+/* May a direction below a node be opposed to the side's own one? */
+static int MayOppose(BoxTree tree, int node, const BoxTreeSide *side)
 {
-  const double *lower = tree->facing + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
+  const double *own = side->own, *lower = tree->facing + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
   double        most = 0;
 
   for (int k = 0; k < tree->dim; ++k) most += fmax(-own[k] * lower[k], -own[k] * upper[k]);
-  return most > 0;
+  return most > side->opposed;
 }
 
-/* Is a node's box wholly behind the plane through the point across `own`? */
-static int IsBehind(BoxTree tree, int node, const double *point, const double *own)
+/* Is a node's box wholly behind the plane through the point across the side's own direction? */
+static int IsBehind(BoxTree tree, int node, const double *point, const BoxTreeSide *side)
 {
-  const double *lower = tree->box + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
-  double        most = 0;
+  const double *own = side->own, *lower = tree->box + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
+  double        most = 0, square = 0;
 
-  for (int k = 0; k < tree->dim; ++k) most += own[k] * ((own[k] > 0 ? upper[k] : lower[k]) - point[k]);
-  return most < 0;
+  for (int k = 0; k < tree->dim; ++k) {
+    const double farther = fmax(fabs(lower[k] - point[k]), fabs(upper[k] - point[k]));
+
+    most += own[k] * ((own[k] > 0 ? upper[k] : lower[k]) - point[k]);
+    square += farther * farther;
+  }
+  return most < -side->shift - side->lean * sqrt(square);
 }
 
 /* Adds a subtree to the queue and returns the new length. One that is beyond the bound, or that the side of the point
@@ -379,9 +384,8 @@ static int Push(BoxTree tree, Range range, const double *point, const BoxTreeSid
 
   range.distance = SquaredDistance(tree, range.node, point);
   if (range.distance > bound * bound) return length;
-  if (side && side->opposed && !MayOppose(tree, range.node, side->own)) return length;
-  if (side && range.distance > side->behind * side->behind && IsBehind(tree, range.node, point, side->own))
-    return length;
+  if (side && side->opposed > -INFINITY && !MayOppose(tree, range.node, side)) return length;
+  if (side && range.distance > side->behind * side->behind && IsBehind(tree, range.node, point, side)) return length;
   for (; i > 0 && Nearer(tree, &range, &queue[(i - 1) / 2]); i = (i - 1) / 2) queue[i] = queue[(i - 1) / 2];
   queue[i] = range;
   return length + 1;

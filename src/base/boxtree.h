@@ -11,9 +11,11 @@ typedef struct _n_Tree *BoxTree;
 
 /* What a search for the closest boxes may leave out because of the side to which its point looks */
 typedef struct {
-  const double *own;     /* [dim] direction of any length */
-  int           opposed; /* boxes whose direction has a product with `own` that is not below 0 */
-  double        behind;  /* boxes wholly behind the plane through the point across `own` that are farther (length) */
+  const double *own;     /* [dim] direction, of any length where `opposed` and `lean` are 0 or INFINITY, otherwise 1 */
+  double        opposed; /* boxes of which no direction has a product with `own` below minus this; -INFINITY: none */
+  double        behind;  /* boxes farther than this (length) that lie wholly behind the plane through the point */
+  double        shift;   /* by this length, */
+  double        lean;    /* and by this part of the distance of their farthest corner besides */
 } BoxTreeSide;
 
 int  BoxTreeBuild(int dim, int n, const double *lower, const double *upper, BoxTree *tree);

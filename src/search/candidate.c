@@ -6,6 +6,20 @@
 #define SEARCH_BULGE 0.15
 
 /*@
+  CandidateBulge - returns how far a candidate may reach beyond its nodes (length).
+
+  Not collective
+
+  Input Parameters:
++ c    - the candidate, whose facet is set
+- size - face size (length)
+@*/
+PetscReal CandidateBulge(const Candidate *c, PetscReal size)
+{
+  return ElementGet(c->facet.type)->order == 2 ? SEARCH_BULGE * size : 0;
+}
+
+/*@
   CandidatePlace - computes centre, unit normal and bounding box of a candidate from positions of its nodes.
 
   Not collective
@@ -50,8 +64,8 @@ void CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *c)
   length = PetscSqrtReal(length);
   for (int d = 0; d < 3; d++) {
     if (length > 0) c->normal[d] /= length;
-    c->lower[d] -= e->order == 2 ? SEARCH_BULGE * size : 0;
-    c->upper[d] += e->order == 2 ? SEARCH_BULGE * size : 0;
+    c->lower[d] -= CandidateBulge(c, size);
+    c->upper[d] += CandidateBulge(c, size);
   }
 }
 

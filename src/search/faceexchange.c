@@ -109,7 +109,7 @@ void SearchFacePositions(ContactSearch s, ContactSurface surface, PetscInt f, co
 }
 
 /*@
-  SearchSlaveBox - computes the box of this rank's slave points after their last move.
+  SearchSlaveBox - computes the box of this rank's slave points that may have a partner, after their last move.
 
   Not collective
 
@@ -127,6 +127,7 @@ void SearchSlaveBox(ContactSearch s, PetscReal box[6])
   for (PetscInt q = 0; q < s->slaves->n; q++) {
     PetscReal x[3];
 
+    if (s->partners.possible && !s->partners.possible[q]) continue;
     SlavePointsPosition(s->slaves, q, x);
     SearchBoxAdd(box, dim, x);
   }

@@ -15,9 +15,10 @@ typedef struct {
 /* Handles the box of an image of face f. */
 typedef void (*NearVisit)(PetscInt f, const PetscReal box[6], void *context);
 
-/* Visits the boxes of this rank's faces of a surface, and those of all images of a master's. */
-static void VisitBoxes(ContactSearch s, ContactSurface surface, const PetscReal *u, PetscReal t, NearVisit visit,
-                       void *context)
+/* Visits the boxes of this rank's faces of a surface, and those of all images of a master's. some: which faces; NULL:
+   all. */
+static void VisitBoxes(ContactSearch s, ContactSurface surface, const PetscBool *some, const PetscReal *u, PetscReal t,
+                       NearVisit visit, void *context)
 {
   const int       dim    = s->mesh->dim;
   const PetscBool master = (PetscBool)(surface == s->master);
@@ -26,6 +27,7 @@ static void VisitBoxes(ContactSearch s, ContactSurface surface, const PetscReal 
     const int nodes = ElementGet(surface->faces[f].type)->nodes;
     PetscReal x[FACE_MAX_NODES * 3], y[3], box[6];
 
+    if (some && !some[f]) continue;
     SearchFacePositions(s, surface, f, u, t, x);
     for (int m = 0; m < (master ? s->n_images : 1); m++) {
       if (master && s->images[m].left_out) continue;
@@ -74,8 +76,8 @@ static void MarkCells(PetscInt f, const PetscReal box[6], void *context)
 }
 
 /* Makes the grid of a surface and of its images for tests at a distance. Collective. */
-static PetscErrorCode GridCreate(ContactSearch s, ContactSurface surface, const PetscReal *u, PetscReal t,
-                                 PetscReal distance, NearGrid *grid)
+static PetscErrorCode GridCreate(ContactSearch s, ContactSurface surface, const PetscBool *some, const PetscReal *u,
+                                 PetscReal t, PetscReal distance, NearGrid *grid)
 {
   const int most = s->mesh->dim == 2 ? NEAR_CELLS_2D : NEAR_CELLS_3D;
   PetscReal all[6], upper[3];
@@ -84,7 +86,7 @@ static PetscErrorCode GridCreate(ContactSearch s, ContactSurface surface, const 
   PetscFunctionBeginUser;
   grid->dim = s->mesh->dim;
   SearchBoxEmpty(all);
-  VisitBoxes(s, surface, u, t, AddBox, all);
+  VisitBoxes(s, surface, some, u, t, AddBox, all);
   PetscCallMPI(MPI_Allreduce(all, grid->lower, 3, MPIU_REAL, MPIU_MIN, s->mesh->comm));
   PetscCallMPI(MPI_Allreduce(&all[3], upper, 3, MPIU_REAL, MPIU_MAX, s->mesh->comm));
   for (int d = 0; d < 3; d++) {
@@ -95,7 +97,7 @@ static PetscErrorCode GridCreate(ContactSearch s, ContactSurface surface, const 
     cells *= grid->n[d];
   }
   PetscCall(PetscCalloc1(cells, &grid->met));
-  VisitBoxes(s, surface, u, t, MarkCells, grid);
+  VisitBoxes(s, surface, some, u, t, MarkCells, grid);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, grid->met, cells, MPI_UNSIGNED_CHAR, MPI_MAX, s->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -136,26 +138,29 @@ static void TestFace(PetscInt f, const PetscReal box[6], void *context)
 - master - master[faces of the master on this rank]: PETSC_FALSE where no face of the slave is near an image of it
 
   Note:
-  A face that is not near is farther from the other side than SearchLists() collects faces. The converse does not hold:
-  boxes and cells of a grid are compared. The answer does not depend on the ranks.
+  A face that is not near is farther from the other side than SearchLists() collects faces, or has no partner on its own
+  body. The converse does not hold: boxes and cells of a grid are compared. The answer does not depend on the ranks.
 @*/
 PetscErrorCode SearchNearFaces(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *slave,
                                PetscBool *master)
 {
   const ContactSurface side[2] = {s->slaves->surface, s->master};
   PetscBool *const     near[2] = {slave, master};
-  NearTest             test    = {.distance = SearchListsDistance(s, motion)};
+  const PetscBool      tested  = SearchHasPartners(s);
 
   PetscFunctionBeginUser;
   ToolsPlace(s->mesh, u, t);
-  for (int k = 0; k < 2; k++) {
+  if (tested) PetscCall(SearchPartnersFaces(s, u, t, motion, slave));
+  if (tested && !s->partners.any) PetscCall(PetscArrayzero(master, s->master->n_faces));
+  if (tested && !s->partners.any) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = tested ? 1 : 0; k < 2; k++) {
+    NearTest test = {.distance = SearchListsDistance(s, motion), .near = near[k]};
     NearGrid grid;
 
-    PetscCall(GridCreate(s, side[1 - k], u, t, test.distance, &grid));
+    PetscCall(GridCreate(s, side[1 - k], tested ? slave : NULL, u, t, test.distance, &grid));
     PetscCall(PetscArrayzero(near[k], side[k]->n_faces));
     test.grid = &grid;
-    test.near = near[k];
-    VisitBoxes(s, side[k], u, t, TestFace, &test);
+    VisitBoxes(s, side[k], NULL, u, t, TestFace, &test);
     PetscCall(PetscFree(grid.met));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -4,13 +4,12 @@
 #include "ring.h"
 #include "base/smoothstep.h"
 
-/* Cosines of the angle between the slave's outward normal and the master's inward one: up to 72 degrees a point takes
-   part with its whole area, from 87 degrees on not at all. Surfaces that press on each other are opposed but for the
-   turns of their faces, of which the largest is that of the corner of a cube that points at the master, 55 degrees. The
-   bounds lie as far beyond it as they can: nearer to it, the normals of soft bodies turn by as much at an edge, and the
-   part that takes part answers them. */
+/* Cosine of the angle between the slave's outward normal and the master's inward one: up to 72 degrees a point takes
+   part with its whole area, from 87 degrees on (SEARCH_OPPOSED_NOT) not at all. Surfaces that press on each other are
+   opposed but for the turns of their faces, of which the largest is that of the corner of a cube that points at the
+   master, 55 degrees. The bounds lie as far beyond it as they can: nearer to it, the normals of soft bodies turn by as
+   much at an edge, and the part that takes part answers them. */
 #define OPPOSED_FULLY 0.30
-#define OPPOSED_NOT   0.05
 
 /* Keys of all contact nodes, each once and in ascending order: nodes of deformable bodies, then nodes of a rigid
    tool. */
@@ -967,11 +966,11 @@ static inline PetscReal OpposedCosine(const PetscReal own[3], const PetscReal no
 - normal - unit normal of the master
 
   Note:
-  Returns 1 where they are opposed within OPPOSED_FULLY, and 0 from OPPOSED_NOT on.
+  Returns 1 where they are opposed within OPPOSED_FULLY, and 0 from SEARCH_OPPOSED_NOT on.
 @*/
 PetscReal NeighbourListsOpposing(const PetscReal own[3], const PetscReal normal[3])
 {
-  return SmoothStep((OpposedCosine(own, normal) - OPPOSED_NOT) / (OPPOSED_FULLY - OPPOSED_NOT));
+  return SmoothStep((OpposedCosine(own, normal) - SEARCH_OPPOSED_NOT) / (OPPOSED_FULLY - SEARCH_OPPOSED_NOT));
 }
 
 /*@
@@ -1024,7 +1023,7 @@ PetscBool NeighbourListsSquare(NeighbourLists lists, PetscInt q, const PetscReal
 @*/
 PetscReal NeighbourListsAverse(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
 {
-  return 1 - SmoothStep(OpposedCosine(&lists->slave_normal[3 * q], normal) / OPPOSED_NOT);
+  return 1 - SmoothStep(OpposedCosine(&lists->slave_normal[3 * q], normal) / SEARCH_OPPOSED_NOT);
 }
 
 /*@

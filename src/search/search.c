@@ -73,21 +73,9 @@ PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface 
 PetscErrorCode SearchDestroy(ContactSearch *s)
 {
   PetscFunctionBeginUser;
+  if (*s) PetscCall(SearchPartnersFree(*s));
   PetscCall(PetscFree(*s));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Positions of a candidate's nodes as long as they are numbers of contact nodes. */
-static void ImagePositions(ContactSearch s, NeighbourLists lists, const Candidate *c, PetscReal *x)
-{
-  const int dim = lists->dim;
-
-  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++) {
-    PetscReal y[3];
-
-    for (int d = 0; d < dim; d++) y[d] = lists->X[c->facet.nodes[a] * dim + d] + lists->u[c->facet.nodes[a] * dim + d];
-    SurfaceReflect(&s->images[c->image], dim, y, &x[a * dim]);
-  }
 }
 
 /* Positions of a candidate's nodes once they are numbers of points. */
@@ -98,140 +86,6 @@ static void CandidatePositions(NeighbourLists lists, const Candidate *c, PetscRe
   for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
     for (int d = 0; d < dim; d++)
       x[a * dim + d] = lists->point_X[c->facet.nodes[a] * dim + d] + lists->point_u[c->facet.nodes[a] * dim + d];
-}
-
-/* Makes candidates of all faces and mirror images near a box, in an order that does not depend on the ranks. */
-static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, const PetscReal box[6], PetscReal distance,
-                                     SearchField *field)
-{
-  const int dim = lists->dim;
-  PetscReal x[FACE_MAX_NODES * 3];
-
-  PetscFunctionBeginUser;
-  field->n_candidates = 0;
-  PetscCall(PetscMalloc1(field->n_records * s->n_images, &field->candidates));
-  for (PetscInt r = 0; r < field->n_records; r++) {
-    const FaceRecord *record = &field->records[r];
-
-    for (int m = 0; m < s->n_images; m++) {
-      Candidate *c = &field->candidates[field->n_candidates];
-      PetscReal  own[6];
-
-      if (s->images[m].left_out) continue;
-      *c           = (Candidate){.record = r, .image = m, .facet = SurfaceImageFacet(&record->facet, &s->images[m])};
-      c->facet.tag = record->facet.tag * SURFACE_MAX_IMAGES + m;
-      ImagePositions(s, lists, c, x);
-      CandidatePlace(dim, x, record->size, c);
-      for (int d = 0; d < 3; d++) {
-        own[d]     = c->lower[d];
-        own[3 + d] = c->upper[d];
-      }
-      if (SearchBoxesMeet(own, box, dim, distance)) field->n_candidates++;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Makes the way from the master's faces, each on its own rank, to the faces that arrived on this rank. The caller
-   destroys it. */
-PetscErrorCode SearchFieldWay(ContactSearch s, const SearchField *field, PetscSF *faces)
-{
-  PetscSFNode *remote;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(field->n_records, &remote));
-  for (PetscInt r = 0; r < field->n_records; r++)
-    remote[r] = (PetscSFNode){field->records[r].home, field->records[r].home_face};
-  PetscCall(PetscSFCreate(s->mesh->comm, faces));
-  PetscCall(
-    PetscSFSetGraph(*faces, s->master->n_faces, field->n_records, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
-  PetscCall(PetscSFSetUp(*faces));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Fetches the maps of the faces that arrived. */
-static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
-{
-  PetscSF faces;
-
-  PetscFunctionBeginUser;
-  PetscCall(SearchFieldWay(s, field, &faces));
-  PetscCall(FaceMapsFetch(faces, s->maps, &field->maps));
-  PetscCall(PetscSFDestroy(&faces));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  SearchFieldCreate - collects the faces around a box, and puts their nodes, images and points into lists.
-
-  Collective
-
-  Input Parameters:
-+ s        - the search
-. u        - local displacements u[mesh n_nodes*dim] (length), ghosts included
-. t        - load parameter, for rigid tools
-. box      - box of this rank, lower then upper corner
-- distance - faces within this distance of the box are collected (length)
-
-  Output Parameters:
-+ lists - the lists, still without slave points
-- field - the faces as records and candidates
-
-  Note:
-  The caller frees the field with SearchFieldDestroy().
-@*/
-PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal box[6],
-                                 PetscReal distance, NeighbourLists lists, SearchField *field)
-{
-  Mesh          mesh = s->mesh;
-  PetscMPIInt   size;
-  PetscReal    *boxes;
-  NodeGeometry *geometry = NULL;
-
-  PetscFunctionBeginUser;
-  *field     = (SearchField){0};
-  lists->dim = mesh->dim;
-  ToolsPlace(mesh, u, t);
-  if (s->fit->fitted) {
-    PetscCall(PetscMalloc1(s->master->rigid ? s->master->rigid->n_nodes : mesh->n_nodes, &geometry));
-    PetscCall(SurfaceNodeGeometry(s->master, s->scene->geometry, s->loads, u, t, geometry));
-  }
-  if (!s->master)
-    PetscCall(PetscMalloc1(0, &field->records));
-  else if (s->master->rigid)
-    PetscCall(SearchPickRigidFaces(s, geometry, t, box, distance, &field->n_records, &field->records));
-  else {
-    PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
-    PetscCall(PetscMalloc1(6 * size, &boxes));
-    PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, mesh->comm));
-    PetscCall(SearchExchangeFaces(s, geometry, u, boxes, distance, &field->n_records, &field->records));
-    PetscCall(PetscFree(boxes));
-  }
-  FaceRecordsSort(field->n_records, field->records);
-  PetscCall(PetscFree(geometry));
-  if (s->maps) PetscCall(FetchMaps(s, field));
-  PetscCall(NeighbourListsCreateNodes(s, field, lists));
-  PetscCall(NeighbourListsUpdateNodes(s, lists, u, t));
-  PetscCall(MakeCandidates(s, lists, box, distance, field));
-  PetscCall(NeighbourListsCreatePoints(s, lists, field));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  SearchFieldDestroy - frees the faces that were collected.
-
-  Not collective
-
-  Input/Output Parameter:
-. field - the faces
-@*/
-PetscErrorCode SearchFieldDestroy(SearchField *field)
-{
-  PetscFunctionBeginUser;
-  PetscCall(FaceMapsDestroy(&field->maps));
-  PetscCall(PetscFree(field->candidates));
-  PetscCall(PetscFree(field->records));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Compares a candidate with the nearest one so far. Two facets share the foot on the edge between them. Where facets
@@ -322,12 +176,13 @@ static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *
 
 /* Finds the nearest facet of one slave point, lists it with all facets within margin and motion of it, and fits the
    surface there. look gives the slave point, the size of its face and the distance within which it is searched. found
-   and ends have room for all candidates. */
+   and ends have room for all candidates. possible: which points may have a partner; NULL: any of them. */
 static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, BoxTree tree, FitSupport *fit,
-                                PetscReal motion, Nearest *look, int *found, int *ends, ListBuffer *buffer)
+                                PetscReal motion, const PetscBool *possible, Nearest *look, int *found, int *ends,
+                                ListBuffer *buffer)
 {
   const PetscInt    q = look->q, first = buffer->n_points;
-  const BoxTreeSide side  = {&lists->slave_normal[3 * q], look->one_body, OwnBodyBehind(look)};
+  const BoxTreeSide side  = {&lists->slave_normal[3 * q], look->one_body ? 0 : -INFINITY, OwnBodyBehind(look), 0, 0};
   double            bound = look->least + look->tie, margin;
   int               count, facing;
 
@@ -336,9 +191,11 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   lists->facet_ptr[q] = buffer->n;
   lists->kappa[q]     = 0;
   lists->nearest[q]   = -1;
+  lists->averse[q]    = PETSC_FALSE;
+  lists->share[q]     = 0;
+  if (possible && !possible[q]) PetscFunctionReturn(PETSC_SUCCESS);
   BoxTreeClosest(tree, look->x, look->listed ? &side : NULL, &bound, NearestVisit, look);
   lists->averse[q] = (PetscBool)(look->best < 0 && look->averse);
-  lists->share[q]  = 0;
   if (look->best >= 0 && FaceMarksTreated(look->marks, field->records[look->candidates[look->best].record].marks))
     look->best = -1;
   if (look->best < 0) PetscFunctionReturn(PETSC_SUCCESS);
@@ -357,20 +214,6 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the tree the normals of the candidates. */
-static PetscErrorCode SetDirections(int dim, const SearchField *field, BoxTree tree)
-{
-  PetscReal *normal;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(field->n_candidates * dim, &normal));
-  for (PetscInt c = 0; c < field->n_candidates; c++)
-    for (int d = 0; d < dim; d++) normal[c * dim + d] = field->candidates[c].normal[d];
-  PetscCheck(!BoxTreeSetDirections(tree, normal), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the tree");
-  PetscCall(PetscFree(normal));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Fills the lists of all slave points. fit is NULL where the facets are used. */
 static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, const SearchField *field,
                                          FitSupport *fit, PetscReal motion)
@@ -384,7 +227,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscCall(PetscMalloc3(field->n_candidates, &found, field->n_candidates, &ends, lists->n_points, &buffer.position));
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
   PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, &tree));
-  if (s->one_body) PetscCall(SetDirections(dim, field, tree)); /* no face of one's own body is averse */
+  if (s->one_body) PetscCall(SearchSetDirections(dim, field, tree)); /* no face of one's own body is averse */
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     Nearest look = {.lists      = lists,
                     .slaves     = s->slaves,
@@ -401,7 +244,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                     .tie        = FACET_TIE * (s->reach + motion)};
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
-    PetscCall(FillSlave(lists, field, tree, fit, motion, &look, found, ends, &buffer));
+    PetscCall(FillSlave(lists, field, tree, fit, motion, s->partners.possible, &look, found, ends, &buffer));
   }
   lists->list_ptr[lists->n_slaves]  = buffer.n_points;
   lists->facet_ptr[lists->n_slaves] = buffer.n;
@@ -504,20 +347,6 @@ void SearchSetRungs(ContactSearch s, const int *first)
 }
 
 /*@
-  SearchListsDistance - returns the distance (length) from the slave points within which faces are collected for lists.
-
-  Not collective
-
-  Input Parameters:
-+ s      - the search
-- motion - relative motion (length) for which the lists must be good
-@*/
-PetscReal SearchListsDistance(ContactSearch s, PetscReal motion)
-{
-  return s->reach + PetscMax(s->margin, SearchFitReach(s)) + 2 * motion;
-}
-
-/*@
   SearchLists - lists for every slave point of this rank the facets near it and the points of which these are made, from
   whatever rank.
 
@@ -548,6 +377,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(PetscNew(&lists));
   lists->t = NAN; /* not updated yet */
   PetscCall(SlavePointsMove(s->slaves, u));
+  if (SearchHasPartners(s)) PetscCall(SearchPartners(s, u, t, motion));
   SearchSlaveBox(s, box);
   PetscCall(SearchFieldCreate(s, u, t, box, distance, lists, &field));
   PetscCall(NeighbourListsCreateSlaves(s, lists));

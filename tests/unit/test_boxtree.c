@@ -198,7 +198,7 @@ static void TestDirections(void **state)
     for (int trial = 0; trial < 100; ++trial) {
       const double point[3]   = {Random(0, 1), Random(0, 1), Random(0, 1)},
                    own[3]     = {Random(-1, 1), Random(-1, 1), Random(-1, 1)};
-      const BoxTreeSide side  = {own, 1, INFINITY};
+      const BoxTreeSide side  = {own, 0, INFINITY, 0, 0};
       double            bound = 0.5;
 
       memset(seen, 0, sizeof(seen));
@@ -248,7 +248,7 @@ static void TestBehind(void **state)
     for (int trial = 0; trial < 100; ++trial) {
       const double point[3]   = {Random(0, 1), Random(0, 1), Random(0, 1)},
                    own[3]     = {Random(-1, 1), Random(-1, 1), Random(-1, 1)};
-      const BoxTreeSide side  = {own, 0, 0.1};
+      const BoxTreeSide side  = {own, -INFINITY, 0.1, 0, 0};
       double            bound = 0.5;
 
       memset(seen, 0, sizeof(seen));

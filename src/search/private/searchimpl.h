@@ -1,7 +1,7 @@
 /* Internals that the files of the search share and nobody else sees: faces on their way between ranks, candidates,
    growing lists, fits that are being made.
 
-   SearchFieldCreate() (search.c) collects faces with faceexchange.c, makes candidates with candidate.c and numbers
+   SearchFieldCreate() (searchfield.c) collects faces with faceexchange.c, makes candidates with candidate.c and numbers
    nodes and points with neighbourlists.c. FitSupportCreate() (fitsupport.c) then prepares the fits, and
    FitSupportSlave() makes one for each slave point. Offsets use the field and FitSupportClimb() for fits of the
    surface itself. */
@@ -13,6 +13,18 @@
 /* A node whose distance to a plane of symmetry is below this fraction of the model's size lies on it and has no
    image. */
 #define SEARCH_ON_PLANE 1e-9
+
+/* Cosine between the slave's reversed normal and the master's one up to which they do not oppose each other: 87
+   degrees. */
+#define SEARCH_OPPOSED_NOT 0.05
+
+/* Which slave points may have a partner, and the state of the test that says so (partners.c). */
+typedef struct {
+  PetscBool *possible, any;            /* of each slave point, NULL before the first test; of any one on any rank */
+  PetscReal *x, *normal, *face_normal; /* of slave points and master faces */
+  PetscReal  thin;                     /* thinnest element or largest face, whichever is less (length) */
+  PetscReal *u, motion; /* of the mesh's nodes (length); motion for which lists were to be good (length) */
+} Partners;
 
 struct _n_ContactSearch {
   Mesh                mesh;
@@ -33,6 +45,7 @@ struct _n_ContactSearch {
   const FaceMarks    *marks;         /* of each slave point, where other pairs treat some of its partners; else NULL */
   PetscReal           reach, margin; /* lengths, without the motion */
   PetscReal           fit_reach;     /* SearchFitReach() */
+  Partners            partners;
 };
 
 /* A face or a mirror image of it, in the present position. */
@@ -109,6 +122,7 @@ typedef struct {
 
 /* candidate.c */
 void           CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *);
+PetscReal      CandidateBulge(const Candidate *, PetscReal size);
 PetscReal      CandidateBoxDistance(int dim, const Candidate *, const PetscReal *x);
 PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, BoxTree *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
@@ -132,15 +146,20 @@ void           NeighbourListsPointGeometry(ContactSearch, NeighbourLists, const 
                                            NodeGeometry *of_points);
 PetscErrorCode NeighbourListsUpdateNodes(ContactSearch, NeighbourLists, const PetscReal *u, PetscReal t);
 void           NeighbourListsCentre(NeighbourLists, PetscInt q, PetscReal centre[2]);
-/* search.c */
-PetscReal SearchListsDistance(ContactSearch, PetscReal motion);
+/* partners.c */
+PetscBool      SearchHasPartners(ContactSearch);
+PetscErrorCode SearchPartners(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion);
+PetscErrorCode SearchPartnersFaces(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *faces);
+PetscErrorCode SearchPartnersFree(ContactSearch);
 /* fitsupport.c */
 PetscReal      SearchFitReach(ContactSearch);
 PetscErrorCode FitSupportCreate(ContactSearch, NeighbourLists, const SearchField *, FitSupport *);
 PetscErrorCode FitSupportDestroy(FitSupport *);
 PetscErrorCode FitSupportSlave(FitSupport *, const Nearest *, PetscInt q, PetscInt first, ListBuffer *);
 PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, int first, FitProblem *, FitResult *, int *rung);
-/* search.c */
+/* searchfield.c */
+PetscReal      SearchListsDistance(ContactSearch, PetscReal motion);
+PetscErrorCode SearchSetDirections(int dim, const SearchField *, BoxTree);
 PetscErrorCode SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6],
                                  PetscReal distance, NeighbourLists, SearchField *);
 PetscErrorCode SearchFieldDestroy(SearchField *);

@@ -1,0 +1,350 @@
+/* Slave points of a body that may meet other sides of the same body: which of them can have a partner at all. */
+#include "searchimpl.h"
+
+/* A test is good as long as slave points, with their offsets, and master together have moved by less than this part of
+   the thinnest element or of the largest face, whichever is less. A wall of one element is thicker than that and what
+   can have been entered of it. */
+#define PARTNERS_SKIN 0.25
+/* And as long as no unit normal has changed by more than this. Normals count as opposed from SEARCH_OPPOSED_NOT on, so
+   that two of these changes leave faces of a right angle out. */
+#define PARTNERS_TURN 0.02
+/* Where the middle nodes of a quadratic facet deviate from the one through its corners, the facet exceeds its nodes by
+   at most this much of the largest deviation: sum of the absolute shape functions of these nodes. */
+#define PARTNERS_BULGE 1.6
+
+/* How far a test sees beyond the positions at hand. */
+typedef struct {
+  PetscReal radius, shift, turn; /* two lengths, and the change of a unit normal */
+} PartnersSight;
+
+/* The length of which the constants above are parts, over all ranks. */
+static PetscErrorCode ThinnestPart(ContactSearch s, PetscReal *length)
+{
+  PetscFunctionBeginUser;
+  *length = PetscMax(s->slaves->surface->max_size, s->master->max_size);
+  for (PetscInt q = 0; q < s->slaves->n; q++) *length = PetscMin(*length, s->slaves->height[q]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, length, 1, MPIU_REAL, MPIU_MIN, s->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SearchHasPartners - says whether slave points are tested for partners before they are searched.
+
+  Not collective
+
+  Input Parameter:
+. s - the search
+@*/
+PetscBool SearchHasPartners(ContactSearch s)
+{
+  return (PetscBool)(s->one_body && !s->slaves->maps.ptr);
+}
+
+/* The test of one slave point. */
+typedef struct {
+  const SearchField *field;
+  NeighbourLists     lists;
+  const BoxTreeSide *side;
+  const PetscReal   *x;
+  PetscBool          found;
+} PointTest;
+
+/* How far a facet reaches along a direction beyond its nodes (length), from their heights along it. */
+static PetscReal Bulge(const Element *e, const PetscReal *height)
+{
+  PetscReal mean = 0, most = 0;
+
+  for (int a = 0; a < e->corners; a++) mean += height[a] / e->corners;
+  for (int a = e->corners; a < e->nodes; a++) {
+    const PetscBool middle = (PetscBool)(e->dim == 1 || a - e->corners >= e->edges); /* of the whole facet */
+    const int      *ends   = e->edge_corners[middle ? 0 : a - e->corners];
+
+    most = PetscMax(most, PetscAbsReal(height[a] - (middle ? mean : (height[ends[0]] + height[ends[1]]) / 2)));
+  }
+  return PARTNERS_BULGE * most;
+}
+
+/* Does a candidate lie wholly behind the plane of the point, farther than what can have been entered? Its nodes say
+   more than its box, which is thick where the candidate lies askew. */
+static PetscBool LiesBehind(const PointTest *test, const Candidate *c)
+{
+  const BoxTreeSide *side = test->side;
+  const Element     *e    = ElementGet(c->facet.type);
+  const int          dim  = test->lists->dim;
+  PetscReal          height[FACE_MAX_NODES], most = PETSC_MIN_REAL, farthest = 0;
+
+  for (int a = 0; a < e->nodes; a++) {
+    const PetscInt p      = c->facet.nodes[a] * dim;
+    PetscReal      square = 0;
+
+    height[a] = 0;
+    for (int d = 0; d < dim; d++) {
+      const PetscReal way = test->lists->point_X[p + d] + test->lists->point_u[p + d] - test->x[d];
+
+      height[a] += side->own[d] * way;
+      square += PetscSqr(way);
+    }
+    most     = PetscMax(most, height[a]);
+    farthest = PetscMax(farthest, square);
+  }
+  most += Bulge(e, height);
+  farthest = PetscSqrtReal(farthest) + CandidateBulge(c, test->field->records[c->record].size);
+  return (PetscBool)(most < -side->shift - side->lean * farthest &&
+                     PetscMax(-most, CandidateBoxDistance(dim, c, test->x)) > side->behind);
+}
+
+/* Visitor of BoxTreeClosest(), which ends with the first facet that may be a partner. */
+static void TestFacet(void *context, int index, double *bound)
+{
+  PointTest *test = context;
+
+  if (LiesBehind(test, &test->field->candidates[index])) return;
+  test->found = PETSC_TRUE;
+  *bound      = -1;
+}
+
+static PetscErrorCode Normalise(PetscInt n, PetscReal *normal)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal *v = &normal[3 * i], length = PetscSqrtReal(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+
+    for (int d = 0; d < 3 && length > 0; d++) v[d] /= length;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Unit normals of the slave points after their last move. */
+static PetscErrorCode PointNormals(ContactSearch s, const PetscReal *u, PetscReal *normal)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, normal));
+  PetscCall(Normalise(s->slaves->n, normal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Unit normals at the centres of the master's faces on this rank. */
+static void FaceNormals(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal *normal)
+{
+  for (PetscInt f = 0; f < s->master->n_faces; f++) {
+    Candidate face = {.facet = s->master->faces[f]};
+    PetscReal x[FACE_MAX_NODES * 3];
+
+    SearchFacePositions(s, s->master, f, u, t, x);
+    CandidatePlace(s->mesh->dim, x, 0, &face);
+    for (int d = 0; d < 3; d++) normal[3 * f + d] = face.normal[d];
+  }
+}
+
+/* Tests which of some slave points have a facet that opposes them in sight, and not behind their own body. The tree
+   compares boxes, so that points without a partner may pass, but no point with one is missed. */
+static PetscErrorCode TestPoints(ContactSearch s, const PetscReal *u, PetscReal t, const PartnersSight *sight,
+                                 const PetscReal *normal, const PetscBool *among, PetscBool *possible)
+{
+  const int      dim = s->mesh->dim;
+  NeighbourLists lists;
+  SearchField    field;
+  BoxTree        tree;
+  PetscReal      box[6], x[3];
+
+  PetscFunctionBeginUser;
+  SearchBoxEmpty(box);
+  for (PetscInt q = 0; q < s->slaves->n; q++) {
+    if (among && !among[q]) continue;
+    SlavePointsPosition(s->slaves, q, x);
+    SearchBoxAdd(box, dim, x);
+  }
+  PetscCall(PetscNew(&lists));
+  PetscCall(SearchFieldCreate(s, u, t, box, sight->radius, lists, &field));
+  PetscCall(CandidatesTree(dim, field.n_candidates, field.candidates, &tree));
+  PetscCall(SearchSetDirections(dim, &field, tree));
+  for (PetscInt q = 0; q < s->slaves->n; q++) {
+    const BoxTreeSide side  = {.own     = &normal[3 * q],
+                               .opposed = SEARCH_OPPOSED_NOT - 2 * sight->turn,
+                               .behind  = SEARCH_ENTERED * s->slaves->height[q] + sight->shift,
+                               .shift   = sight->shift,
+                               .lean    = sight->turn};
+    PointTest         test  = {&field, lists, &side, x, PETSC_FALSE};
+    double            bound = sight->radius;
+
+    possible[q] = PETSC_FALSE;
+    if (among && !among[q]) continue;
+    SlavePointsPosition(s->slaves, q, x);
+    BoxTreeClosest(tree, x, &side, &bound, TestFacet, &test);
+    possible[q] = test.found;
+  }
+  BoxTreeDestroy(&tree);
+  PetscCall(SearchFieldDestroy(&field));
+  PetscCall(NeighbourListsDestroy(&lists));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal LargestChange(PetscInt n, int dim, const PetscReal *a, const PetscReal *b)
+{
+  PetscReal most = 0;
+
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal square = 0;
+
+    for (int d = 0; d < dim; d++) square += PetscSqr(a[i * dim + d] - b[i * dim + d]);
+    most = PetscMax(most, square);
+  }
+  return PetscSqrtReal(most);
+}
+
+/* What has changed since the last test, over all ranks: positions of the points and of the nodes, offsets (lengths),
+   unit normals. */
+static PetscErrorCode Changes(ContactSearch s, const PetscReal *u, const PetscReal *x, const PetscReal *normal,
+                              const PetscReal *face_normal, PetscReal *moved, PetscReal *turned)
+{
+  enum { POINT, NODE, OFFSET, NORMAL, FACE, CHANGES };
+  const int       dim = s->mesh->dim;
+  const Partners *at  = &s->partners;
+  PetscReal       all[CHANGES];
+
+  PetscFunctionBeginUser;
+  all[POINT]  = LargestChange(s->slaves->n, dim, x, at->x);
+  all[NODE]   = LargestChange(s->mesh->n_nodes, dim, u, at->u);
+  all[OFFSET] = 0;
+  for (PetscInt q = 0; q < s->slaves->n; q++) {
+    PetscReal square = 0;
+
+    for (int d = 0; d < dim; d++) square += PetscSqr(s->slaves->offset[q * dim + d]);
+    all[OFFSET] = PetscMax(all[OFFSET], PetscSqrtReal(square));
+  }
+  all[NORMAL] = LargestChange(s->slaves->n, 3, normal, at->normal);
+  all[FACE]   = LargestChange(s->master->n_faces, 3, face_normal, at->face_normal);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, CHANGES, MPIU_REAL, MPIU_MAX, s->mesh->comm));
+  *moved  = all[POINT] + all[NODE] + all[OFFSET];
+  *turned = PetscMax(all[NORMAL], all[FACE]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tests all points at a state, which becomes that of the last test. */
+static PetscErrorCode TestAll(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion)
+{
+  Partners           *at    = &s->partners;
+  const PetscReal     skin  = PARTNERS_SKIN * at->thin;
+  const PartnersSight sight = {s->reach + motion + skin, skin, PARTNERS_TURN};
+  int                 any   = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(at->u, u, s->mesh->n_nodes * s->mesh->dim));
+  PetscCall(TestPoints(s, u, t, &sight, at->normal, NULL, at->possible));
+  for (PetscInt q = 0; q < s->slaves->n; q++) any = any || at->possible[q];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, s->mesh->comm));
+  at->any    = (PetscBool)any;
+  at->motion = motion;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SearchPartners - finds which slave points may have a partner; all others have none.
+
+  Collective
+
+  Input Parameters:
++ s      - the search, after SlavePointsMove() of its slave points
+. u      - local displacements u[mesh n_nodes*dim] (length), ghosts included
+. t      - load parameter
+- motion - relative motion (length) for which lists are to be good
+
+  Note:
+  The answer is in the search's partners. Boxes are seen farther than a search would by a skin, and normals count as
+  opposed earlier. As long as nothing has moved or turned by more, the last answer is kept: a point that it leaves out
+  has no facet that opposes it, within the reach of a search and not hidden by its own body.
+
+  Source: Verlet, Computer experiments on classical fluids, Phys. Rev. 159 (1967) 98-103, for the skin.
+@*/
+PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion)
+{
+  Partners       *at = &s->partners;
+  const PetscInt  n = s->slaves->n, faces = s->master->n_faces;
+  const int       dim   = s->mesh->dim;
+  const PetscBool first = (PetscBool)!at->possible;
+  PetscReal      *x, *normal, *face_normal, moved = 0, turned = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n * dim, &x, 3 * n, &normal, 3 * faces, &face_normal));
+  for (PetscInt q = 0; q < n; q++) SlavePointsPosition(s->slaves, q, &x[q * dim]);
+  PetscCall(PointNormals(s, u, normal));
+  FaceNormals(s, u, t, face_normal);
+  if (first) PetscCall(ThinnestPart(s, &at->thin));
+  if (first)
+    PetscCall(PetscMalloc5(n, &at->possible, n * dim, &at->x, 3 * n, &at->normal, 3 * faces, &at->face_normal,
+                           s->mesh->n_nodes * dim, &at->u));
+  if (!first) PetscCall(Changes(s, u, x, normal, face_normal, &moved, &turned));
+  if (first || PetscMax(0, motion - at->motion) + moved > PARTNERS_SKIN * at->thin || turned > PARTNERS_TURN) {
+    PetscCall(PetscArraycpy(at->x, x, n * dim));
+    PetscCall(PetscArraycpy(at->normal, normal, 3 * n));
+    PetscCall(PetscArraycpy(at->face_normal, face_normal, 3 * faces));
+    PetscCall(TestAll(s, u, t, motion));
+  }
+  PetscCall(PetscFree3(x, normal, face_normal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SearchPartnersFaces - finds the faces of the slave on this rank on which a point may have a partner.
+
+  Collective
+
+  Input Parameters:
++ s      - the search
+. u      - local displacements u[mesh n_nodes*dim] (length), ghosts included
+. t      - load parameter
+- motion - relative motion (length) for which lists are to be good
+
+  Output Parameter:
+. faces - faces[faces of the slave on this rank]
+
+  Note:
+  The answer depends on the state at hand alone, not on former tests. It is the same on any number of ranks. Points
+count where they are without offsets, and those of other faces have none.
+@*/
+PetscErrorCode SearchPartnersFaces(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *faces)
+{
+  const SlavePoints   points = s->slaves;
+  const PartnersSight sight  = {s->reach + motion, 0, 0};
+  PetscBool          *possible;
+  int                *at_points, *at_faces;
+  PetscReal          *normal;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(faces, points->surface->n_faces));
+  PetscCall(SlavePointsMove(points, u));
+  PetscCall(SearchPartners(s, u, t, motion));
+  if (!s->partners.any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc3(points->n, &possible, points->n_faces, &at_points, 3 * points->n, &normal));
+  PetscCall(PetscCalloc1(points->surface->n_faces, &at_faces));
+  PetscCall(PointNormals(s, u, normal));
+  PetscCall(TestPoints(s, u, t, &sight, normal, s->partners.possible, possible));
+  for (PetscInt f = 0; f < points->n_faces; f++) {
+    at_points[f] = 0;
+    for (int q = 0; q < FaceRuleGet(points->faces[f].type, points->finer)->n; q++)
+      at_points[f] = at_points[f] || possible[points->first[f] + q];
+  }
+  PetscCall(PetscSFReduceBegin(points->face_sf, MPI_INT, at_points, at_faces, MPI_MAX));
+  PetscCall(PetscSFReduceEnd(points->face_sf, MPI_INT, at_points, at_faces, MPI_MAX));
+  for (PetscInt f = 0; f < points->surface->n_faces; f++) faces[f] = (PetscBool)at_faces[f];
+  PetscCall(PetscFree3(possible, at_points, normal));
+  PetscCall(PetscFree(at_faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SearchPartnersFree - frees what the tests for partners hold.
+
+  Not collective
+
+  Input Parameter:
+. s - the search
+@*/
+PetscErrorCode SearchPartnersFree(ContactSearch s)
+{
+  Partners *at = &s->partners;
+
+  PetscFunctionBeginUser;
+  if (at->possible) PetscCall(PetscFree5(at->possible, at->x, at->normal, at->face_normal, at->u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
