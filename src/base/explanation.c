@@ -182,6 +182,13 @@ static const Explanation Input[] = {
 };
 
 static const Explanation Unsolved[] = {
+  {"B136",
+   {"an edge against an edge has no contact"},
+   "an edge meets an edge, which has no contact in space",
+   "Two sharp edges cross each other. Contact is between points of one surface and faces of the other one, and no face "
+   "lies against a face there: the bodies would cross without any force.",
+   "Give both edges a rounding that the mesh resolves with three or more faces, which meet as faces do. Where faces "
+   "press soon after, a larger `certificate.penetration` lets the edges stand in each other until then."},
   {"B202",
    {"the step cannot be certified"},
    "the step cannot be certified",

@@ -254,6 +254,21 @@ static PetscErrorCode WorstOfAll(MPI_Comm comm, Finding *worst, int *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether anything presses in a pair or its partner. */
+static PetscErrorCode Presses(Certificate certificate, int pair, PetscBool *presses)
+{
+  const int partner = ContactPairPartner(certificate->contact, pair);
+  PetscInt *label, closed, other = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(certificate->mesh->n_nodes, &label));
+  PetscCall(ContactPairClosed(certificate->contact, pair, label, 1, &closed));
+  if (partner >= 0) PetscCall(ContactPairClosed(certificate->contact, partner, label, 1, &other));
+  *presses = (PetscBool)(closed + other > 0);
+  PetscCall(PetscFree(label));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Writes who did what: nodes, face, place, and the surfaces of both. */
 static PetscErrorCode Describe(Certificate certificate, const Finding *finding, int pair, char *text, size_t size)
 {
@@ -266,9 +281,11 @@ static PetscErrorCode Describe(Certificate certificate, const Finding *finding, 
                   second                       = tool ? -1 - finding->tag[1] : finding->tag[1];
   char         who[96], face[64 + SURFACE_NAME] = "the tool";
   ContactSides of;
+  PetscBool    presses = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   ContactPairSides(certificate->contact, pair, &of);
+  PetscCall(Presses(certificate, pair, &presses));
   if (finding->tag[1])
     PetscCall(PetscSNPrintf(who, sizeof(who), "the edge of the nodes %lld and %lld", first, second));
   else
@@ -276,12 +293,12 @@ static PetscErrorCode Describe(Certificate certificate, const Finding *finding, 
   if (finding->face)
     PetscCall(PetscSNPrintf(face, sizeof(face), "face %ld of '%s'", finding->face,
                             finding->side || !of.scene->master ? of.scene->slave : of.scene->master));
-  PetscCall(PetscSNPrintf(text, size,
-                          "contact '%s': %s (%.5g, %.5g, %.5g) of '%s' %s %.3g deep, at %s; allowed are %.3g",
-                          ContactPairName(certificate->contact, pair), who, (double)(finding->X[0] + centre[0]),
-                          (double)(finding->X[1] + centre[1]), (double)(finding->X[2] + centre[2]),
-                          finding->side && of.scene->master ? of.scene->master : of.scene->slave, what[finding->kind],
-                          finding->depth, face, finding->allowed));
+  PetscCall(PetscSNPrintf(
+    text, size, "contact '%s': %s (%.5g, %.5g, %.5g) of '%s' %s %.3g deep, at %s; allowed are %.3g%s",
+    ContactPairName(certificate->contact, pair), who, (double)(finding->X[0] + centre[0]),
+    (double)(finding->X[1] + centre[1]), (double)(finding->X[2] + centre[2]),
+    finding->side && of.scene->master ? of.scene->master : of.scene->slave, what[finding->kind], finding->depth, face,
+    finding->allowed, finding->kind == FINDING_EDGES && !presses ? "; an edge against an edge has no contact" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

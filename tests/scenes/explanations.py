@@ -10,7 +10,7 @@ import time
 from harness import SCENES, Check, arguments, run
 
 ROOT = SCENES.parent.parent
-STACK, SQUARE = SCENES / "stack.yaml", SCENES / "wrong_mesh.yaml"
+STACK, SQUARE, BEAMS = SCENES / "stack.yaml", SCENES / "wrong_mesh.yaml", SCENES / "crossed_beams.yaml"
 args = arguments()
 check = Check()
 out = pathlib.Path(args.out).resolve()
@@ -50,6 +50,7 @@ INPUT = {
 }
 UNSOLVED = {
     "B201": (STACK, (), ["solver.max_iterations=1", "solver.tolerance=1e-14", "stepping.dt_min=0.2"]),
+    "B136": (BEAMS, (), []),
     "B202": (STACK, (), ["contact.0.penalty.scale=1e-4", "loads.0.uy=-3.5", "stepping.initial=0.1"]),
     "B203": (SQUARE, (), ["loads.0.ux=-1.5", "kinematics=finite", "bodies.0.material.law=svk", "stepping.dt_min=0.1"]),
     "B204": (STACK, (), [FREE, "loads=[{surface: upper_top, pressure: 10}]", "contact.0.stabilise=false"]),

@@ -187,6 +187,7 @@ def edges():
     leaves."""
     judged = run(args, BEAMS, out="judged", must=2)
     check.holds("the edge is named", "the edge of the nodes" in judged.text and "any.lower.upper" in judged.text)
+    check.holds("edges are said not to be served", "an edge against an edge has no contact" in judged.text and "[B136]" in judged.text)
     free = run(args, BEAMS, out="unjudged", overrides=["output.certificate=false"])
     check.holds("edges were not looked for", "edges that cross edges have no contact" in free.text)
 
