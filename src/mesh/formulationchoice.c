@@ -67,8 +67,8 @@ void FormulationsCrowded(SceneBody *body)
 }
 
 /*@
-  ContactFormulationsChoose - measures the gap to an analytic master on the faces of its slave, where these are 6-node
-  triangles.
+  ContactFormulationsChoose - measures the gap to an analytic master, or of a surface to itself, on the faces of the
+  slave, where these are 6-node triangles.
 
   Collective
 
@@ -79,7 +79,7 @@ void FormulationsCrowded(SceneBody *body)
 
   Note:
   Corners of 6-node triangles have no part of the face's area. Node to surface would leave them without a force, and a
-  tool would go into the body there.
+  tool, or the surface itself, would go into the body there.
 @*/
 PetscErrorCode ContactFormulationsChoose(Scene scene, const RootMesh *root, Mesh mesh)
 {
@@ -89,7 +89,7 @@ PetscErrorCode ContactFormulationsChoose(Scene scene, const RootMesh *root, Mesh
     const int     group   = contact->slave ? MeshFindGroup(mesh, scene->dim - 1, contact->slave) : -1;
     int           corners = 0;
 
-    if (!contact->formulation_chosen || contact->master) continue;
+    if (!contact->formulation_chosen || contact->formulation == CONTACT_SURFACE_TO_SURFACE) continue;
     for (PetscInt f = 0; root && f < root->n_faces && !corners; f++)
       corners = root->faces[f].group == group && root->cell_block[root->faces[f].cell]->element->type == ELEMENT_TET10;
     PetscCallMPI(MPI_Bcast(&corners, 1, MPI_INT, 0, mesh->comm));

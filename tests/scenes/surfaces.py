@@ -6,7 +6,9 @@ FRAME, TUBE = SCENES / "c_strip.yaml", SCENES / "mirrored_tube.yaml"
 RINGS, PIPE = SCENES.parent.parent / "runs/ring_in_ring.yaml", SCENES.parent.parent / "runs/pipe_pinch.yaml"
 SHRINK, BUMPER = SCENES.parent / "jobs/shrink_fit.yaml", SCENES / "jounce_bumper.yaml"
 SIDES = 4e-3  # of a force of friction: between a list and one role of slave and master, whose points differ
-BEAMS = SCENES / "crossed_beams.yaml"
+BEAMS, BLOCK = SCENES / "crossed_beams.yaml", SCENES / "patch.yaml"
+PRESSED = ["supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_min, uz: 0}]",
+           "loads=[{surface: y_max, uy: -0.1}]", "contact=[{name: own, surfaces: all}]"]
 BUMPER_SPREAD = 5e-3  # of its force: the two formulations on its coarse mesh
 EXACT = 1e-6  # forces and pressures of the same problem written in another way
 SMOOTHED = 1e-3  # the smooth surface of a bent tip of four faces is not its faces: forces, and the largest pressure
@@ -187,7 +189,12 @@ def edges():
     leaves."""
     judged = run(args, BEAMS, out="judged", must=2)
     check.holds("the edge is named", "the edge of the nodes" in judged.text and "any.lower.upper" in judged.text)
-    check.holds("edges are said not to be served", "an edge against an edge has no contact" in judged.text and "[B136]" in judged.text)
+    check.holds("edges are said not to be served",
+                "an edge against an edge has no contact" in judged.text and "[B136]" in judged.text)
+    for order, text in ((1, "node to surface"), (2, "surface to surface")):
+        own = run(args, BLOCK, out=f"own{order}", overrides=[f"mesh.order={order}", "mesh.parameters.tet=1", *PRESSED])
+        check.holds(f"tetrahedra of order {order} on themselves: {text}",
+                    (", surface to surface" in own.text) == (order == 2))
     free = run(args, BEAMS, out="unjudged", overrides=["output.certificate=false"])
     check.holds("edges were not looked for", "edges that cross edges have no contact" in free.text)
 
