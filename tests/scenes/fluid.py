@@ -87,7 +87,7 @@ def closed(formulation, held, fluid, kind, *bounds):
 
 def seal(name, reference, *overrides):
     """The gasket of the jobs, the same on one rank, and stopped after each step and restarted. reference: leak pressure
-    with steps of dt_max: 0.001, which depends on the steps by less than a tenth of what FLUID_LEAK_STEP allows."""
+    with steps of dt_max: 0.001, as it depends on the steps."""
     whole = run(args, SEAL, out=name, overrides=overrides)
     figures = whole.summary()
     check.near(f"{name}: leak pressure, as with short steps", figures["fluids"][0]["leak_pressure"], reference,
