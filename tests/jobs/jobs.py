@@ -72,6 +72,10 @@ JOBS = [
     Job("ball_squashed", "rubber ball squashed by 30 %", [
         Answer("force", 83.935, 0.05, "limit"),
     ], steps=12, picture=["--mirror", "x"]),
+    Job("plunger", "plunger's head pushed into a syringe", [
+        Answer("push", 12.865, 0.7, "limit"),
+        Answer("grip", 64.386, 0.7, "limit"),
+    ], steps=12, picture=["--mirror", "x"]),
     Job("x_ring", "X-ring in a groove under a lid", [
         Answer("force", 239.11, 0.1, "limit"),
     ], steps=10, pairs=2),

@@ -20,7 +20,8 @@ def penalty(keys="", scale=0.01):
 def flat_block(formulation):
     """Pressed on a rigid plane the penetration is the pressure over the penalty; one update takes it to nothing."""
     common = (*PLANE, f"contact.0.formulation={formulation}")
-    soft = run(args, BLOCK, out=f"soft_{formulation}", overrides=(*common, "contact.0.penalty.scale=0.01")).steps()[-1]
+    deep = ("contact.0.penalty.scale=0.01", "certificate.penetration=10")  # deeper than what can be certified by itself
+    soft = run(args, BLOCK, out=f"soft_{formulation}", overrides=(*common, *deep)).steps()[-1]
     result = run(args, BLOCK, out=f"block_{formulation}", overrides=(*common, penalty()))
     state, figures = result.steps()[-1], result.summary()
     check.near(f"block, {formulation}: soft penetration", soft["max_penetration"], 10 / soft["penalty_max"], 1e-6 * 0.5)
