@@ -11,7 +11,8 @@
    integral is the projection of Dohrmann and Bochev (International Journal for Numerical Methods in Fluids 46, 2004).
    It makes the pair of displacements and pressures of equal order stable, and its error is of the order of the
    elements. In small strains the trace of the strain takes the place of J - 1, tau that of p, and tau / lambda that of
-   j - 1.
+   j - 1. The energy is the value of the Lagrangian. Where the pressures are in equilibrium, its derivative along a path
+   is the work of the forces.
 
    The nodes of an element are followed by as many nodes for the pressure. One component of the displacement of such a
    node is tau length / mu, with length and component of the KernelCase; the others do not count. The rows of the
@@ -45,6 +46,17 @@ LANES_INLINE Lanes Deviation(const BatchCall *call, const int n, const Lanes *vo
   const double part = (a == b ? 2. : 1.) / (n * (n + 1)) - 1. / (n * n);
 
   return *volume * part * (1 / call->mu + 1 / call->modulus);
+}
+
+/* The part of the Lagrangian that has the pressure, over the volume. `projection` is the last integral over it. */
+LANES_INLINE Lanes PressureEnergy(const BatchCall *call, const int n, const Pressure *x)
+{
+  const Lanes unit       = (Lanes){0} + 1;
+  Lanes       projection = {0};
+
+  for (int a = 0; a < n; a++)
+    for (int b = 0; b < n; b++) projection += Deviation(call, n, &unit, a, b) * x->tau[a] * x->tau[b] / 2;
+  return x->at.p * x->at.excess + x->mean * x->mean / (2 * call->modulus) - projection;
 }
 
 LANES_INLINE void AddPressureForce(const BatchCall *call, const int n, const int dim, const Lanes *volume,
@@ -100,7 +112,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int dim, const
   SetPressure(call, n, dim, &dilatation, &x);
   PointLaw(call, 0, H, &dilatation, call->W ? &energy : NULL, P, call->K ? c.A[0] : NULL);
   DilatationGradient(call, H, G);
-  if (call->W) LANE(call->W, 0) = volume * (energy + x.mean * x.mean / (2 * call->modulus));
+  if (call->W) LANE(call->W, 0) = volume * (energy + PressureEnergy(call, n, &x));
   if (call->H) NodalPressureStore(call, 0, H, &dilatation, &x.at);
   if (call->f) {
     for (int r = 0; r < 9; r++) P[r] = volume * (P[r] + x.at.p * G[r]);

@@ -105,7 +105,7 @@ LANES_INLINE void EvaluatePoint(const BatchCall *call, const int n, const int co
   PointLaw(call, q, H, &dilatation, call->W ? &energy : NULL, P, call->K ? c->A[q] : NULL);
   DilatationGradient(call, H, G);
   if (call->W)
-    LANE(call->W, 0) += volume * (energy + tau * tau / (2 * call->modulus) + gamma * x.excess * x.excess / 2);
+    LANE(call->W, 0) += volume * (energy + tau * tau / (2 * call->modulus) + (x.p - gamma * x.excess / 2) * x.excess);
   for (int r = 0; r < 9; r++) P[r] = volume * (P[r] + x.p * G[r]);
   if (call->f) AddForce(n, dim, hoop, q, c, P, call->f);
   if (call->f) AddPressureForce(call, n, corners, dim, &volume, N, &x);

@@ -142,6 +142,42 @@ static void TangentIsTheDerivative(void **state)
   assert_true(tested >= 2 * 6 * 7);
 }
 
+/* The force is the derivative of the energy, with the other sign in the rows of the pressures. */
+static void ForceIsTheDerivativeOfTheEnergy(void **state)
+{
+  const double h      = 1e-6;
+  int          tested = 0;
+
+  (void)state;
+  for (KernelCase kernel; NextCase(&kernel);) {
+    for (int stiff = 0; stiff < 2; stiff++) {
+      double W[2][KERNEL_LANES], scale = 0;
+      Case   c;
+
+      CaseCreate(&c, kernel, stiff ? infinite : 0.4);
+      Evaluate(&c, c.f, NULL);
+      for (int k = 0; k < c.dofs * KERNEL_LANES; k++) scale = fmax(scale, fabs(c.f[k]));
+      assert_true(isfinite(scale) && scale > 0);
+      for (int j = 0; j < c.dofs; j++) {
+        const int component = j % c.dim, pressure = j >= c.n * c.dim;
+
+        if (pressure && component != c.kernel.component) continue;
+        for (int side = 0; side < 2; side++) {
+          for (int lane = 0; lane < KERNEL_LANES; lane++) c.u[j * KERNEL_LANES + lane] += side ? -2 * h : h;
+          ElementKernel(&c.kernel, c.X, c.u, NULL, c.constants, NULL, W[side], NULL, NULL, c.J);
+        }
+        for (int lane = 0; lane < KERNEL_LANES; lane++) {
+          c.u[j * KERNEL_LANES + lane] += h;
+          assert_near(c.f[j * KERNEL_LANES + lane], (pressure ? -1 : 1) * (W[0][lane] - W[1][lane]) / (2 * h),
+                      1e-7 * scale);
+        }
+      }
+      tested++;
+    }
+  }
+  assert_true(tested >= 2 * 6 * 7);
+}
+
 /* In a uniform strain with the pressure of the law nothing acts on the pressures, and the stress is that of the law. */
 static void UniformStrainHasTheStressOfTheLaw(void **state)
 {
@@ -252,6 +288,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(TangentIsTheDerivative),
+    cmocka_unit_test(ForceIsTheDerivativeOfTheEnergy),
     cmocka_unit_test(UniformStrainHasTheStressOfTheLaw),
     cmocka_unit_test(OnlyDifferencesOfPressuresAreResisted),
     cmocka_unit_test(PressuresOfSecondOrderHaveForces),
