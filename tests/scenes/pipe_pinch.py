@@ -21,7 +21,8 @@ check.holds("20 steps, none failed", finished.summary()["steps"] == 20 and finis
 text = finished.text
 check.holds("a DMPlex on these ranks",
             re.search(rf"DM Object: mesh.*{args.ranks} MPI process", text) and re.search(r"type: plex", text))
-check.holds("newtonls with bt", re.search(r"type: newtonls", text) and re.search(r"type: bt", text))
+check.holds("newtonls with the model's line search", re.search(r"type: newtonls", text)
+            and re.search(r"SNESLineSearch Object.*\n *type: shell", text))
 check.holds("MUMPS", re.search(r"PC Object.*\n *type: shell\n.*mumps", text))
 for event in ("ContactSearch", "ContactProject", "ContactResidual", "ContactTangent", "ElasticResidual",
               "ElasticTangent", "SNESFunctionEval", "SNESJacobianEval"):
