@@ -1,6 +1,9 @@
 /* Memory that is free in the process and not in the system, see freememory.h. */
-#include <malloc.h>
+#include <stdlib.h>
 #include "base/freememory.h"
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 /*@
   FreeMemoryReturn - gives what this process has freed back to the system.

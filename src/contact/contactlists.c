@@ -183,9 +183,9 @@ static PetscErrorCode PairTakeNext(ContactPair *pair)
 /* Pressure of a term at a gap (force per area); negative: the term is open. */
 static PetscReal TermPressure(const ContactPair *pair, PetscInt c, PetscReal gap, PetscReal t)
 {
-  const PetscReal penalty = ContactPairPenaltyFactor(pair, t) * ContactTermPenalty(pair, c, pair->now.penalty[c]);
+  const LawState state = ContactTermState(pair, c, t, PETSC_MAX_REAL);
 
-  return pair->now.multiplier[c] + penalty * (ContactTermOffset(pair, c, t) - gap);
+  return pair->now.multiplier[c] + state.penalty * (state.offset - gap);
 }
 
 /* Largest penetration and largest pressure of the pair at the last residual, over all ranks. */

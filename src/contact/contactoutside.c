@@ -86,14 +86,10 @@ typedef struct {
 static void AddPressure(const ContactPair *pair, PetscInt c, PetscReal t_0, PairEnergy *energy)
 {
   const ContactState *accepted = &pair->accepted;
-  const PetscReal     fluid    = pair->carried ? pair->carried[c] : 0;
-  const LawState      now      = ContactTermState(pair, c, pair->t, pair->most),
-                 before        = {.penalty =
-                                    ContactPairPenaltyFactor(pair, t_0) * ContactTermPenalty(pair, c, accepted->penalty[c]),
-                                  .offset     = ContactTermOffset(pair, c, t_0),
-                                  .multiplier = accepted->multiplier[c] - fluid};
-  LawValue  value, then = {0, 0, 0};
-  PetscReal area, held, gap;
+  const LawState      now      = ContactTermState(pair, c, pair->t, pair->most);
+  const LawState      before   = ContactTermStateIn(pair, c, accepted, t_0, PETSC_MAX_REAL);
+  LawValue            value, then = {0, 0, 0};
+  PetscReal           area, held, gap;
 
   ContactTermLaw(pair, c, pair->t, &value, &gap, &area);
   if (PetscIsNanReal(gap)) return;

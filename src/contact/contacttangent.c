@@ -7,13 +7,12 @@
 static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
 {
   const ContactState *accepted = &pair->accepted;
-  const PetscReal     penalty  = ContactPairPenaltyFactor(pair, t) * ContactTermPenalty(pair, c, accepted->penalty[c]);
+  LawState            before;
 
   if (!pair->holding) return value->pressure;
-  if (pair->touching) return 0;
-  return accepted->status[c] == CONTACT_CLOSED
-           ? accepted->multiplier[c] + penalty * (ContactTermOffset(pair, c, t) - accepted->gap[c])
-           : 0;
+  if (pair->touching || accepted->status[c] != CONTACT_CLOSED) return 0;
+  before = ContactTermStateIn(pair, c, accepted, t, PETSC_MAX_REAL);
+  return accepted->multiplier[c] + before.penalty * (before.offset - accepted->gap[c]);
 }
 
 /* Finds the stiffness of the terms, 0 where they take no part, and the forces of slave points that turn with the

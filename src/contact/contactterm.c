@@ -201,45 +201,50 @@ PetscReal ContactPairPresence(const ContactPair *pair, PetscReal t)
   return pair->scene->presence.n ? HistoryValue(&pair->scene->presence, t) : 1;
 }
 
-/*@
-  ContactPairPenaltyFactor - returns the factor on the penalties of a pair of which only a part is there.
-
-  Not collective
-
-  Input Parameters:
-+ pair - the pair
-- t    - load parameter
-
-  Note:
-  The pair is a spring in series with its bodies. Where a part p is there, its stiffness is p / (1 - p) times theirs, so
-  that its force falls evenly with p where the bodies do not follow.
-@*/
-PetscReal ContactPairPenaltyFactor(const ContactPair *pair, PetscReal t)
+/* Factor on the penalties of a pair of which a part p is there. The pair is a spring in series with its bodies. Its
+   stiffness then is p / (1 - p) times theirs, so that its force falls evenly with p where the bodies do not follow. */
+static PetscReal PresenceFactor(PetscReal p)
 {
-  const PetscReal p = ContactPairPresence(pair, t);
-
   return PetscMax(p / (p + (1 - p) * PRESENCE_STIFF), PRESENCE_LEAST);
 }
 
 /*@
-  ContactTermState - builds what the law is to know of a term. Nobody else builds a LawState.
+  ContactTermStateIn - builds what the law is to know of a term in one of the pair's states. Nobody else builds a
+  LawState.
+
+  Not collective
+
+  Input Parameters:
++ pair  - the pair
+. c     - the term
+. state - the pair's present or accepted state, which gives penalty and multiplier
+. t     - load parameter of that state, for the offset and for the part of the pair that is there
+- most  - largest penalty that counts (force per length and area): pair->most for energy, forces and tangent, which
+         ContactSoften() may limit; PETSC_MAX_REAL for the penalty as it is
+@*/
+LawState ContactTermStateIn(const ContactPair *pair, PetscInt c, const ContactState *state, PetscReal t, PetscReal most)
+{
+  const PetscReal part = PresenceFactor(ContactPairPresence(pair, t));
+
+  return (LawState){.penalty    = part * PetscMin(most, ContactTermPenalty(pair, c, state->penalty[c])),
+                    .offset     = ContactTermOffset(pair, c, t),
+                    .multiplier = state->multiplier[c] - (pair->carried ? pair->carried[c] : 0)};
+}
+
+/*@
+  ContactTermState - builds what the law is to know of a term in the present state, as ContactTermStateIn() does.
 
   Not collective
 
   Input Parameters:
 + pair - the pair
 . c    - the term
-. t    - load parameter, for the offset
-- most - largest penalty that counts (force per length and area): pair->most for energy, forces and tangent, which
-         ContactSoften() may limit; PETSC_MAX_REAL for the penalty as it is
+. t    - load parameter
+- most - largest penalty that counts (force per length and area)
 @*/
 LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t, PetscReal most)
 {
-  const PetscReal part = ContactPairPenaltyFactor(pair, t);
-
-  return (LawState){.penalty    = part * PetscMin(most, ContactTermPenalty(pair, c, pair->now.penalty[c])),
-                    .offset     = ContactTermOffset(pair, c, t),
-                    .multiplier = pair->now.multiplier[c] - (pair->carried ? pair->carried[c] : 0)};
+  return ContactTermStateIn(pair, c, &pair->now, t, most);
 }
 
 /* Sets the law of an open term during a linear step. A term that was closed stays closed, with pressure or tension. A

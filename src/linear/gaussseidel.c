@@ -347,19 +347,13 @@ PetscErrorCode GaussSeidelSet(PC pc, PetscReal least, PetscReal largest)
   Not collective
 
   Input Parameter:
-. pc - after GaussSeidelSet()
-
-  Note:
-  Where options have replaced the preconditioner it does nothing.
+. pc - after GaussSeidelSet(), of which GaussSeidelGetMat() has given a matrix
 @*/
 PetscErrorCode GaussSeidelForget(PC pc)
 {
   GaussSeidel g;
-  PetscBool   ours;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &ours));
-  if (!ours) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PCShellGetContext(pc, &g));
   PetscCall(Reset(g));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -7,9 +7,8 @@ max(k d, P). Flat, with the force F and the moment M about the left end per dept
 at a = 3 (M - P L^2/2)/(F - P L) - 2 L. A wedge of slope s with its edge at c, which goes down only: the fluid P acts up
 to where k d = P; it leaks where that is the edge, F = P c + P^2/(2 k s)."""
 import math
-import subprocess
 
-from harness import Check, arguments, run, SCENES
+from harness import Check, arguments, run, run_in_parts, SCENES
 
 args = arguments(("cases", "few: quick ones", ("few", "all")))
 check = Check()
@@ -97,11 +96,7 @@ def seal(name, reference, *overrides):
     for key in "pressure", "wetted", "seal_pressure", "leak_t", "leak_pressure":
         check.near(f"{name}: as on one rank, {key}", figures["fluids"][0][key], alone["fluids"][0][key],
                    1e-9 * alone["fluids"][0][key])
-    stopped = run(args, SEAL, "-time_limit", "1e-9", out=f"{name}_stopped", overrides=overrides, must=3)
-    command = ["mpirun", "-n", str(args.ranks), args.burnish, "-restart", str(stopped.directory), "-time_limit", "1e-9"]
-    while subprocess.run(command, capture_output=True).returncode == 3:
-        pass
-    end = stopped.summary()
+    end = run_in_parts(args, SEAL, f"{name}_stopped", overrides).summary()
     check.holds(f"{name}: restarted", end["restarts"] > 1 and end["status"] == "done", str(end["restarts"]))
     check.holds(f"{name}: same steps", end["steps"] == figures["steps"], f"{end['steps']} {figures['steps']}")
     for key in "pressure", "wetted", "seal_pressure", "leak_t", "leak_pressure":

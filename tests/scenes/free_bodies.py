@@ -3,9 +3,8 @@ springs: a cylinder in a vee, which may roll, a ball in a cone, three balls in a
 a cord that a lid pushes to the floor, a load that comes later. What stays free to move is named, how far a body may
 have come. A restart goes on as if nothing had happened."""
 import math
-import subprocess
 
-from harness import Check, arguments, run, SCENES
+from harness import Check, arguments, run, run_in_parts, SCENES
 
 args = arguments()
 check = Check()
@@ -56,11 +55,7 @@ check.near("cord: what the lid presses the floor bears",
            cord.summary()["probes"]["lid"] + cord.summary()["probes"]["force"], 0, 1e-3 * 50)
 
 # Stopped after each step and restarted: the same end, bit by bit on one rank.
-stopped = run(args, SCENE, "-time_limit", "1e-9", out="stopped", must=3)
-for _ in range(20):
-    command = ["mpirun", "-n", str(args.ranks), args.burnish, "-restart", str(stopped.directory), "-time_limit", "1e-9"]
-    if subprocess.run(command, capture_output=True).returncode != 3:
-        break
+stopped = run_in_parts(args, SCENE, "stopped")
 end, whole = stopped.summary(), vee.summary()
 check.holds("stopped: goes on to the end", end["status"] == whole["status"] and end["restarts"] > 1, str(end["restarts"]))
 for key in ("steps", "newton_iterations"):

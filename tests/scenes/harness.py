@@ -101,7 +101,7 @@ def run(args, scene, *options, out="run", ranks=None, overrides=(), keep=False, 
 
 def run_in_parts(args, scene, out, overrides=(), most=200):
     """Runs a scene one step at a time, each from the checkpoint of the one before."""
-    part = run(args, scene, "-quiet", "-time_limit", "1e-9", out=out, overrides=overrides, must=None)
+    part = run(args, scene, "-quiet", "-time_limit", "1e-9", out=out, overrides=overrides, must=3)
     launcher = ["mpirun", "-n", str(args.ranks)] if args.ranks > 1 else []
     again = [*launcher, args.burnish, "-restart", str(part.directory), "-quiet", "-time_limit", "1e-9"]
     for _ in range(most):

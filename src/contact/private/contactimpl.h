@@ -194,8 +194,8 @@ PetscBool      ContactTermAtBound(const ContactPair *, PetscInt term);
 PetscInt       ContactTermId(const ContactPair *, PetscInt term);
 /* contactterm.c */
 PetscReal ContactPairPresence(const ContactPair *, PetscReal t);
-PetscReal ContactPairPenaltyFactor(const ContactPair *, PetscReal t);
 LawState  ContactTermState(const ContactPair *, PetscInt term, PetscReal t, PetscReal most);
+LawState  ContactTermStateIn(const ContactPair *, PetscInt term, const ContactState *, PetscReal t, PetscReal most);
 void      ContactTermLaw(const ContactPair *, PetscInt term, PetscReal t, LawValue *, PetscReal *gap, PetscReal *area);
 PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term,
                          PetscReal *area);
