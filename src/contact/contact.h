@@ -123,6 +123,7 @@ typedef struct {
   PetscReal slid;                        /* longest slip of a node so far, without the elastic one (length) */
   PetscReal dissipated;                  /* energy that friction has taken so far */
   PetscReal turned;                      /* part of it at nodes whose slip turned much within a step */
+  PetscReal travel;                      /* largest travel along the slave in a step so far, see ContactTravel() */
 } ContactFriction;
 
 /* The surfaces of a pair. */
@@ -184,6 +185,7 @@ PetscErrorCode ContactStiffenStick(Contact, int pair, PetscReal factor);
 PetscReal      ContactPairInitialPenalty(Contact, int pair);
 PetscReal      ContactPairStick(Contact, int pair);
 PetscErrorCode ContactPairFriction(Contact, int pair, ContactFriction *);
+PetscErrorCode ContactTravel(Contact, PetscReal *travel);
 PetscErrorCode ContactPairLoad(Contact, int pair, const PetscReal *u, ContactLoad *);
 PetscErrorCode ContactStifferForces(Contact, PenaltySource, PetscReal *f);
 PetscErrorCode ContactPairStifferForces(Contact, int pair, PenaltySource, PetscReal *f);

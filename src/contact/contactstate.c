@@ -56,6 +56,7 @@ PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to)
     to->stick      = from->stick;
     to->dissipated = from->dissipated;
     to->turned     = from->turned;
+    to->travel     = from->travel;
   }
   to->raised    = from->raised;
   to->lowered   = from->lowered;
@@ -105,6 +106,8 @@ static PetscErrorCode ArchiveFriction(ContactState *state, Archive archive, cons
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energies, 2, MPIU_REAL, MPIU_SUM, comm));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/stick", name));
   PetscCall(ArchiveReals(archive, path, 1, &state->stick));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/travel", name));
+  PetscCall(ArchiveReals(archive, path, 1, &state->travel));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/dissipated", name));
   PetscCall(ArchiveReals(archive, path, 2, energies));
   if (ArchiveLoads(archive)) {

@@ -21,6 +21,7 @@ typedef struct {
   PetscReal  stick;      /* factor on the automatic penalty of what sticks, the same on all ranks */
   PetscReal  dissipated; /* energy that friction has taken so far on this rank */
   PetscReal  turned;     /* part of it that nodes took whose slip turned much within a step */
+  PetscReal  travel;     /* largest travel of contact in a step so far, see ContactTravel(); the same on all ranks */
   PetscInt   augmented;  /* times that pressures became multipliers; on rank 0 */
   PetscInt   missed;     /* steps that ended beyond the bound after all updates; on rank 0 */
 } ContactState;

@@ -32,8 +32,8 @@ PetscErrorCode FrictionCreate(ContactPair *pair)
   PetscCall(PetscCalloc6(q, &f->face, 2 * q, &f->xi, 3 * q, &f->off, 3 * q, &f->place, q, &f->at, 3 * q, &f->force));
   PetscCall(PetscCalloc5(q, &f->foot, q, &f->facet, q, &f->known, q, &f->first, q, &f->lever));
   PetscCall(PetscCalloc1(pair->slaves->lever_ptr ? pair->slaves->lever_ptr[q] : 0, &f->lever_node));
-  PetscCall(
-    PetscCalloc6(n, &f->anchored, 2 * n, &f->kept, 2 * n, &f->heading, n, &f->began, n, &f->axis, n, &f->guide));
+  PetscCall(PetscCalloc7(n, &f->anchored, 2 * n, &f->kept, 2 * n, &f->heading, n, &f->began, n, &f->pressed, n,
+                         &f->axis, n, &f->guide));
   PetscCall(PetscCalloc5(3 * n, &f->nodal, n, &f->elastic, 3 * n, &f->traction, n, &f->status, n, &f->footless));
   for (PetscInt i = 0; i < q; i++) f->face[i] = f->facet[i] = f->at[i] = f->first[i] = -1;
   SearchKeepFaces(pair->search);
@@ -50,7 +50,7 @@ PetscErrorCode FrictionDestroy(Friction *friction)
   PetscCall(PetscFree6(f->face, f->xi, f->off, f->place, f->at, f->force));
   PetscCall(PetscFree5(f->foot, f->facet, f->known, f->first, f->lever));
   PetscCall(PetscFree(f->lever_node));
-  PetscCall(PetscFree6(f->anchored, f->kept, f->heading, f->began, f->axis, f->guide));
+  PetscCall(PetscFree7(f->anchored, f->kept, f->heading, f->began, f->pressed, f->axis, f->guide));
   PetscCall(PetscFree5(f->nodal, f->elastic, f->traction, f->status, f->footless));
   PetscCall(PetscFree(f->turns));
   PetscCall(PetscFree(*friction));
@@ -592,6 +592,7 @@ PetscErrorCode FrictionBegin(ContactPair *pair, PetscReal t, PetscReal t_next)
   PetscCall(SetStiffness(pair, t, t_next));
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) PetscCall(AnchorPoint(pair, q, t));
   for (PetscInt c = 0; c < pair->n; c++) PetscCall(BeginTerm(pair, c, t));
+  FrictionTravelBegin(pair, t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -956,6 +957,7 @@ PetscErrorCode ContactPairFriction(Contact contact, int p, ContactFriction *fric
                                 .dissipated    = sum[6],
                                 .sticking_area = sum[7],
                                 .turned        = sum[8],
+                                .travel        = pair->now.travel,
                                 .elastic       = most[0],
                                 .slid          = most[1]};
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -41,6 +41,10 @@
 /* Part of the energy of friction that nodes may take whose slip turns by more than 10 degrees within a step: the
    direction of their forces lags by about half of the angle. */
 #define ADVICE_TURNED 0.1
+/* Part of the force of a contact with friction at nodes that have come in within a step as others left, and the one
+   that shorter steps are to leave. On a rolling wheel the thrust is off by about as much. */
+#define ADVICE_TRAVEL        0.02
+#define ADVICE_TRAVEL_WANTED 0.01
 /* Part of the shear stress of a plastic flow that a step may lose, and the one that smaller steps are to leave. */
 #define ADVICE_FLOW        0.01
 #define ADVICE_FLOW_WANTED 0.003
@@ -150,6 +154,19 @@ static double SlipTurns(const RunFigures *figures, const PairFigures *pair, char
            "%s: %.2g %% of the energy of friction is taken where the slip turns by more than 10 degrees in a step",
            pair->name, (double)(100 * friction->turned / friction->dissipated));
   return 1;
+}
+
+static double ContactTravels(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  const double travel = (double)pair->friction.travel;
+
+  (void)figures;
+  if (!(travel > ADVICE_TRAVEL)) return 0;
+  snprintf(text, ADVICE_TEXT,
+           "%s: contact travels along the slave: nodes that come in within a step and stick bear up to %.2g %% of its "
+           "force, and forces of friction may be off by as much",
+           pair->name, 100 * travel);
+  return travel / ADVICE_TRAVEL_WANTED;
 }
 
 static double FacetsAreCoarse(const RunFigures *figures, const PairFigures *pair, char *text)
@@ -307,8 +324,8 @@ static double PathIsCoarse(const RunFigures *figures, char *text)
 {
   const EnergyFigures energy  = figures->last ? figures->last->energy : (EnergyFigures){0};
   const double        plastic = (double)energy.plastic, sum = (double)energy.elastic + plastic,
-               lost   = plastic + (double)energy.outer.friction, bodies = fabs((double)energy.work - sum),
-               outside = (double)EnergyApart(&energy);
+               lost = plastic + (double)energy.outer.friction, bodies = fabs((double)energy.work - sum),
+               outside  = (double)EnergyApart(&energy);
   const PetscBool inner = (PetscBool)(bodies > ADVICE_PATH * plastic && bodies > ADVICE_PATH_ELASTIC * sum),
                   outer = (PetscBool)(outside > ADVICE_PATH * lost && outside > ADVICE_PATH_ELASTIC * sum);
 
@@ -371,6 +388,7 @@ static const Situation situations[] = {
   {.pair = MasterStandsIn, .changes = {CHANGE_FINER_SLAVE, CHANGE_ROLES}},
   {.pair = PressuresScatter, .changes = {CHANGE_SURFACE, CHANGE_FINER_SLAVE}},
   {.pair = SlipTurns, .changes = {CHANGE_SHORTER}},
+  {.pair = ContactTravels, .changes = {CHANGE_TRAVEL}},
   {.pair = FacetsAreCoarse, .changes = {CHANGE_DIFFUSE, CHANGE_FINER_MASTER}},
   {.pair = FitsFallBack, .changes = {CHANGE_FINER_MASTER, CHANGE_SYMMETRY, CHANGE_DEGREE_2}},
   {.pair = FitsAreApart, .changes = {CHANGE_FINER_MASTER}},

@@ -19,6 +19,8 @@
 #define CHANGE_STICK_SLIP 0.001
 /* The preset of stepping.plastic_lag, from which a scene without a bound is counted. */
 #define CHANGE_LAG_BOUND 0.2
+/* The same of stepping.contact_travel. */
+#define CHANGE_TRAVEL_BOUND 0.02
 
 /* What a change moves. Changes of one axis add up or oppose each other. */
 typedef enum {
@@ -407,6 +409,14 @@ static void WriteLag(const ChangePlace *at, char *text, size_t size)
   WriteNumber("stepping", "plastic_lag", (bound > 0 ? bound : CHANGE_LAG_BOUND) / at->factor, text, size);
 }
 
+/* As it is with the lag, but that the preset is what is asked for where the scene names no bound. */
+static void WriteTravel(const ChangePlace *at, char *text, size_t size)
+{
+  const double bound = at->figures->scene->stepping.contact_travel;
+
+  WriteNumber("stepping", "contact_travel", bound > 0 ? bound / at->factor : CHANGE_TRAVEL_BOUND, text, size);
+}
+
 static int StopsEarly(const ChangePlace *at)
 {
   return at->figures->scene->stepping.dt_min > CHANGE_DT_MIN_NEAR;
@@ -535,6 +545,7 @@ static const Change changes[CHANGES] = {
   [CHANGE_SHORTER_MIN]    = {"stepping.dt_min", AXIS_STEP, -1, StopsEarly, WriteShorterMin},
   [CHANGE_FLOW]           = {"stepping.plastic_strain", AXIS_STEP, -1, MayBeShorter, WriteFlow},
   [CHANGE_LAG]            = {"stepping.plastic_lag", AXIS_STEP, -1, MayBeShorter, WriteLag},
+  [CHANGE_TRAVEL]         = {"stepping.contact_travel", AXIS_STEP, -1, PathMayBeFiner, WriteTravel},
   [CHANGE_PATH]           = {"stepping", AXIS_STEP, -1, PathMayBeFiner, WritePath},
   [CHANGE_MORE_NODES]     = {"stepping.N_c", AXIS_STEP, 1, CountsNodes, WriteMoreNodes},
   [CHANGE_LONGER]         = {"stepping", AXIS_STEP, 1, Always, WriteNothing},

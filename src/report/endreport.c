@@ -6,6 +6,8 @@
 /* The sides count as equal where the master's is less than this many times the slave's: where faces of both sides are
    in contact, they differ by curvature and round-off. */
 #define END_SIDES 1.01
+/* Part of the force of contact that nodes bear which have come in within a step, from which on it is told. */
+#define END_TRAVEL 0.001
 /* Penalties that are more than this many times what the run began with have been raised: a raise that was taken back
    leaves rounding. */
 #define END_RAISED 1.001
@@ -97,6 +99,12 @@ static void PrintFriction(const PairFigures *pair, FILE *stream)
   fprintf(stream, "slip so far up to %.3g, elastic slip up to %.3g", (double)friction->slid, (double)friction->elastic);
   if (total > 0) fprintf(stream, " (%.2g %% of both)", 100 * (double)friction->elastic / total);
   fprintf(stream, "; energy taken %.4g\n", (double)friction->dissipated);
+  if (friction->travel >= END_TRAVEL)
+    fprintf(
+      stream,
+      "         it travels along the slave: nodes that came into contact in a step and stick bear up to %.2g %% of "
+      "its force, and friction may be off by as much\n",
+      100 * (double)friction->travel);
   if (friction->footless)
     fprintf(stream,
             "         %lld of these nodes have points whose normal meets no face of the master: friction lacks there\n",

@@ -315,6 +315,7 @@ static void AddFriction(cJSON *pair, const PairFigures *figure)
   AddReal(map, "slip", friction->slid);
   AddReal(map, "dissipated", friction->dissipated);
   AddReal(map, "dissipated_turning", friction->turned);
+  AddReal(map, "travel", friction->travel);
 }
 
 static void AddContact(cJSON *json, const RunFigures *figures)

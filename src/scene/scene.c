@@ -136,11 +136,36 @@ static PetscErrorCode SceneReadBodies(Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads what bounds the steps of bodies that yield and of contact with friction. */
+static PetscErrorCode SceneReadBounds(Scene scene)
+{
+  Document       *document = SceneDocument(scene);
+  const PetscBool free     = (PetscBool)(scene->stepping.control != STEP_FIXED);
+  PetscBool       flows = PETSC_FALSE, rubs = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (int b = 0; b < scene->n_bodies; b++)
+    flows = (PetscBool)(flows || (!scene->bodies[b].rigid && scene->bodies[b].material.law == MATERIAL_VON_MISES));
+  for (int i = 0; i < scene->n_contacts; i++) rubs = (PetscBool)(rubs || scene->contacts[i].friction);
+  if (flows && (SchemaHas(document, "stepping.plastic_lag") || free))
+    scene->stepping.plastic_lag = SchemaReal(document, "stepping.plastic_lag");
+  if (rubs && (SchemaHas(document, "stepping.contact_travel") || free))
+    scene->stepping.contact_travel = SchemaReal(document, "stepping.contact_travel");
+  if (scene->stepping.plastic_strain > 0 && !flows)
+    PetscCall(SceneRefuse(scene, "stepping", "plastic_strain",
+                          "bounds plastic strains, which no body has; allowed: with law: von_mises", NULL));
+  if (SchemaHas(document, "stepping.plastic_lag") && !flows)
+    PetscCall(SceneRefuse(scene, "stepping", "plastic_lag",
+                          "bounds plastic flow, which no body has; allowed: with law: von_mises", NULL));
+  if (SchemaHas(document, "stepping.contact_travel") && !rubs)
+    PetscCall(SceneRefuse(scene, "stepping", "contact_travel",
+                          "bounds contact with friction, which no pair has; allowed: with friction", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneReadStepping(Scene scene)
 {
   Document *document = SceneDocument(scene);
-  PetscBool flows    = PETSC_FALSE;
-
   PetscFunctionBeginUser;
   if (SchemaHas(document, "stepping.N_c") && SchemaHas(document, "stepping.N_c_fraction"))
     PetscCall(SceneRefuse(scene, "stepping", "N_c_fraction", "stands beside N_c; allowed: one of them", NULL));
@@ -159,16 +184,7 @@ static PetscErrorCode SceneReadStepping(Scene scene)
   scene->stepping.growth           = SchemaReal(document, "stepping.growth");
   if (SchemaHas(document, "stepping.plastic_strain"))
     scene->stepping.plastic_strain = SchemaReal(document, "stepping.plastic_strain");
-  for (int b = 0; b < scene->n_bodies; b++)
-    flows = (PetscBool)(flows || (!scene->bodies[b].rigid && scene->bodies[b].material.law == MATERIAL_VON_MISES));
-  if (flows && (SchemaHas(document, "stepping.plastic_lag") || scene->stepping.control != STEP_FIXED))
-    scene->stepping.plastic_lag = SchemaReal(document, "stepping.plastic_lag");
-  if (scene->stepping.plastic_strain > 0 && !flows)
-    PetscCall(SceneRefuse(scene, "stepping", "plastic_strain",
-                          "bounds plastic strains, which no body has; allowed: with law: von_mises", NULL));
-  if (SchemaHas(document, "stepping.plastic_lag") && !flows)
-    PetscCall(SceneRefuse(scene, "stepping", "plastic_lag",
-                          "bounds plastic flow, which no body has; allowed: with law: von_mises", NULL));
+  PetscCall(SceneReadBounds(scene));
   if (scene->stepping.dt_min > scene->stepping.dt_max)
     PetscCall(SceneRefuse(scene, "stepping", "dt_min", "is above dt_max; allowed: dt_min <= initial <= dt_max", NULL));
   if (SchemaHas(document, "stepping.initial") &&

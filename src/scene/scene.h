@@ -261,6 +261,7 @@ typedef struct {
     int             predict_linearly; /* of control contact: 1 if one linear solve predicts, 0 if the solution does */
     double          plastic_strain;   /* largest growth of the equivalent plastic strain in a step; 0: no bound */
     double          plastic_lag;      /* largest part by which stresses lag behind plastic flow; 0: no bound */
+    double          contact_travel;   /* largest travel of a contact with friction in a step; 0: no bound */
     int             damped;           /* 1 if steps that fail are tried with a viscous restraint */
     int             n_at;
     double         *at; /* load parameters at which a step must end [n_at] */

@@ -4,14 +4,14 @@
 
 /* Load parameters that are closer than this are the same one; t runs from 0 to 1. */
 #define STEPPER_SAME_T 1e-12
-/* Steps aim at this part of the bounds on plastic flow, so that few are taken back. */
+/* Steps aim at this part of the bounds on plastic flow and on the travel of contact, so that few are taken back. */
 #define STEPPER_STRAIN 0.8
 /* Points that begin to flow in a step have no direction to compare with, so that the lag of their stresses is not
    known. In the mean over the step's plastic work they flow by at most so many times their elastic strain. An elastic
    strain that turns no longer matters then, and the next step can tell how the flow turns. */
 #define STEPPER_BEGUN 20
-/* A step that was shortened for its lag is to have at most this part of the lag of the attempt before, which was 1.4
-   times as long or longer. Else its length is not the cause, and shorter steps would not help. */
+/* A step that was shortened for its lag or its travel is to have at most this part of that of the attempt before, which
+   was 1.4 times as long or longer. Else its length is not the cause, and shorter steps would not help. */
 #define STEPPER_GAIN 0.9
 /* A failed step is tried again with this part of its dt. */
 #define STEPPER_CUT 0.5
@@ -28,6 +28,9 @@
 /* If the landing point is at most this many dt away, the way to it is halved, so that no very short step remains. */
 #define STEPPER_HALVE 2.0
 
+/* What bounds a step and may have another cause than its length */
+typedef enum { BOUND_LAG, BOUND_TRAVEL, BOUNDS } Bound;
+
 struct _n_LoadStepper {
   MPI_Comm             comm;
   Model                model;
@@ -42,8 +45,8 @@ struct _n_LoadStepper {
   void                *last_context;
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
-  PetscReal            used;   /* by the last attempt of this step, of what the bounds on plastic flow allow; 0: none */
-  PetscInt             damped; /* 1: the last accepted step was damped */
+  PetscReal            used[BOUNDS]; /* by the last attempt of this step, of what is allowed; 0: none */
+  PetscInt             damped;       /* 1: the last accepted step was damped */
   PetscBool            view;
 };
 
@@ -445,26 +448,70 @@ static PetscReal LagUsed(LoadStepper stepper, const PlasticPath *path, PetscReal
   return lag > 0 && work > 0 ? PetscMax(path->lag / lag, path->begun / STEPPER_BEGUN) / work : 0;
 }
 
-/* Says whether the bodies flow by no more than the scene allows in the step to the present solution, or dt is the
-   smallest one. A step that is taken back is followed by a shorter one, one that stays bounds the next dt. A step
-   stays, too, that is shorter than the attempt before and lags as much: its lag does not come from the length. */
-static PetscErrorCode LoadStepperBoundFlow(LoadStepper stepper, PetscReal dt, PetscReal *most, PetscBool *within)
+/* What the step uses of a bound that may have another cause than its length is new. Says whether the step stays: it
+   keeps to the bound, or was shortened for it in vain. */
+static PetscBool StepStays(LoadStepper stepper, Bound bound, PetscReal used)
+{
+  const PetscReal before = stepper->used[bound];
+
+  stepper->used[bound] = used;
+  return (PetscBool)(used <= 1 || (before > 0 && used > STEPPER_GAIN * before));
+}
+
+/* What the flow of the bodies in a step of dt to the present solution uses of what the scene allows, and whether the
+   step stays. */
+static PetscErrorCode LoadStepperFlow(LoadStepper stepper, PetscReal dt, PetscReal *used, PetscBool *stays)
 {
   const Model     model  = stepper->model;
-  const PetscReal before = stepper->used, strain = model->scene->stepping.plastic_strain;
-  PetscReal       growth, used;
+  const PetscReal strain = model->scene->stepping.plastic_strain;
+  PetscReal       growth, lag;
   PlasticPath     path;
 
   PetscFunctionBeginUser;
-  *most = stepper->size.dt_max;
-  if (!model->balance) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!(strain > 0 || model->scene->stepping.plastic_lag > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  *used  = 0;
+  *stays = PETSC_TRUE;
+  if (!model->balance || !(strain > 0 || model->scene->stepping.plastic_lag > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ElasticityPlasticPath(model->problem->elasticity, model->u, model->t, &path));
-  growth        = strain > 0 ? path.growth / strain : 0;
-  stepper->used = LagUsed(stepper, &path, dt);
-  used          = PetscMax(growth, stepper->used);
-  *within       = (PetscBool)(dt <= stepper->size.dt_min ||
-                        (growth <= 1 && (stepper->used <= 1 || (before > 0 && stepper->used > STEPPER_GAIN * before))));
+  growth = strain > 0 ? path.growth / strain : 0;
+  lag    = LagUsed(stepper, &path, dt);
+  *used  = PetscMax(growth, lag);
+  *stays = (PetscBool)(StepStays(stepper, BOUND_LAG, lag) && growth <= 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same of the travel of contact with friction. Pressures rise from the ends of a contact, so that the force which
+   comes in grows with the square of the way. The square root uses the bound in proportion to dt. */
+static PetscErrorCode LoadStepperTravel(LoadStepper stepper, PetscReal *used, PetscBool *stays)
+{
+  const Model     model = stepper->model;
+  const PetscReal bound = model->scene->stepping.contact_travel;
+  PetscReal       travel;
+
+  PetscFunctionBeginUser;
+  *used  = 0;
+  *stays = PETSC_TRUE;
+  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactTravel(model->contact, &travel));
+  if (!(bound > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  *used  = PetscSqrtReal(travel / bound);
+  *stays = StepStays(stepper, BOUND_TRAVEL, *used);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether bodies flow and contact travels by no more than the scene allows in the step to the present solution, or
+   dt is the smallest one. A step that is taken back is followed by a shorter one, one that stays bounds the next dt. A
+   step stays, too, that is shorter than the attempt before and uses as much: that does not come from the length. */
+static PetscErrorCode LoadStepperBound(LoadStepper stepper, PetscReal dt, PetscReal *most, PetscBool *within)
+{
+  PetscReal flow, travel, used;
+  PetscBool stays, remains;
+
+  PetscFunctionBeginUser;
+  *most = stepper->size.dt_max;
+  PetscCall(LoadStepperFlow(stepper, dt, &flow, &stays));
+  PetscCall(LoadStepperTravel(stepper, &travel, &remains));
+  used    = PetscMax(flow, travel);
+  *within = (PetscBool)(dt <= stepper->size.dt_min || (stays && remains));
   if (used > 0) *most = PetscMax(stepper->size.dt_min, STEPPER_STRAIN / used * dt);
   if (*within)
     *most = PetscMax(*most, STEPPER_CUT * dt);
@@ -508,14 +555,14 @@ static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says whether the control and the bound on plastic strain take a step that has converged. */
+/* Says whether the control and the bounds take a step that has converged. */
 static PetscErrorCode LoadStepperJudge(LoadStepper stepper, PetscReal dt, PetscReal *most, PetscBool *taken)
 {
   PetscFunctionBeginUser;
   *most  = 0;
   *taken = PETSC_TRUE;
   if (stepper->control->judge) PetscCall(stepper->control->judge(stepper->model, dt, &stepper->size, taken));
-  if (*taken) PetscCall(LoadStepperBoundFlow(stepper, dt, most, taken));
+  if (*taken) PetscCall(LoadStepperBound(stepper, dt, most, taken));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -534,9 +581,9 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   PetscInt        failures = 0;
 
   PetscFunctionBeginUser;
-  *advanced     = PETSC_FALSE;
-  stepper->used = 0;
-  *record       = (StepRecord){.step = report->steps + 1};
+  *advanced = PETSC_FALSE;
+  PetscCall(PetscArrayzero(stepper->used, BOUNDS));
+  *record = (StepRecord){.step = report->steps + 1};
   PetscCall(LoadStepperPredict(stepper, record));
   while (PETSC_TRUE) {
     const PetscReal end = StepEnd(stepper, t, stepper->size.dt, &clipped), dt = end - t;

@@ -38,6 +38,7 @@ typedef struct {
   PetscReal *kept;      /* 2 lengths */
   PetscReal *heading;   /* 2 components of the slip's direction then; 0 where the node did not slip */
   PetscReal *began;     /* its opening, where it was open (length) */
+  PetscReal *pressed;   /* its normal force then */
   PetscInt  *guide;     /* the slave point whose anchor gives the tangents; -1: none */
   int       *axis;      /* of an analytic tool: that which gives the tangents */
   PetscReal *force;     /* 3 for each slave point, in the last residual */

@@ -1,0 +1,71 @@
+/* How far contact with friction travels along its slave in a step. A term that was open when the step began counts slip
+   from the touch only (frictionlaw.h), and what that is in a long step is not known well: a node that sticks from then
+   on loses part of its slip. This matters where contact goes on along the slave, as where a wheel rolls: nodes come in
+   at one end and leave at the other. */
+#include "contactimpl.h"
+
+/* The normal force of a term in the state of the last projection. */
+static PetscReal TermForce(const ContactPair *pair, PetscInt c, PetscReal t)
+{
+  LawValue  value;
+  PetscReal area;
+
+  ContactTermLaw(pair, c, t, &value, NULL, &area);
+  return value.stiffness > 0 && value.pressure > 0 ? value.pressure * area : 0;
+}
+
+/* Remembers how the terms press where a step begins. */
+void FrictionTravelBegin(ContactPair *pair, PetscReal t)
+{
+  for (PetscInt c = 0; c < pair->n; c++) pair->friction->pressed[c] = TermForce(pair, c, t);
+}
+
+/* The part of the force of a pair at nodes that came into contact in the step and stick now, or at nodes that left it
+   where that is less. Where contact only grows, or only shrinks, it does not travel. */
+static PetscErrorCode PairTravel(const ContactPair *pair, PetscReal t, PetscReal *travel)
+{
+  PetscReal sum[4] = {0, 0, 0, 0}; /* before, of it left; now, of it come in */
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    const PetscReal before = pair->friction->pressed[c], now = TermForce(pair, c, t);
+
+    sum[0] += before;
+    sum[1] += now > 0 ? 0 : before;
+    sum[2] += now;
+    sum[3] += before > 0 || pair->now.slips[c] ? 0 : now;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPIU_SUM, pair->mesh->comm));
+  *travel = sum[0] > 0 && sum[2] > 0 ? PetscMin(sum[1] / sum[0], sum[3] / sum[2]) : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactTravel - says how far contact with friction has travelled along its slave since the step began.
+
+  Collective
+
+  Input Parameter:
+. contact - in the state of the last residual
+
+  Output Parameter:
+. travel - the largest one of the pairs, a part of the force of contact; 0 without friction
+
+  Note:
+  The largest travel so far becomes part of the pairs' present state.
+@*/
+PetscErrorCode ContactTravel(Contact contact, PetscReal *travel)
+{
+  PetscFunctionBeginUser;
+  *travel = 0;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+    PetscReal    own;
+
+    if (!pair->friction) continue;
+    PetscCall(PairTravel(pair, pair->t, &own));
+    pair->now.travel = PetscMax(pair->accepted.travel, own);
+    *travel          = PetscMax(*travel, own);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
