@@ -14,10 +14,24 @@ static PetscReal TermForce(const ContactPair *pair, PetscInt c, PetscReal t)
   return value.stiffness > 0 && value.pressure > 0 ? value.pressure * area : 0;
 }
 
+/* The normal force of a term in the accepted state. Its gap then counts: new lists and offsets give another one. */
+static PetscReal AcceptedForce(const ContactPair *pair, PetscInt c, PetscReal t)
+{
+  const LawState  state = ContactTermState(pair, c, t, pair->most);
+  const PetscReal gap   = pair->accepted.gap[c];
+  LawValue        value = {0, 0, 0};
+  PetscReal       area;
+
+  if (pair->accepted.status[c] == CONTACT_OPEN || PetscIsNanReal(gap)) return 0;
+  (void)ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
+  pair->law->evaluate(gap, &state, &value);
+  return PetscMax(0, value.pressure) * area;
+}
+
 /* Remembers how the terms press where a step begins. */
 void FrictionTravelBegin(ContactPair *pair, PetscReal t)
 {
-  for (PetscInt c = 0; c < pair->n; c++) pair->friction->pressed[c] = TermForce(pair, c, t);
+  for (PetscInt c = 0; c < pair->n; c++) pair->friction->pressed[c] = AcceptedForce(pair, c, t);
 }
 
 /* The part of the force of a pair at nodes that came into contact in the step and stick now, or at nodes that left it
