@@ -860,8 +860,8 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
   for (PetscInt c = 0; c < pair->n; c++) {
     FrictionInput    in;
     FrictionTraction out  = {.state = FRICTION_STICKS};
-    PetscReal        area = 0;
-    PetscBool        acts;
+    PetscReal        area = 0, energy;
+    PetscBool        acts, leaves;
 
     PetscCall(FrictionTerm(pair, c, t, &in, &out, &acts));
     PetscCall(TermLacksFeet(pair, c, t, &pair->friction->footless[c]));
@@ -877,14 +877,11 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
     pair->friction->elastic[c] = acts ? out.elastic : 0;
     now->slips[c]              = (PetscBool)(acts && out.state == FRICTION_SLIPS);
     now->slid[c]               = accepted->slid[c] + (acts ? out.slipped : 0);
-    if (acts) {
-      const PetscReal energy =
-        area * out.slipped *
-        PetscSqrtReal(PetscSqr(out.traction[0]) + PetscSqr(out.traction[1]) + PetscSqr(out.traction[2]));
-
-      now->dissipated += energy;
-      if (HasTurned(pair, c, &in, &out)) now->turned += energy;
-    }
+    leaves                     = (PetscBool)(!acts && FrictionTermLeaves(pair, c));
+    if (leaves) PetscCall(FrictionTermAsk(pair, c, t, &in, &leaves));
+    energy = acts || leaves ? FrictionTermEnergy(pair, c, &in, acts ? &out : NULL, area) : 0;
+    now->dissipated += energy;
+    if (acts && HasTurned(pair, c, &in, &out)) now->turned += energy;
   }
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
     const PetscReal *F = &pair->friction->force[3 * q];

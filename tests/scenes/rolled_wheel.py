@@ -4,6 +4,8 @@ from harness import SCENES, Check, arguments, run
 
 # Thrust at the end: -2.5618, -2.5612 and -2.5609 in 100, 200 and 400 steps of one length.
 THRUST = -2.561
+# Energy that friction takes: 1.2622 and 1.2630 in 100 and 200 of them.
+ENERGY = 1.263
 args = arguments()
 check = Check()
 wheel = SCENES / "rolled_wheel.yaml"
@@ -13,6 +15,7 @@ check.holds("it is done without a failed step",
             rolled.status == 0 and rolled.summary()["steps_failed"] == 0, f"{rolled.summary()['steps']} steps")
 check.holds("travel is found and kept small", 0.005 < travel < 0.04, f"{travel:.4f}")
 check.near("thrust", rolled.steps()[-1]["thrust"], THRUST, travel * abs(THRUST))
+check.near("energy taken", rolled.summary()["contact"][0]["friction"]["dissipated"], ENERGY, travel * ENERGY)
 check.holds("the last screen tells it", "it travels along the slave" in rolled.text)
 # Steps of one length have no bound but one that is asked for.
 fixed = run(args, wheel, out="fixed", overrides=["stepping={control: fixed, initial: 0.1}"])
@@ -25,6 +28,10 @@ check.holds("advice of a bound", len(lines) == 1, str(fixed.summary()["advice"])
 # A contact that only presses does not travel.
 pressed = run(args, wheel, "-quiet", out="pressed", overrides=["stepping={control: fixed, initial: 0.1}",
                                                                "loads.0.ux=0", "loads.0.uy=-1"])
+surface = run(args, wheel, "-quiet", out="surface", overrides=["contact.0.formulation=surface_to_surface"])
+travel = surface.summary()["contact"][0]["friction"]["travel"]
+# 2.5469 in 200 steps of one length
+check.near("thrust, surface to surface", surface.steps()[-1]["thrust"], -2.547, max(travel, 0.005) * 2.547)
 check.holds("pressed alone: no travel", pressed.summary()["contact"][0]["friction"]["travel"] == 0)
 refused = run(args, wheel, out="smooth", must=1,
               overrides=["contact.0.friction={mu: 0}", "stepping.contact_travel=0.1"])

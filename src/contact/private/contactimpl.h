@@ -9,8 +9,8 @@
    The files call each other downwards in this order: contactwork (room), contactpair, contactcorners, contactfaces and
    contactterm (a pair, the terms of its sharp edges and faces, one of its terms), contacttool (a tool with unknowns),
    contactpoint (one slave point), contactvariation (first variations that are kept), contactprojection (gaps of all
-   points), contactvectors (first variations over dofs), frictiontravel, friction, frictionstep, frictiontangent,
-   contactresidual, contacttangent, contactlists, contact. */
+   points), contactvectors (first variations over dofs), frictiontravel, frictionenergy, friction, frictionstep,
+   frictiontangent, contactresidual, contacttangent, contactlists, contact. */
 #pragma once
 #include "matrix/blockmatrix.h"
 #include "contact/activeset.h"
@@ -249,6 +249,9 @@ PetscErrorCode FrictionDestroy(Friction *);
 PetscErrorCode FrictionForget(const ContactPair *);
 PetscErrorCode FrictionBegin(ContactPair *, PetscReal t, PetscReal t_next);
 void           FrictionTravelBegin(ContactPair *, PetscReal t);
+PetscBool      FrictionTermLeaves(const ContactPair *, PetscInt term);
+PetscReal      FrictionTermEnergy(const ContactPair *, PetscInt term, const FrictionInput *, const FrictionTraction *,
+                                  PetscReal area);
 PetscErrorCode FrictionAnchorLate(ContactPair *, PetscReal t, PetscBool *made);
 void           FrictionAnchorFrame(const ContactPair *, PetscInt q, FrictionFrame *);
 PetscErrorCode FrictionTerm(const ContactPair *, PetscInt term, PetscReal t, FrictionInput *, FrictionTraction *,
