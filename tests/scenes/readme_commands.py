@@ -48,8 +48,9 @@ CHECKED = {
 
 # Run in the full set only: as the page shows them (None), or with less to do
 FULL = {
-    "mpirun -n 2 build/burnish runs/saddle.yaml": None,
-    f"{PYTHON} scripts/render.py out/saddle --field pressure --units mm,MPa --up z --view=-35,40": None,
+    "build/burnish -check bearing.yaml": None,
+    "mpirun -n 2 build/burnish bearing.yaml": None,
+    f"{PYTHON} scripts/render.py out/bearing --field pressure --arrows --up z --view=-35,40": None,
     f"{PYTHON} scripts/render.py out/roller --mirror x": None,
     f"{PYTHON} scripts/plot.py out/roller": None,
     f"{PYTHON} scripts/plot.py out/stiff out/roller": None,
