@@ -1,5 +1,5 @@
 # Burnish: `make help` lists the targets. Variables: BUILD (folder), ARCH (-march), CFLAGS, PETSC_DIR, PETSC_ARCH,
-# PREFIX, SANITIZE and JOBS (number of runs of a study at a time).
+# PREFIX, SANITIZE, JOBS (number of runs of a study at a time) and V=1 (prints the compile lines).
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
 
@@ -19,6 +19,14 @@ ifdef SANITIZE
   CFLAGS := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined
   LDLIBS = tests/sanitize.c -rdynamic
 endif
+
+# One target and what it needs are compiled on all cores, unless -j says how many. Several targets run one after the other.
+COMPILED := deps clean all tests
+WAITING  := demo check test study bench install
+ifeq ($(filter-out $(COMPILED) $(WAITING),$(MAKECMDGOALS))$(word 2,$(filter $(WAITING),$(MAKECMDGOALS))),)
+  MAKEFLAGS += -j$(shell env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 1)
+endif
+Q := $(if $(V),,@)
 
 # PETSc is found by PETSC_DIR and PETSC_ARCH, or else by pkg-config. HDF5 is the one that PETSc was built with.
 ifdef PETSC_DIR
@@ -62,22 +70,26 @@ BENCHES   := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/
 all: $(BURNISH) ## builds build/burnish
 
 $(BURNISH): $(BUILD)/obj/main.o $(LIBRARY)
-	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LINK)
+	@echo "link $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LINK)
 
 $(LIBRARY): $(OBJECTS)
 	@rm -f $@
-	$(AR) rcs $@ $^
+	@echo "archive $@"
+	$(Q)$(AR) rcs $@ $^
 
 $(BUILD)/obj/%.o: src/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(COMPILE) -iquote $(<D)/private -MMD -MP -c -o $@ $<
+	@echo "compile $<"
+	$(Q)$(COMPILE) -iquote $(<D)/private -MMD -MP -c -o $@ $<
 
 tests: $(TESTS) $(BENCHES)
 
 define program # $(1): source folder, $(2): folder of the program
 $(2)/%: $(1)/%.c $(LIBRARY) $(BUILD)/flags
 	@mkdir -p $$(@D)
-	$$(COMPILE) $(PRIVATES) -MMD -MP -o $$@ $$< $(LIBRARY) $$(CMOCKA) $$(LINK)
+	@echo "compile $$<"
+	$$(Q)$$(COMPILE) $(PRIVATES) -MMD -MP -o $$@ $$< $(LIBRARY) $$(CMOCKA) $$(LINK)
 endef
 $(eval $(call program,tests/unit,$(BUILD)/tests))
 $(eval $(call program,tests/mpi,$(BUILD)/tests))
@@ -88,7 +100,8 @@ $(eval $(call program,tests/bench,$(BUILD)/bench))
 # A program that uses the library is compiled with include/ and without src/.
 $(BUILD)/tests/%: tests/library/%.c $(LIBRARY) $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) $(CPPFLAGS) -Iinclude $(call pkgconfig,--cflags-only-I PETSc) -MMD -MP -o $@ $< $(LIBRARY) $(LINK)
+	@echo "compile $<"
+	$(Q)$(CC) $(ALL_CFLAGS) $(CPPFLAGS) -Iinclude $(call pkgconfig,--cflags-only-I PETSc) -MMD -MP -o $@ $< $(LIBRARY) $(LINK)
 
 # Everything is compiled again when the compile or link line changes, for example with another PETSc. Targets that are
 # asked for together with deps or clean wait for these, also with make -j.

@@ -72,6 +72,18 @@ missing() {
   for thing in $order; do "has_$thing" >/dev/null 2>&1 || echo "$thing"; done
 }
 
+watched() { # runs a command into the log; shows every ten seconds where it is
+  local pid count=0
+  "$@" >>"$log" 2>&1 &
+  pid=$!
+  while kill -0 "$pid" 2>/dev/null; do
+    sleep 0.5
+    count=$((count + 1))
+    [ $((count % 20)) -ne 0 ] || printf '%8d s  %.70s\n' $((count / 2)) "$(tail -n 1 "$log")"
+  done
+  wait "$pid"
+}
+
 install_missing() { # through apt; $*: names of things
   local as_root="" thing names=()
   for thing in "$@"; do
@@ -84,10 +96,10 @@ install_missing() { # through apt; $*: names of things
     { echo "make deps: neither root nor sudo; to be installed: ${names[*]}" >&2; return 1; }
   echo "make deps: installing ${names[*]}"
   apt_install() {
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${names[@]}" >>"$log" 2>&1
+    watched $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${names[@]}"
   }
   if ls /var/lib/apt/lists/*_Packages* >/dev/null 2>&1; then apt_install && return; fi
-  $as_root apt-get update >>"$log" 2>&1
+  watched $as_root apt-get update
   apt_install || { tail -n 20 "$log" >&2; return 1; }
 }
 
@@ -96,8 +108,8 @@ make_environment() {
     cmp -s scripts/requirements.txt $venv/requirements.txt && return
   echo "make deps: Python packages into $venv"
   rm -rf $venv
-  "$(python_found)" -m venv $venv >>"$log" 2>&1 &&
-    $venv/bin/python -m pip install --quiet --disable-pip-version-check -r scripts/requirements.txt >>"$log" 2>&1 &&
+  watched "$(python_found)" -m venv $venv &&
+    watched $venv/bin/python -m pip install --disable-pip-version-check -r scripts/requirements.txt &&
     cp scripts/requirements.txt $venv/ || { tail -n 20 "$log" >&2; return 1; }
 }
 

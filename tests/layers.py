@@ -20,17 +20,17 @@ import sys
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 
 
-def symbols(path):
-    """Global symbols that an object file defines, and those that it wants."""
-    text = subprocess.run(["nm", str(path)], capture_output=True, text=True, check=True).stdout
-    defined, wanted = set(), set()
+def symbols(objects):
+    """Global symbols that each object file defines, and those that it wants; nm reads all files in one call."""
+    text = subprocess.run(["nm", "-A", *map(str, objects)], capture_output=True, text=True, check=True).stdout
+    found = {path: (set(), set()) for path in objects}
+    by_name = {str(path): path for path in objects}
     for line in text.splitlines():
-        *_, kind, name = line.split()
-        if kind == "U":
-            wanted.add(name)
-        elif kind in "TDRBVWC":
-            defined.add(name)
-    return defined, wanted
+        name, _, rest = line.partition(":")
+        *_, kind, symbol = rest.split()
+        if kind == "U" or kind in "TDRBVWC":
+            found[by_name[name]][kind == "U"].add(symbol)
+    return found
 
 
 def circles(graph):
@@ -78,7 +78,7 @@ class Layers:
 
     def check_calls(self):
         found = sorted(self.objects.rglob("*.o"))
-        units = {o.relative_to(self.objects).with_suffix(""): symbols(o) for o in found}
+        units = {o.relative_to(self.objects).with_suffix(""): names for o, names in symbols(found).items()}
         units = {u: s for u, s in units.items() if (self.src / u).with_suffix(".c").exists()}  # no leftovers of builds
         owner = {symbol: u for u, (defined, _) in units.items() for symbol in defined}
         graph = collections.defaultdict(set, {u: set() for u in units})

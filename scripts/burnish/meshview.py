@@ -36,6 +36,7 @@ SIDES = {
     6: [(0, 3), (3, 1), (1, 4), (4, 2), (2, 5), (5, 0)],
     9: [(0, 4), (4, 1), (1, 5), (5, 2), (2, 6), (6, 3), (3, 7), (7, 0)],
 }
+SHARP = 0.8  # cosine of the angle between faces beyond which their side is an edge of the body
 
 
 @dataclasses.dataclass
@@ -114,6 +115,29 @@ def read_skin(path):
     lines, first, count = numpy.unique(lines, axis=0, return_index=True, return_counts=True)
     return Skin(nodes, numpy.concatenate(triangles), numpy.concatenate(triangle_body), lines, line_body[first],
                 count == 1, plane)
+
+
+def read_cells(path):
+    """Element name, cells and bodies of each kind of element in a run's results.h5."""
+    with h5py.File(path, "r") as file:
+        return cells_of(file)
+
+
+def outline(nodes, triangles, towards):
+    """Sides of outer triangles at which a body has an edge, and those behind which a viewer in a direction sees no more
+    of it."""
+    a, b, c = (nodes[triangles[:, i]] for i in range(3))
+    normal = numpy.cross(b - a, c - a)
+    normal /= numpy.maximum(numpy.linalg.norm(normal, axis=1, keepdims=True), numpy.finfo(float).tiny)
+    sides = numpy.sort(numpy.concatenate([triangles[:, pair] for pair in ((0, 1), (1, 2), (2, 0))]), axis=1)
+    owner = numpy.tile(numpy.arange(len(triangles)), 3)
+    order = numpy.lexsort((sides[:, 1], sides[:, 0]))
+    sides, owner = sides[order], owner[order]
+    twice = numpy.flatnonzero((sides[1:] == sides[:-1]).all(axis=1))
+    first, second = normal[owner[twice]], normal[owner[twice + 1]]
+    bent = (first * second).sum(axis=1) < SHARP
+    rim = (first @ towards > 0) != (second @ towards > 0)
+    return sides[twice[bent | rim]]
 
 
 def read_tools(path, plane):

@@ -107,6 +107,12 @@ class Canvas:
         touched[row[visible], column[visible]] = True
         self.colour[touched] *= EDGE
 
+    def sees(self, x):
+        """Whether nothing that is drawn hides points."""
+        places = self.pixels(x)
+        column, row = (numpy.clip(numpy.rint(places[:, k]).astype(int), 0, self.size[k] - 1) for k in (0, 1))
+        return places[:, 2] + self.near > self.depth[row, column]
+
     def image(self):
         """The picture, first row below."""
         rows, columns = self.size[1] // 2, self.size[0] // 2

@@ -59,5 +59,6 @@ class Results:
         return plot.draw([self.directory], x, file)
 
     def draw(self, field=None, file=None, **options):
-        """Draws pictures; options are those of render.py: step, view, up, mirror, units, animate, width."""
+        """Draws pictures; options are those of render.py: step, view, up, mirror, units, cut (axis and value),
+        undeformed, arrows, animate, width."""
         return render.draw(self.directory, field=field, file=file, **options)

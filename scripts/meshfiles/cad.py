@@ -2,8 +2,9 @@
 surfaces its faces; in the plane, bodies are faces and surfaces are curves. All have names: `volume_N`, `surface_N` and
 `curve_N` by gmsh's number, the labels of the file, and the names that the scene gives to surfaces by a point on them.
 
-read_cad() is the reader. Its options are a map: size (length, or null), order, and surfaces: maps of name, point, body
-and size."""
+read_cad() is the reader, list_cad() tells the names. Their options are a map: size (length, or null), order, and
+surfaces: maps of name, point, body and size."""
+import contextlib
 import math
 
 import numpy
@@ -238,24 +239,34 @@ class Cad:
                             "of the geometry in the CAD program") from None
 
 
-def read_cad(file, dim, options):
-    """Reads the geometry and meshes it. The mesh has the attribute `geometry`: rows of (dimension, names, centre, size
-    of the entity) for a list."""
+@contextlib.contextmanager
+def opened(file, dim, options):
+    """The geometry of a file as a Cad, as long as gmsh has it."""
     import gmsh
-
-    from meshfiles.libraries import mesh_of_entities
 
     gmsh.initialize(readConfigFiles=False)
     gmsh.option.setNumber("General.Verbosity", 0)
     gmsh.logger.start()
     try:
-        cad = Cad(gmsh, file, dim, options)
-        rows = [(entity[0], cad.names[entity], gmsh.model.occ.getCenterOfMass(*entity), gmsh.model.occ.getMass(*entity))
-                for entity in [*cad.bodies, *cad.surfaces]]
-        cad.mesh()
-        mesh = mesh_of_entities(gmsh, dim, cad.names)
-        mesh.notes += cad.notes
-        mesh.geometry = rows
-        return mesh
+        yield Cad(gmsh, file, dim, {"order": 2, "surfaces": [], **options})
     finally:
         gmsh.finalize()
+
+
+def list_cad(file, dim, options):
+    """Bodies and surfaces without a mesh: rows of (dimension, names, centre, size of the entity)."""
+    with opened(file, dim, options) as cad:
+        measure = cad.gmsh.model.occ
+        return [(entity[0], cad.names[entity], measure.getCenterOfMass(*entity), measure.getMass(*entity))
+                for entity in [*cad.bodies, *cad.surfaces]]
+
+
+def read_cad(file, dim, options):
+    """Reads the geometry and meshes it."""
+    from meshfiles.libraries import mesh_of_entities
+
+    with opened(file, dim, options) as cad:
+        cad.mesh()
+        mesh = mesh_of_entities(cad.gmsh, dim, cad.names)
+        mesh.notes += cad.notes
+        return mesh

@@ -18,6 +18,12 @@ static const unsigned char CellTypes[ELEMENT_TYPES] = {
   [ELEMENT_QUAD9] = 28, [ELEMENT_TET4] = 10,  [ELEMENT_TET10] = 24, [ELEMENT_HEX8] = 12, [ELEMENT_HEX27] = 29,
 };
 
+/* The numbers by which XDMF knows the types of elements */
+static const unsigned char XdmfTypes[ELEMENT_TYPES] = {
+  [ELEMENT_TRI3] = 4, [ELEMENT_TRI6] = 36,  [ELEMENT_QUAD4] = 5, [ELEMENT_QUAD9] = 35,
+  [ELEMENT_TET4] = 6, [ELEMENT_TET10] = 38, [ELEMENT_HEX8] = 9,  [ELEMENT_HEX27] = 50,
+};
+
 /* The tables with one row for each step. Those with two dimensions have one column. */
 static const struct {
   const char *name;
@@ -249,6 +255,55 @@ static PetscErrorCode LinkConnectivity(Part *part)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Entries of a virtual dataset of one dimension are a column of another dataset: the first one is `skip` behind the
+   next row, the others `stride` apart. */
+static PetscErrorCode VirtualSpread(Virtual *all, const char *path, hsize_t rows, int columns, int column, int skip,
+                                    int stride)
+{
+  const hsize_t size[2] = {rows, (hsize_t)columns}, start[2] = {0, (hsize_t)column}, one[2] = {rows, 1};
+  const hsize_t to = all->at + (hsize_t)skip, step = (hsize_t)stride;
+  hid_t         source;
+
+  PetscFunctionBeginUser;
+  CallHDF5(source = H5Screate_simple(columns > 1 ? 2 : 1, size, NULL));
+  CallHDF5(H5Sselect_hyperslab(source, H5S_SELECT_SET, start, NULL, one, NULL));
+  CallHDF5(H5Sselect_hyperslab(all->space, H5S_SELECT_SET, &to, &step, &rows, NULL));
+  CallHDF5(H5Pset_virtual(all->properties, all->space, ".", path, source));
+  CallHDF5(H5Sclose(source));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Cells of bodies of several types as XDMF has them in one table, /mesh/cells_mixed: of each cell the number of its
+   type, of /mesh/xdmf_types_b for block b, and its nodes. */
+static PetscErrorCode LinkMixedCells(Part *part)
+{
+  hsize_t entries = 0;
+  Virtual all;
+  hid_t   types;
+  char    path[DATASET_PATH_SIZE];
+
+  PetscFunctionBeginUser;
+  for (int b = 0; b < part->index->n_blocks && !part->index->blocks[b].tool; b++)
+    entries += (hsize_t)(part->index->blocks[b].n * (1 + ElementGet(part->index->blocks[b].type)->nodes));
+  PetscCall(VirtualBegin(&all, H5T_NATIVE_INT64, entries, 1));
+  for (int b = 0; b < part->index->n_blocks && !part->index->blocks[b].tool; b++) {
+    const FieldsBlock *block = &part->index->blocks[b];
+    const hsize_t      n     = (hsize_t)block->n;
+    const int          nodes = ElementGet(block->type)->nodes;
+
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/xdmf_types_%d", b));
+    PetscCall(CreateTable(part->file, path, H5T_NATIVE_INT64, n, &types));
+    PetscCall(WriteSeries(types, 0, n, XdmfTypes[block->type], 0));
+    CallHDF5(H5Dclose(types));
+    PetscCall(VirtualSpread(&all, path, n, 1, 0, 0, nodes + 1));
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/block_%d", b));
+    for (int i = 0; i < nodes; i++) PetscCall(VirtualSpread(&all, path, n, nodes, i, i + 1, nodes + 1));
+    all.at += n * (hsize_t)(nodes + 1);
+  }
+  PetscCall(VirtualEnd(&all, part->file, "/mesh/cells_mixed"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A table that grows by a row with each step */
 static PetscErrorCode CreateStepTable(hid_t steps, const char *path, hid_t type, int dimensions)
 {
@@ -285,6 +340,7 @@ static PetscErrorCode CreatePart(Part *part)
   PetscCall(LinkPoints(part));
   PetscCall(LinkConnectivity(part));
   PetscCall(WriteCells(part));
+  if (FieldsOneType(part->index) == ELEMENT_TYPES) PetscCall(LinkMixedCells(part));
   CallHDF5(steps = H5Gcreate2(part->vtk, "Steps", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   PetscCall(CreateStepTable(steps, "Values", H5T_NATIVE_DOUBLE, 1));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(StepTables); k++)

@@ -1,4 +1,4 @@
-/* The text through which ParaView reads results.vtkhdf, see xdmf.h. */
+/* The texts through which ParaView and meshio read results.vtkhdf, see xdmf.h. */
 #include "xdmf.h"
 #include "files/textfile.h"
 #include <stdio.h>
@@ -91,8 +91,74 @@ static void XdmfPrintGrid(const FieldsIndex *index, FILE *out, int b, PetscInt s
   fprintf(out, "   </Grid>\n");
 }
 
+/* Prints one step as a collection of blocks. */
+static void XdmfPrintBlocks(const FieldsIndex *index, FILE *out, PetscInt step)
+{
+  fprintf(out, "  <Grid Name=\"%04d\" GridType=\"Collection\" CollectionType=\"Spatial\">\n", (int)step);
+  fprintf(out, "   <Time Value=\"%.15g\"/>\n", (double)index->t[step]);
+  for (int b = 0; b < index->n_blocks; b++) XdmfPrintGrid(index, out, b, step);
+  fprintf(out, "  </Grid>\n");
+}
+
+/* Prints the cells of all bodies: a table of their own where they are of one type, and /mesh/cells_mixed else. */
+static void XdmfPrintCells(const FieldsIndex *index, FILE *out)
+{
+  const ElementType type = FieldsOneType(index);
+  PetscInt          n = 0, entries = 0;
+  char              path[DATASET_PATH_SIZE];
+
+  for (int b = 0; b < index->n_blocks && !index->blocks[b].tool; b++) {
+    n += index->blocks[b].n;
+    entries += index->blocks[b].n * (1 + ElementGet(index->blocks[b].type)->nodes);
+  }
+  fprintf(out, "   <Topology TopologyType=\"%s\" NumberOfElements=\"%lld\">",
+          type < ELEMENT_TYPES ? topology[type] : "Mixed", (long long)n);
+  if (type < ELEMENT_TYPES) {
+    snprintf(path, sizeof(path), "/mesh/cells_%s", ElementGet(type)->name);
+    XdmfPrintDataset(out, "Int", n, ElementGet(type)->nodes, path);
+  } else {
+    XdmfPrintDataset(out, "Int", entries, 1, "/mesh/cells_mixed");
+  }
+  fprintf(out, "</Topology>\n");
+}
+
+/* Prints one step as one grid of all bodies. */
+static void XdmfPrintBodies(const FieldsIndex *index, FILE *out, PetscInt step)
+{
+  fprintf(out, "  <Grid Name=\"%04d\" GridType=\"Uniform\">\n   <Time Value=\"%.15g\"/>\n", (int)step,
+          (double)index->t[step]);
+  XdmfPrintCells(index, out);
+  fprintf(out, "   <Geometry GeometryType=\"XYZ\">");
+  XdmfPrintDataset(out, "Float", index->nodes, 3, "/mesh/nodes");
+  fprintf(out, "</Geometry>\n");
+  for (int i = 0; i < index->n_arrays; i++)
+    if (index->shows[step] & 1 << index->arrays[i].kind) XdmfPrintArray(out, &index->arrays[i], index->nodes, step);
+  fprintf(out, "  </Grid>\n");
+}
+
+/* Writes a file anew, for all steps. */
+static PetscErrorCode XdmfWriteFile(const FieldsIndex *index, const char *directory, const char *name,
+                                    void (*print_step)(const FieldsIndex *, FILE *, PetscInt))
+{
+  char  *text;
+  size_t size;
+  FILE  *out = open_memstream(&text, &size);
+
+  PetscFunctionBeginUser;
+  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for %s", name);
+  fprintf(out, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n <Grid Name=\"");
+  XdmfPrintText(out, index->name);
+  fprintf(out, "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+  for (PetscInt s = 0; s < index->n_steps; s++) print_step(index, out, s);
+  fprintf(out, " </Grid>\n</Domain>\n</Xdmf>\n");
+  PetscCheck(!fclose(out), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for %s", name);
+  PetscCall(TextFileReplace(directory, name, text));
+  free(text);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  XdmfWrite - writes results.xdmf anew, for all steps that results.vtkhdf holds.
+  XdmfWrite - writes results.xdmf and bodies.xdmf anew, for all steps that results.vtkhdf holds.
 
   Not collective
 
@@ -101,29 +167,13 @@ static void XdmfPrintGrid(const FieldsIndex *index, FILE *out, int b, PetscInt s
 - directory - of the results; exists
 
   Note:
-  For one rank. Errors: those of TextFileReplace(), and PETSC_ERR_MEM.
+  For one rank. results.xdmf has a block for each body, tool and type of elements, bodies.xdmf has all bodies as one
+grid, which is what meshio reads. Errors: those of TextFileReplace(), and PETSC_ERR_MEM.
 @*/
 PetscErrorCode XdmfWrite(const FieldsIndex *index, const char *directory)
 {
-  char  *text;
-  size_t size;
-  FILE  *out = open_memstream(&text, &size);
-
   PetscFunctionBeginUser;
-  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for results.xdmf");
-  fprintf(out, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n <Grid Name=\"");
-  XdmfPrintText(out, index->name);
-  fprintf(out, "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
-  for (PetscInt s = 0; s < index->n_steps; s++) {
-    fprintf(out,
-            "  <Grid Name=\"%04d\" GridType=\"Collection\" CollectionType=\"Spatial\">\n   <Time Value=\"%.15g\"/>\n",
-            (int)s, (double)index->t[s]);
-    for (int b = 0; b < index->n_blocks; b++) XdmfPrintGrid(index, out, b, s);
-    fprintf(out, "  </Grid>\n");
-  }
-  fprintf(out, " </Grid>\n</Domain>\n</Xdmf>\n");
-  PetscCheck(!fclose(out), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for results.xdmf");
-  PetscCall(TextFileReplace(directory, "results.xdmf", text));
-  free(text);
+  PetscCall(XdmfWriteFile(index, directory, "results.xdmf", XdmfPrintBlocks));
+  PetscCall(XdmfWriteFile(index, directory, "bodies.xdmf", XdmfPrintBodies));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -89,8 +89,8 @@ check.holds("a changed file is meshed anew", meshes() != there and finished.stat
 
 def names(file):
     """The bodies and surfaces of a file: all names, in lists."""
-    text = subprocess.run([sys.executable, ROOT / "scripts/convert_mesh.py", file, place / "list.msh", "--dim", "3",
-                           "--list"], capture_output=True, text=True, check=True).stdout
+    text = subprocess.run([sys.executable, ROOT / "scripts/convert_mesh.py", file, "--list"], capture_output=True,
+                          text=True, check=True).stdout
     return [line.split(": ")[0].split(None, 1)[1].split(" = ") for line in text.splitlines()
             if line.startswith(("body", "surface"))], text
 

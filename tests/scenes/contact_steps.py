@@ -1,5 +1,7 @@
 """Contact pairs that come and go by named steps, against tools and between bodies, in the plane, about an axis and in
 3D, against closed forms; what cannot be is refused."""
+import itertools
+
 import numpy
 
 from harness import Check, arguments, run, run_in_parts, SCENES
@@ -69,15 +71,21 @@ def bodies(kinematics, smoother):
     check.holds(f"bodies, {kinematics}, {smoother}: it comes evenly", numpy.all(numpy.diff(force[t >= 0.6]) > 0))
 
 
-def handover():
+def parts(t, first, second):
+    """A run that goes on from a checkpoint after each step has the same forces."""
+    found = columns(run_in_parts(args, SCENES / "handover.yaml", "handover_in_parts"), "first", "second")
+    for name, one, other in zip(("t", "first", "second"), (t, first, second), found):
+        check.near(f"handover in parts: {name}", other, one, 1e-9 * numpy.max(numpy.abs(one)))
+
+
+def handover(in_parts):
     """A scene of the usual kind: the planes bear the load together, then the second one alone."""
     finished = run(args, SCENES / "handover.yaml", out="handover")
     t, first, second = columns(finished, "first", "second")
     load = 60 * numpy.minimum(t / 0.3, 1)
     check.holds("handover: the certificate says when", "judged while they were wholly there" in finished.text)
-    parts = columns(run_in_parts(args, SCENES / "handover.yaml", "handover_in_parts"), "first", "second")
-    for name, one, other in zip(("t", "first", "second"), (t, first, second), parts):
-        check.near(f"handover in parts: {name}", other, one, 1e-9 * numpy.max(numpy.abs(one)))
+    if in_parts:
+        parts(t, first, second)
     check.near("handover: sum of the forces", -(first + second) / 60, load / 60, 1e-6)
     check.near("handover: the first plane", -first / 60, numpy.interp(t, [0, 0.3, 0.6, 1], [0, 1, 0.5, 0]), 1e-3)
 
@@ -93,16 +101,19 @@ def refusals():
         check.holds(f"refused: {name}", words in finished.text, finished.text)
 
 
-args = arguments()
+TOOLS = {
+    "few": [("solid", 2, "[close, hold]"), ("plane_strain", 1, "push"), ("axisymmetric", 1, "hold")],
+    "all": [(form, *case) for form in GEOMETRIES
+            for case in ((1, "[close, hold]"), (2, "[close, hold]"), (1, "push"), (1, "hold"))]
+}
+BODIES = {"few": [("finite", "diffuse")], "all": itertools.product(("small", "finite"), ("facet", "diffuse"))}
+args = arguments(("cases", "which", ["few", "all"]))
 check = Check()
-for form in GEOMETRIES:
-    for of_mesh in (1, 2):
-        tool(form, of_mesh, "[close, hold]")
-    tool(form, 1, "push")
-    tool(form, 1, "hold")
-for kind in ("small", "finite"):
-    for of_master in ("facet", "diffuse"):
-        bodies(kind, of_master)
-handover()
-refusals()
+for case in TOOLS[args.cases]:
+    tool(*case)
+for case in BODIES[args.cases]:
+    bodies(*case)
+handover(args.cases == "all" or args.ranks == 1)
+if args.ranks == 1:
+    refusals()
 check.finish()

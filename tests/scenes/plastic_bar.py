@@ -13,11 +13,12 @@ from plastic_law_table import E, HARDENING, LENGTH, NU, tension_path  # noqa: E4
 ELEMENTS = {"hex8": (1, 0, ("fbar", "enhanced", "full", "mixed")), "hex27": (2, 0, ("full", "mixed")),
             "tet4": (1, 1, ("full",)), "tet10": (2, 1, ("full", "mixed"))}
 
-args = arguments(("kinematics", "of the scene", ["small", "finite"]), ("element", "of the bar", ELEMENTS))
+args = arguments(("kinematics", "of the scene", ["small", "finite"]), ("element", "of the bar", ELEMENTS),
+                 ("formulations", "each hardening with all of them, or with one, in turn", ["all", "turn"]))
 check = Check()
 order, tet, formulations = ELEMENTS[args.element]
-for name, (material, flow) in HARDENING.items():
-    for formulation in formulations:
+for place, (name, (material, flow)) in enumerate(HARDENING.items()):
+    for formulation in formulations if args.formulations == "all" else (formulations[place % len(formulations)], ):
         overrides = [f"kinematics={args.kinematics}", f"mesh.order={order}", f"mesh.parameters.tet={tet}",
                      f"bodies.0.formulation={formulation}"]
         keys = {"law": "von_mises", "E": E, "nu": NU, **material}

@@ -48,8 +48,9 @@ CHECKED = {
 
 # Run in the full set only: as the page shows them (None), or with less to do
 FULL = {
-    "mpirun -n 2 build/burnish runs/saddle.yaml": None,
-    f"{PYTHON} scripts/render.py out/saddle --field pressure --units mm,MPa --up z --view=-35,40": None,
+    "build/burnish -check bearing.yaml": None,
+    "mpirun -n 2 build/burnish bearing.yaml": None,
+    f"{PYTHON} scripts/render.py out/bearing --field pressure --arrows --up z --view=-35,40": None,
     f"{PYTHON} scripts/render.py out/roller --mirror x": None,
     f"{PYTHON} scripts/plot.py out/roller": None,
     f"{PYTHON} scripts/plot.py out/stiff out/roller": None,
@@ -75,6 +76,8 @@ FULL = {
     f"{PYTHON} scripts/plot.py out/stiff out/adjusted out/augmented": None,
     f"{PYTHON} scripts/render.py out/pipe_pinch --mirror xy": None,
     f"{PYTHON} scripts/render.py out/pipe_pinch --field uy --step 10 --view=60,15": None,
+    f"{PYTHON} scripts/render.py out/pipe_pinch --cut z=100 --undeformed -o out/cut.png": None,
+    f"{PYTHON} scripts/render.py out/pipe_pinch --field pressure --arrows --view=-40,-30 -o out/arrows.png": None,
     "mpirun -n 64 build/burnish scene.yaml -o out/long -set output.checkpoint=5 -time_limit 43000":
     "mpirun -n 2 build/burnish runs/pipe_pinch.yaml -o out/long -set output.checkpoint=5 -time_limit 2; test $? = 3",
     "mpirun -n 32 build/burnish -restart out/long": "mpirun -n 1 build/burnish -restart out/long",

@@ -1,5 +1,5 @@
-"""results.xdmf shows what results.h5 holds, for every element: read as text, and in the full set by ParaView's three
-readers where pvpython is installed."""
+"""results.xdmf and bodies.xdmf show what results.h5 holds, for every element: the first one read as text, and in the
+full set by ParaView's three readers where pvpython is installed, the second one by meshio."""
 import json
 import pathlib
 import shutil
@@ -8,6 +8,7 @@ import sys
 import xml.etree.ElementTree
 
 import h5py
+import meshio
 import numpy
 
 from harness import Check, arguments, run, SCENES
@@ -47,6 +48,57 @@ NODES = {
     "Hexahedron": 8,
     "Hexahedron_27": 27
 }
+
+
+# Two bodies, one of triangles and one of quadrilaterals
+TWO_TYPES = """For k In {0:1}
+  p = 4 * k + 1;
+  Point(p) = {0, k, 0};  Point(p + 1) = {1, k, 0};  Point(p + 2) = {1, k + 1, 0};  Point(p + 3) = {0, k + 1, 0};
+  Line(p) = {p, p + 1};  Line(p + 1) = {p + 1, p + 2};  Line(p + 2) = {p + 2, p + 3};  Line(p + 3) = {p + 3, p};
+  Curve Loop(k + 1) = {p : p + 3};
+  Plane Surface(k + 1) = {k + 1};
+  Physical Surface(Sprintf("body_%g", k)) = {k + 1};
+EndFor
+Transfinite Curve {1 : 8} = 4;
+Transfinite Surface {1, 2};
+Recombine Surface {2};
+Physical Curve("bottom") = {1};
+Physical Curve("top") = {7};
+"""
+BODIES = "bodies=[" + ", ".join(f"{{volume: body_{k}, material: {{law: linear, E: 1000, nu: 0.3}}}}"
+                                for k in (0, 1)) + "]"
+MESHIO = {"tri3": "triangle", "quad4": "quad", "tet4": "tetra", "hex8": "hexahedron", "tri6": "triangle6",
+          "tet10": "tetra10", "quad9": "quad9", "hex27": "hexahedron27"}
+
+
+def two_types(directory):
+    """The overrides of a run whose bodies have elements of different types."""
+    directory.mkdir(parents=True, exist_ok=True)
+    (directory / "two_types.geo").write_text(TWO_TYPES)
+    held = ", ".join(f"{{surface: {name}, ux: 0, uy: 0}}" for name in ("bottom", "top"))
+    return [f"mesh={{file: {(directory / 'two_types.geo').resolve()}}}", "geometry=plane_strain", "kinematics=small",
+            BODIES, f"supports=[{held}]", STEPS,
+            "loads=[{volume: body_0, body_force: [1, 0]}, {volume: body_1, body_force: [2, 0]}]"]
+
+
+def as_meshio(directory, what, check):
+    """meshio reads times, cells and displacements as they are."""
+    with h5py.File(directory / "results.h5", "r") as file:
+        cells = {MESHIO[name[6:]]: table[()] for name, table in file["mesh"].items() if name[6:] in MESHIO}
+        nodes = file["mesh/nodes"][()]
+        steps = [(float(step.attrs["t"]), step["displacement"][()]) for _, step in sorted(file["steps"].items())]
+    with meshio.xdmf.TimeSeriesReader(directory / "bodies.xdmf") as reader:
+        points, blocks = reader.read_points_cells()
+        read = [reader.read_data(k) for k in range(reader.num_steps)]
+    found = {}
+    for block in blocks:
+        found.setdefault(block.type, []).append(block.data)
+    same = found.keys() == cells.keys() and all(
+        numpy.array_equal(numpy.unique(numpy.concatenate(found[name]), axis=0), numpy.unique(table, axis=0))
+        for name, table in cells.items())
+    check.holds(f"meshio, {what}: nodes and cells", same and numpy.array_equal(points, nodes), f"{list(found)}")
+    check.holds(f"meshio, {what}: steps", [t for t, _, _ in read] == [t for t, _ in steps] and all(
+        numpy.array_equal(data["displacement"], u) for (_, data, _), (_, u) in zip(read, steps)), f"{len(read)}")
 
 
 def item(element, directory):
@@ -122,6 +174,10 @@ for element in chosen:
     directory = run(args, SCENES / scene, "-quiet", out=element, overrides=[*overrides, STEPS]).directory
     files[element] = directory / "results.xdmf"
     expected[element] = as_text(directory, element, check)
+    as_meshio(directory, element, check)
+directory = pathlib.Path(args.out) / "two_types"
+run(args, SCENES / "patch_plane.yaml", "-quiet", out="two_types/run", overrides=two_types(directory))
+as_meshio(directory / "run", "triangles and quadrilaterals", check)
 if args.by == "paraview" and shutil.which("pvpython"):
     as_paraview(files, expected, check)
 elif args.by == "paraview" and not check.failed:

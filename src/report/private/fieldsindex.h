@@ -34,5 +34,13 @@ typedef struct {
   const FieldsArray *arrays;
 } FieldsIndex;
 
+/* Type of the elements of all bodies; ELEMENT_TYPES where there are several */
+static inline ElementType FieldsOneType(const FieldsIndex *index)
+{
+  for (int b = 1; b < index->n_blocks && !index->blocks[b].tool; b++)
+    if (index->blocks[b].type != index->blocks[0].type) return ELEMENT_TYPES;
+  return index->blocks[0].type;
+}
+
 /* The components of a symmetric tensor, in the order of its columns */
 static const char *const TensorComponents[6] = {"xx", "yy", "zz", "xy", "yz", "xz"};

@@ -1,4 +1,5 @@
-/* results.xdmf: the text through which ParaView reads results.vtkhdf. XdmfWrite() writes it anew for all steps. */
+/* results.xdmf and bodies.xdmf: the texts through which ParaView and meshio read results.vtkhdf. XdmfWrite() writes them
+   anew for all steps. */
 #pragma once
 #include "fieldsindex.h"
 
