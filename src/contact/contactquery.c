@@ -102,44 +102,6 @@ PetscErrorCode ContactPairPressing(const ContactPair *pair, ContactPressing *pre
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Size of the faces on both sides of a term, the smaller one. */
-static PetscReal SmallerSize(const ContactPair *pair, PetscInt c)
-{
-  PetscReal size = pair->size[c];
-
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscReal other = NeighbourListsNearestSize(pair->lists, pair->term_point[k]);
-
-    if (other > 0) size = PetscMin(size, other);
-  }
-  return size;
-}
-
-/*@
-  ContactPairDepth - finds how deep what is in contact of a pair stands in the master.
-
-  Collective
-
-  Input Parameters:
-+ contact - the contact, after ContactResidual()
-- p       - number of the pair
-
-  Output Parameter:
-. over_h - largest penetration over the size of the smaller face there
-@*/
-PetscErrorCode ContactPairDepth(Contact contact, int p, PetscReal *over_h)
-{
-  const ContactPair *pair = &contact->pairs[p];
-
-  PetscFunctionBeginUser;
-  *over_h = 0;
-  for (PetscInt c = 0; c < pair->n; c++)
-    if (pair->now.status[c] == CONTACT_CLOSED)
-      *over_h = PetscMax(*over_h, (ContactTermOffset(pair, c, pair->t) - pair->now.gap[c]) / SmallerSize(pair, c));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, over_h, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   ContactSummarise - counts contact and collects penetrations (length), penalties and the total force of all pairs in
   the present state.

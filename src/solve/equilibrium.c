@@ -5,6 +5,11 @@
 #include "bodies/tools.h"
 #include "modelimpl.h"
 
+/* Lists are made anew after this many solutions before the solve counts as failed because they do not settle. An area
+   factor that solutions turn to and fro is known between two values after two of them, and halving the way from a whole
+   area to one that agrees takes seven more. Another factor may begin to turn only when the first one stands. */
+#define EQUILIBRIUM_MAX_LISTS 16
+
 /* At a breakpoint of the scene's histories the lists are renewed at most this many times for offsets of surface contact
    that lag behind by little. Each time a lag shrinks to a twentieth. A lag that is left would show as a jump in the
    next step. */
@@ -349,7 +354,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     }
     report->regathered++;
     work->held = PETSC_FALSE;
-    if (!work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
+    if (!work->left && times++ == EQUILIBRIUM_MAX_LISTS) report->result = SOLVE_LISTS;
     if (!work->left && report->result == SOLVE_CONVERGED) PetscCall(ModelFollowLists(model, report));
   }
   work->loosely = PETSC_FALSE;
@@ -710,7 +715,7 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
   must call ModelRestore().
 
   Contact lists are made before the first solve and are frozen in each solve by Newton's method. After each solve they
-  are checked and made anew, at most MODEL_MAX_REGATHER times. Then penalties that are adjusted within the step are
+  are checked and made anew, at most EQUILIBRIUM_MAX_LISTS times. Then penalties that are adjusted within the step are
   changed, and the step is solved on from there, until the penetrations are in their window or no more can be done. At
   t = 1, at breakpoints of the load and where the scene asks for a step, the error that penetration leaves is estimated,
   and penalties that no key of the scene sets are made stiffer where it is large. With friction that is done in every

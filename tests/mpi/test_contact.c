@@ -85,6 +85,28 @@ static void Lower(double left, double right)
   for (int j = 0; j <= 1; j++) PartsMoveNode(&parts, PartsTag(&parts, UPPER, 1, j), 0, right - Apart);
 }
 
+/* A node past the end of the master presses on what the master would be there. It stands in nothing. */
+static void test_depth(void **state)
+{
+  static const PartsBlock over[] = {{"lower", 3, 1, {0, 3}, {0, 1}}, {"upper", 1, 1, {2.6, 3.2}, {1.1, 1.7}}};
+  const double            deep = 0.02, size = 0.6;
+  PetscReal               over_h;
+
+  (void)state;
+  PartsCreate(2, over, NULL, SceneText("finite", PenaltyText("")), &parts);
+  Lower(-deep, -3 * deep);
+  (void)Evaluate();
+  assert_true(Show(LEFT, 0).closed == 1 && Show(RIGHT, 0).closed == 1);
+  assert_near(Show(RIGHT, 0).gap, -3 * deep, 1e-14);
+  OK(ContactPairDepth(parts.problem->contact, 0, &over_h));
+  assert_near(over_h, deep / size, 1e-14);
+  Lower(-3 * deep, -deep);
+  (void)Evaluate();
+  OK(ContactPairDepth(parts.problem->contact, 0, &over_h));
+  assert_near(over_h, 3 * deep / size, 1e-14);
+  PartsDestroy(&parts);
+}
+
 /* The left node presses, 0.2 along the facet from its left end; the right one is open. */
 static void test_flat(void **state)
 {
@@ -491,10 +513,10 @@ static void test_stiffer(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_flat),    cmocka_unit_test(test_inclined), cmocka_unit_test(test_curved),
-    cmocka_unit_test(test_tangent), cmocka_unit_test(test_uniform),  cmocka_unit_test(test_window),
-    cmocka_unit_test(test_clamp),   cmocka_unit_test(test_augment),  cmocka_unit_test(test_soften),
-    cmocka_unit_test(test_overlap), cmocka_unit_test(test_stiffer)};
+    cmocka_unit_test(test_flat),   cmocka_unit_test(test_depth),   cmocka_unit_test(test_inclined),
+    cmocka_unit_test(test_curved), cmocka_unit_test(test_tangent), cmocka_unit_test(test_uniform),
+    cmocka_unit_test(test_window), cmocka_unit_test(test_clamp),   cmocka_unit_test(test_augment),
+    cmocka_unit_test(test_soften), cmocka_unit_test(test_overlap), cmocka_unit_test(test_stiffer)};
 
   if (PartsStart(&argc, &argv)) return 1;
   return PartsEnd(cmocka_run_group_tests(tests, NULL, NULL));

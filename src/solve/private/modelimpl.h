@@ -15,8 +15,7 @@
 #include "linear/linearsolver.h"
 #include "solve/model.h"
 
-/* Contact lists may be replaced this many times in one solve before the solve counts as failed because its lists do not
-   settle. */
+/* Lists that slave points leave while Newton's method runs are replaced this many times in one solve. */
 #define MODEL_MAX_REGATHER 8
 
 /* A linear step is divided into pieces if it moves the two ends of a cell's edge relative to each other by more than
