@@ -740,19 +740,27 @@ PetscErrorCode ArchiveRows(Archive a, const char *name, const Hdf5Table *rows, i
 
   Input/Output Parameters:
 + n     - number of bytes of this rank
-- bytes - are saved behind those of the ranks before; loaded, each rank gets an equal share, to be freed with
-  PetscFree()
+- bytes - are saved behind those of the ranks before; loaded, each rank gets an equal share, from memory its own, to
+  be freed with PetscFree()
 @*/
 PetscErrorCode ArchiveBytes(Archive a, const char *name, PetscInt64 *n, char **bytes)
 {
   PetscInt64  first = 0, total;
   PetscMPIInt size;
+  PetscInt    length;
   hid_t       data;
   hsize_t     found;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(a->comm, &size));
-  if (a->loads) {
+  if (a->stays) {
+    if (a->loads) {
+      PetscCall(LoadedLength(a, name, 1, &length));
+      *n = length;
+      PetscCall(PetscMalloc1(*n, bytes));
+    }
+    PetscCall(ArchiveHere(a, name, (size_t)*n, *bytes));
+  } else if (a->loads) {
     PetscCall(OpenDataset(a, name, -1, &data, &found));
     total = (PetscInt64)found;
     first = total * a->rank / size;

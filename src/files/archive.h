@@ -6,7 +6,7 @@
               ArchiveCreate(), the objects' functions, ArchiveClose()
      to load: ArchiveOpen(), the objects' functions, ArchiveClose()
      to make objects anew: ArchiveKeep(), the old objects' functions, ArchiveTurn(), the new objects' functions,
-              ArchiveClose(); nothing is written, and only what each step changes can be kept: no ArchiveBytes()
+              ArchiveClose(); each rank keeps its own values, and nothing is written
 
    A new file is written under a temporary name, goes to the disk, and is renamed when it is whole. The file before it
    stays until then. The file begins with a text that holds version, length and checksum, and HDF5 data follow.
