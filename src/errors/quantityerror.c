@@ -3,9 +3,12 @@
 #include "errors/bodyerror.h"
 #include <math.h>
 
-const char *const ErrorCauses[] = {
-  [ERROR_BODIES] = "bodies",     [ERROR_GEOMETRY] = "contact surfaces", [ERROR_PENETRATION] = "penetration",
-  [ERROR_SLIP] = "elastic slip", [ERROR_STEPS] = "load steps",          [ERROR_SOLVER] = "solver"};
+const char *const ErrorCauses[] = {[ERROR_BODIES]      = "bodies",
+                                   [ERROR_GEOMETRY]    = "contact surfaces",
+                                   [ERROR_PENETRATION] = "penetration",
+                                   [ERROR_SLIP]        = "elastic slip",
+                                   [ERROR_STEPS]       = "load steps",
+                                   [ERROR_SOLVER]      = "solver"};
 
 /* Does the answer depend on the way to it? */
 static PetscBool DependsOnPath(Model model)
@@ -65,8 +68,8 @@ PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional funct
   PetscCall(PetscMalloc1(n, &adjoint));
   for (int i = 0; i < n; i++) PetscCall(PetscCalloc1(dofs, &adjoint[i].y));
   PetscCall(ModelAdjoint(model, n, functional, adjoint));
-  PetscCall(
-    BodyErrorCreate(model->mesh, model->problem->elasticity, model->scene->kinematics, model->problem->trial, &bodies));
+  PetscCall(BodyErrorCreate(model->mesh, model->problem->elasticity, model->scene->kinematics, model->problem->trial,
+                            &bodies));
   for (int i = 0; i < n; i++) PetscCall(Join(model, bodies, &adjoint[i], &error[i]));
   PetscCall(BodyErrorDestroy(&bodies));
   for (int i = 0; i < n; i++) PetscCall(PetscFree(adjoint[i].y));

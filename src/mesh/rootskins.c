@@ -16,8 +16,9 @@ static PetscBool IsWanted(Scene scene, int body, char name[MESH_TEXT])
   if (scene->bodies[body].rigid) return PETSC_FALSE;
   SceneBodySkin(&scene->bodies[body], name, MESH_TEXT);
   for (int c = 0; c < scene->n_contacts; c++)
-    if (scene->contacts[c].listed && (!strcmp(scene->contacts[c].slave, name) ||
-                                      (scene->contacts[c].master && !strcmp(scene->contacts[c].master, name))))
+    if (scene->contacts[c].listed &&
+        (!strcmp(scene->contacts[c].slave, name) ||
+         (scene->contacts[c].master && !strcmp(scene->contacts[c].master, name))))
       return PETSC_TRUE;
   return PETSC_FALSE;
 }

@@ -175,11 +175,11 @@ const SchemaKey SchemaKeys[] = {
   {"supports.*", MAP, .help = "a surface with at least one component or springs"},
   {"supports.*.surface", TEXT, REQUIRED, .help = "physical surface"},
   {"supports.*.ux|uy", REAL | FORMULA, .unit = "length",
-   .help = "0 holds this component of the displacement, with during at the value that it has when the support comes; an expression imposes "
-           "it, as in loads"},
+   .help = "0 holds this component of the displacement, with during where it is when the support comes; an expression "
+           "imposes it, as in loads"},
   {"supports.*.uz", REAL | FORMULA, SOLID, .unit = "length",
-   .help = "0 holds this component of the displacement, with during at the value that it has when the support comes; an expression imposes "
-           "it, as in loads"},
+   .help = "0 holds this component of the displacement, with during where it is when the support comes; an expression "
+           "imposes it, as in loads"},
   {"supports.*.spring", POINT, .range = "[0, inf)", .unit = "force per length and area",
    .help = "stiffness of springs from the surface to the ground, along each axis; an axisymmetric scene has the radius "
            "as x. They act on the reference area along the axes, however the body moves"},
