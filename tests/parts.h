@@ -188,7 +188,7 @@ static inline void PartsCreate(int n, const PartsBlock blocks[], PartsMap map, c
   snprintf(file, sizeof(file), "%s/blocks.msh", parts_folder);
   OK(SceneRead(PETSC_COMM_WORLD, path, 0, NULL, &parts->scene));
   OK(MeshCreate(PETSC_COMM_WORLD, parts->scene, file, &parts->mesh));
-  OK(ProblemCreate(parts->scene, parts->mesh, &parts->problem));
+  OK(ProblemCreate(parts->scene, parts->mesh, 0, &parts->problem));
   OK(PetscCalloc2(parts->mesh->n_nodes * 2, &parts->u, parts->mesh->n_nodes * 2, &parts->f));
 }
 

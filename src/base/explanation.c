@@ -24,6 +24,18 @@ static const Explanation Input[] = {
    "beyond "
    "1, or fewer columns than the scene names.",
    "Correct the row that the message names. A table over seconds needs `end`, the duration."},
+  {"B130",
+   {"are prescribed on its whole surface in some steps only"},
+   "a body that keeps its volume is enclosed in some steps only",
+   "Displacements of the whole surface of a body are prescribed, so that the level of its pressure is free. Its "
+   "elements hold their pressures otherwise then than in the other steps.",
+   "Leave a part of its surface free in all steps, or take `nu` a little below 0.5."},
+  {"B131",
+   {"stands beside a displacement with `during`", "stands beside a history, which only springs take"},
+   "a support has springs and displacements over time in one entry",
+   "Springs have a `history`, or fade over a step. Displacements are prescribed or not, in the steps that `during` "
+   "names.",
+   "Write an entry for the springs and another one for the displacements, on the same surface."},
   {"B122",
    {"names a step, but there are none", "is no step;", "does not follow the step named before",
     "stands beside a history"},
@@ -41,8 +53,8 @@ static const Explanation Input[] = {
    {"as the answer depends on the way to it", "with augmented pressures, which stay", "multipliers of its elements",
     "is not available where a fluid enters"},
    "the scene has no sensitivities",
-   "The answer depends on the way to it (friction, yielding, locked bolts), or on multipliers or fluids, of which no "
-   "derivative is known.",
+   "The answer depends on the way to it (friction, yielding, locked bolts, supports that come and go), or on "
+   "multipliers or fluids, of which no derivative is known.",
    "Take differences of two runs with `-set`, or leave the effect out."},
   {"B145",
    {"allowed for a sensitivity: parameters that"},

@@ -1,6 +1,7 @@
 /* Bodies whose volume is enclosed, see enclosedbodies.h. */
 #include "enclosedbodies.h"
 #include "base/complaint.h"
+#include "base/refusal.h"
 #include "kernels/elementkernel.h"
 #include "mesh/mesh.h"
 #include "mesh/meshdofs.h"
@@ -90,6 +91,11 @@ PetscErrorCode EnclosedBodiesFind(Mesh mesh, Scene scene, const PetscBool *presc
 
     if (body->rigid || body->formulation != FORMULATION_MIXED || !PetscIsInfReal(body->material.constants[0])) continue;
     PetscCall(FindEnclosed(mesh, scene, prescribed, b, &enclosed));
+    if (!enclosed && body->enclosed)
+      PetscCall(RefuseInput(mesh->comm,
+                            "%s: body '%s' keeps its volume exactly, and displacements are prescribed on its whole "
+                            "surface in some steps only; allowed: in all of them or in none, or nu below 0.5",
+                            SceneWhere(scene, body->path, "material"), body->name));
     if (!enclosed) continue;
     body->enclosed = body->condensed = 1;
     PetscCall(RefusePressureNodes(mesh, scene, b));

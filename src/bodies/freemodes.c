@@ -634,19 +634,21 @@ PetscErrorCode FreeModesReport(FreeModes modes, PetscBool held, FILE *stream)
 
   Collective
 
-  Input Parameter:
-. modes - the motions
+  Input Parameters:
++ modes - the motions
+- step  - name of the step whose supports they are, for the message; NULL: supports hold all the time
 
   Note:
   Nothing could make the system of such a body regular. The message names the body and all of its free motions.
 @*/
-PetscErrorCode FreeModesRefuse(FreeModes modes)
+PetscErrorCode FreeModesRefuse(FreeModes modes, const char *step)
 {
-  char   message[FREE_MESSAGE] = "";
-  size_t used                  = 0;
-  int    body                  = -1;
+  char   message[FREE_MESSAGE] = "", during[FREE_TEXT] = "";
+  size_t used = 0;
+  int    body = -1;
 
   PetscFunctionBeginUser;
+  if (step) PetscCall(PetscSNPrintf(during, sizeof(during), "in step '%s' ", step));
   for (PetscInt p = 0; p < modes->n_pieces && body < 0; p++) {
     const FreePiece *piece = &modes->pieces[p];
 
@@ -669,9 +671,9 @@ PetscErrorCode FreeModesRefuse(FreeModes modes)
                     SceneWhere(modes->scene, modes->pieces[p].tool->path, "free"), modes->pieces[p].name));
   if (body >= 0)
     PetscCall(RefuseInput(modes->mesh->comm,
-                          "%s: %s; no support, imposed displacement or contact pair holds it; allowed: bodies that "
+                          "%s: %s%s; no support, imposed displacement or contact pair holds it; allowed: bodies that "
                           "something holds in every direction",
-                          SceneWhere(modes->scene, modes->scene->bodies[body].path, "volume"), message));
+                          SceneWhere(modes->scene, modes->scene->bodies[body].path, "volume"), during, message));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

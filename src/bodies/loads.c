@@ -5,6 +5,7 @@
 #include "bodies/foundation.h"
 #include "bodies/loads.h"
 #include "bodies/loadvalues.h"
+#include "bodies/supportphase.h"
 #include "bodies/tools.h"
 #include "mesh/pressurenodes.h"
 #include "base/refusal.h"
@@ -21,14 +22,16 @@ enum { LOADS_AXIS = 0x7fffffff };
 enum { LOADS_SAMPLES = 16 };
 
 /* A dof that a support or an imposed displacement holds: u = value * history. A support has the value 0 and no history.
-   An expression with t has no history, and value is that at loads->t. */
+   An expression with t has no history, and value is that at loads->t. A support of some steps adds the shift from its
+   value to where the dof was when it came. An expression of its takes the shift back evenly over its first step. */
 typedef struct {
-  PetscInt       dof;
-  PetscReal      value;
-  const History *history;
-  int            load;    /* index into scene->loads, or -1 - index into scene->supports, or LOADS_AXIS: for messages */
-  PetscBool      varies;  /* an expression with t */
-  PetscReal      largest; /* of an expression: its largest value on the surface, of all ranks; else 0 */
+  PetscInt         dof;
+  PetscReal        value, shift;
+  const History   *history;
+  const SceneSpan *during; /* of a support of some steps; else NULL */
+  int              load; /* index into scene->loads, or -1 - index into scene->supports, or LOADS_AXIS: for messages */
+  PetscBool        varies;  /* an expression with t */
+  PetscReal        largest; /* of an expression: its largest value on the surface, of all ranks; else 0 */
 } Prescribed;
 
 /* The part of a surface on which its pressure acts; both are NULL where it acts everywhere. */
@@ -65,6 +68,7 @@ struct _n_Loads {
   Prescribed   *prescribed;
   PetscInt      n_dead, n_follower;
   Foundation    foundation; /* NULL: no support has springs */
+  SupportPhase  phase;      /* NULL: all supports hold all the time */
   DeadLoad     *dead;
   FollowerLoad *follower;
   PetscLogEvent event_follower; /* where there is a follower load */
@@ -91,6 +95,8 @@ static PetscBool PrescribedAgree(Loads loads, const Prescribed *a, const Prescri
 {
   const PetscReal same = LOADS_AGREE * PetscMax(a->largest, b->largest);
 
+  if (a->during && b->during && (a->load >= 0) != (b->load >= 0)) return PETSC_FALSE;
+  if (a->during && b->during && a->load >= 0 && a->during->first != b->during->first) return PETSC_FALSE;
   for (int k = 0; k <= LOADS_SAMPLES && (a->varies || b->varies); k++) {
     const PetscReal t = (PetscReal)k / LOADS_SAMPLES;
 
@@ -136,8 +142,12 @@ static void LoadsAddDof(Loads loads, const Prescribed *p)
 /* Holds one component of the nodes of a support. */
 static void LoadsAddSupport(Loads loads, const MeshGroup *group, int component, int support)
 {
+  const SceneSpan *during = &loads->scene->supports[support].during;
+
   for (PetscInt i = 0; i < group->n_nodes; i++)
-    LoadsAddDof(loads, &(Prescribed){.dof = group->nodes[i] * loads->mesh->dim + component, .load = -1 - support});
+    LoadsAddDof(loads, &(Prescribed){.dof    = group->nodes[i] * loads->mesh->dim + component,
+                                     .during = during->some ? during : NULL,
+                                     .load   = -1 - support});
 }
 
 /* Imposes one component of a displacement on the nodes of its surface. */
@@ -147,7 +157,8 @@ static PetscErrorCode LoadsAddDisplacement(Loads loads, const MeshGroup *group, 
   Prescribed       p    = {.load = l, .varies = SceneLoadVaries(load, component)};
 
   PetscFunctionBeginUser;
-  p.history = p.varies ? NULL : &load->history;
+  p.history = p.varies || load->during.some ? NULL : &load->history;
+  p.during  = load->during.some ? &load->during : NULL;
   for (PetscInt i = 0; i < group->n_nodes && load->expression[component]; i++) {
     for (int k = 0; k <= (p.varies ? LOADS_SAMPLES : 0); k++) {
       const PetscReal value = LoadNodeValue(loads->mesh, loads->scene, load, component, group->nodes[i],
@@ -166,7 +177,8 @@ static PetscErrorCode LoadsAddDisplacement(Loads loads, const MeshGroup *group, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LoadsCreatePrescribed(Loads loads)
+/* Lists the rules of a phase and marks the dofs that they hold. */
+static PetscErrorCode LoadsListPrescribed(Loads loads, PetscInt phase)
 {
   Mesh       mesh  = loads->mesh;
   Scene      scene = loads->scene;
@@ -174,8 +186,8 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
   MeshGroup *group;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n, &loads->constrained, n, &loads->prescribed));
   PetscCall(PetscMalloc1(n, &loads->owner));
+  loads->n_prescribed = 0;
   for (PetscInt i = 0; i < n; i++) {
     loads->constrained[i] = PETSC_FALSE;
     loads->owner[i]       = -1;
@@ -186,6 +198,7 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
   for (int s = 0; s < scene->n_supports; s++) {
     const SceneSupport *support = &scene->supports[s];
 
+    if (!SceneHolds(&support->during, phase)) continue;
     PetscCall(MeshGetGroup(mesh, scene, support->path, "surface", support->surface, mesh->dim - 1, &group));
     for (int c = 0; c < mesh->dim; c++)
       if (support->fixed[c]) LoadsAddSupport(loads, group, c, s);
@@ -193,7 +206,7 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
   for (int l = 0; l < scene->n_loads; l++) {
     const SceneLoad *load = &scene->loads[l];
 
-    if (load->kind != LOAD_DISPLACEMENT) continue;
+    if (load->kind != LOAD_DISPLACEMENT || !SceneHolds(&load->during, phase)) continue;
     PetscCall(MeshGetGroup(mesh, scene, load->path, "surface", load->region, mesh->dim - 1, &group));
     for (int c = 0; c < mesh->dim; c++)
       if (load->has[c]) PetscCall(LoadsAddDisplacement(loads, group, c, l));
@@ -203,7 +216,42 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
   ToolsConstrain(mesh, loads->constrained);
   PetscCall(EnclosedBodiesFind(mesh, scene, loads->constrained));
   PetscCall(PressureNodesConstrain(mesh, scene, loads->constrained));
-  PetscCall(MeshSetConstraints(mesh, loads->constrained));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the shifts of the rules from where dofs were when their supports came. */
+static void LoadsSetShifts(Loads loads)
+{
+  for (PetscInt i = 0; i < loads->n_prescribed && loads->phase; i++) {
+    Prescribed *p = &loads->prescribed[i];
+
+    if (!p->during) continue;
+    p->shift = SupportPhasePlace(loads->phase, p->dof);
+    if (p->load >= 0) p->shift -= PrescribedAt(loads, p, loads->scene->stepping.steps[p->during->first].begin);
+  }
+}
+
+/* The part of its shift that a rule still has. */
+static PetscReal ShiftPart(Loads loads, const Prescribed *p, PetscReal t)
+{
+  const SceneStep *first = p->during && p->load >= 0 ? &loads->scene->stepping.steps[p->during->first] : NULL;
+
+  return first ? PetscMax(0, PetscMin(1, (first->until - t) / (first->until - first->begin))) : 1;
+}
+
+/* Lists the rules of the phase that is built, which is the last one here. Those of the others are looked at for
+   mistakes: twice, so that each phase has come after each other one. */
+static PetscErrorCode LoadsCreatePrescribed(Loads loads, PetscInt phase)
+{
+  const PetscInt n = loads->mesh->n_nodes * loads->mesh->dim, phases = loads->scene->stepping.n_steps;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &loads->constrained, n, &loads->prescribed));
+  PetscCall(SupportPhaseCreate(loads->mesh, loads->scene, phase, &loads->phase));
+  for (PetscInt k = 0; k < 2 * phases && loads->phase && !phase; k++) PetscCall(LoadsListPrescribed(loads, k % phases));
+  PetscCall(LoadsListPrescribed(loads, phase));
+  LoadsSetShifts(loads);
+  PetscCall(MeshSetConstraints(loads->mesh, loads->constrained));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -486,7 +534,8 @@ static PetscErrorCode LoadsMove(Loads loads, PetscReal t)
 
   Input Parameters:
 + mesh  - the mesh; borrowed
-- scene - the scene; borrowed
+. scene - the scene; borrowed
+- phase - number of the step with a name whose supports hold; 0 at the start, and where all hold all the time
 
   Output Parameter:
 . out - free it with LoadsDestroy()
@@ -495,7 +544,7 @@ static PetscErrorCode LoadsMove(Loads loads, PetscReal t)
   Supported and imposed dofs become constraints of the mesh's local section. Call it before any matrix or vector is
   made. It refuses two rules for one component of a node that do not agree, and expressions that are not finite.
 @*/
-PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, Loads *out)
+PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, PetscInt phase, Loads *out)
 {
   Loads loads;
 
@@ -506,7 +555,7 @@ PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, Loads *out)
   loads->scene = scene;
   for (int l = 0; l < scene->n_loads; l++) loads->varies = (PetscBool)(loads->varies || LoadVaries(&scene->loads[l]));
   for (int l = 0; l < scene->n_loads; l++) loads->shared = (PetscBool)(loads->shared || scene->loads[l].open);
-  PetscCall(LoadsCreatePrescribed(loads));
+  PetscCall(LoadsCreatePrescribed(loads, phase));
   PetscCall(FoundationCreate(mesh, scene, &loads->foundation));
   PetscCall(LoadsCreateForces(loads));
   for (int k = LOADS_SAMPLES; k >= 0; k--) PetscCall(LoadsMove(loads, (PetscReal)k / LOADS_SAMPLES));
@@ -528,6 +577,7 @@ PetscErrorCode LoadsDestroy(Loads *loads)
   for (PetscInt l = 0; l < (*loads)->n_follower; l++) PetscCall(PetscFree((*loads)->follower[l].value));
   for (PetscInt l = 0; l < (*loads)->n_dead; l++) PetscCall(PetscFree2((*loads)->dead[l].dof, (*loads)->dead[l].force));
   PetscCall(FoundationDestroy(&(*loads)->foundation));
+  PetscCall(SupportPhaseDestroy(&(*loads)->phase));
   PetscCall(PetscFree2((*loads)->dead, (*loads)->follower));
   PetscCall(PetscFree2((*loads)->constrained, (*loads)->prescribed));
   PetscCall(PetscFree((*loads)->owner));
@@ -556,8 +606,12 @@ PetscErrorCode LoadsPrescribe(Loads loads, PetscReal t, PetscReal *u)
   PetscFunctionBeginUser;
   PetscCall(LoadsMove(loads, t));
   ToolsPrescribe(loads->mesh, t, u);
-  for (PetscInt i = 0; i < loads->n_prescribed; i++)
-    u[loads->prescribed[i].dof] = loads->prescribed[i].value * HistoryFactor(loads->prescribed[i].history, t);
+  for (PetscInt i = 0; i < loads->n_prescribed; i++) {
+    const Prescribed *p = &loads->prescribed[i];
+
+    u[p->dof] = p->value * HistoryFactor(p->history, t);
+    if (p->shift != 0) u[p->dof] += p->shift * ShiftPart(loads, p, t);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -587,7 +641,8 @@ static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscI
 }
 
 /*@
-  LoadsResidual - subtracts the external forces, those of springs included, from the residual.
+  LoadsResidual - subtracts the external forces, those of springs and of supports that left included, from the
+  residual.
 
   Collective
 
@@ -626,6 +681,7 @@ PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, Petsc
     if (force2) *force2 += PetscSqr(factor) * dead->force2;
   }
   PetscCall(FoundationResidual(loads->foundation, t, u, f, energy, force2));
+  SupportPhaseForces(loads->phase, t, u, f, energy, force2);
   if (!loads->n_follower || !(f || force2)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(loads->event_follower, 0, 0, 0, 0));
   for (PetscInt l = 0; l < loads->n_follower; l++) {
@@ -802,6 +858,107 @@ PetscBool LoadsHeld(Loads loads, PetscInt local_dof)
 const PetscReal *LoadsSpringForce(Loads loads)
 {
   return FoundationForce(loads->foundation);
+}
+
+/*@
+  LoadsFadingForce - returns the force that supports which have left still exert on a dof, at the last residual.
+
+  Not collective
+
+  Input Parameters:
++ loads     - the loads
+- local_dof - number of the dof, local node times dim plus component
+
+  Note:
+  It is 0 on ranks that do not own the node.
+@*/
+PetscReal LoadsFadingForce(Loads loads, PetscInt local_dof)
+{
+  return SupportPhaseForce(loads->phase, local_dof);
+}
+
+/*@
+  LoadsPhase - returns the number of the step with a name whose supports hold.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. loads - the loads
+@*/
+PetscInt LoadsPhase(Loads loads)
+{
+  return SupportPhaseNumber(loads->phase);
+}
+
+/*@
+  LoadsShowPhase - lets LoadsPrescribed() and LoadsHeld() answer for another phase, without any other effect.
+
+  Collective
+
+  Input Parameters:
++ loads - the loads
+- phase - number of a step with a name; LoadsPhase() to return
+@*/
+PetscErrorCode LoadsShowPhase(Loads loads, PetscInt phase)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LoadsListPrescribed(loads, phase));
+  LoadsSetShifts(loads);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  LoadsChangePhase - goes to another phase in an accepted state: supports that come hold dofs where these are, and the
+  forces of those that leave begin to fade.
+
+  Collective
+
+  Input Parameters:
++ loads - the loads, of a scene whose supports change
+. phase - number of the step that begins
+. u     - local displacements u[n_nodes*dim] (length)
+- force - force[n_nodes*dim] that prescribed dofs need for equilibrium, complete at every node
+
+  Note:
+  The unknowns are other ones from here on, so that all that was made of the old ones must be made anew. The state
+  goes to the new loads by LoadsArchive().
+@*/
+PetscErrorCode LoadsChangePhase(Loads loads, PetscInt phase, const PetscReal *u, const PetscReal *force)
+{
+  const PetscInt n = loads->mesh->n_nodes * loads->mesh->dim, before = LoadsPhase(loads);
+  PetscBool     *comes, *leaves;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(n, &comes, n, &leaves));
+  for (PetscInt i = 0; i < loads->n_prescribed; i++)
+    if (loads->prescribed[i].during) leaves[loads->prescribed[i].dof] = PETSC_TRUE;
+  PetscCall(LoadsListPrescribed(loads, phase));
+  for (PetscInt i = 0; i < loads->n_prescribed; i++) {
+    const Prescribed *p = &loads->prescribed[i];
+
+    leaves[p->dof] = PETSC_FALSE;
+    if (p->during) comes[p->dof] = (PetscBool)!SceneHolds(p->during, before);
+  }
+  PetscCall(SupportPhaseTake(loads->phase, phase, comes, u, leaves, force));
+  PetscCall(PetscFree2(comes, leaves));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  LoadsArchive - saves or loads where supports of some steps hold, and what those that left still carry.
+
+  Collective
+
+  Input Parameters:
++ loads   - the loads; when they load, of the phase that was saved
+- archive - decides whether it is saved or loaded
+@*/
+PetscErrorCode LoadsArchive(Loads loads, Archive archive)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SupportPhaseArchive(loads->phase, archive));
+  LoadsSetShifts(loads);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@

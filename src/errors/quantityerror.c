@@ -13,7 +13,8 @@ const char *const ErrorCauses[] = {[ERROR_BODIES]      = "bodies",
 /* Does the answer depend on the way to it? */
 static PetscBool DependsOnPath(Model model)
 {
-  return (PetscBool)(ProblemIsPlastic(model->problem) || ContactHasFriction(model->contact));
+  return (PetscBool)(ProblemIsPlastic(model->problem) || ContactHasFriction(model->contact) ||
+                     SceneSupportsChange(model->scene));
 }
 
 /* Joins the parts of one quantity. bodies: NULL where no adjoint solution is known. */

@@ -4,6 +4,7 @@
    see one. */
 #define _GNU_SOURCE /* fallocate() */
 #include "files/archive.h"
+#include "archivememory.h"
 #include "base/refusal.h"
 #include "checksum.h"
 #include <errno.h>
@@ -33,8 +34,9 @@ struct _n_Archive {
   PetscMPIInt rank;
   char        name[PETSC_MAX_PATH_LEN], temporary[ARCHIVE_NAME];
   hid_t       file;
-  PetscBool   loads, measures;
-  PetscInt64  bytes; /* counted so far, while it measures */
+  PetscBool   loads, measures, stays; /* stays: in memory */
+  PetscInt64  bytes;                  /* counted so far, while it measures */
+  Memory      memory;                 /* of this rank, where it stays there */
 };
 
 static PetscErrorCode ArchiveNew(MPI_Comm comm, const char *name, Archive *archive)
@@ -64,6 +66,69 @@ PetscErrorCode ArchiveMeasure(MPI_Comm comm, Archive *archive)
   PetscFunctionBeginUser;
   PetscCall(ArchiveNew(comm, "", archive));
   (*archive)->measures = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ArchiveKeep - creates an archive that saves values in memory, for objects that are made anew on the same ranks.
+
+  Collective
+
+  Input Parameter:
+. comm - the ranks that have parts of the values
+
+  Output Parameter:
+. archive - ArchiveTurn() makes it load; to be closed with ArchiveClose()
+@*/
+PetscErrorCode ArchiveKeep(MPI_Comm comm, Archive *archive)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ArchiveNew(comm, "", archive));
+  (*archive)->stays = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ArchiveTurn - lets an archive in memory load what it has saved.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. archive - from ArchiveKeep()
+@*/
+void ArchiveTurn(Archive archive)
+{
+  archive->loads = PETSC_TRUE;
+}
+
+/*@
+  ArchiveRenumbers - tells whether the objects that load may number their unknowns otherwise than those that saved.
+
+  Not collective
+
+  Input Parameter:
+. archive - any
+@*/
+PetscBool ArchiveRenumbers(Archive archive)
+{
+  return archive->stays;
+}
+
+/* Saves or loads a value of this rank in memory. */
+static PetscErrorCode ArchiveHere(Archive a, const char *name, size_t bytes, void *value)
+{
+  const void *kept;
+  size_t      found;
+
+  PetscFunctionBeginUser;
+  if (!a->loads) {
+    PetscCall(MemorySave(&a->memory, name, bytes, value));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(MemoryFind(a->memory, name, &found, &kept));
+  PetscCheck(found == bytes, PETSC_COMM_SELF, PETSC_ERR_PLIB, "/%s has %zu bytes in memory, not %zu", name, found,
+             bytes);
+  PetscCall(PetscMemcpy(value, kept, bytes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -284,7 +349,7 @@ static PetscErrorCode ArchiveFinish(Archive a)
   Collective
 
   Input Parameter:
-. archive - from ArchiveMeasure(), ArchiveCreate() or ArchiveOpen(); NULL does nothing
+. archive - from ArchiveMeasure(), ArchiveKeep(), ArchiveCreate() or ArchiveOpen(); NULL does nothing
 
   Note:
   Errors: PETSC_ERR_FILE_WRITE; the file before is intact then.
@@ -295,7 +360,8 @@ PetscErrorCode ArchiveClose(Archive *archive)
 
   PetscFunctionBeginUser;
   if (!a) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!a->measures) {
+  PetscCall(MemoryDestroy(&a->memory));
+  if (!a->measures && !a->stays) {
     if (!a->loads) CallHDF5(H5Fflush(a->file, H5F_SCOPE_GLOBAL)); /* every rank sends to the disk what it wrote */
     CallHDF5(H5Fclose(a->file));
     if (!a->loads) PetscCall(ArchiveFinish(a));
@@ -346,12 +412,12 @@ static PetscErrorCode OpenDataset(Archive a, const char *name, hssize_t values, 
 }
 
 /*@
-  ArchiveHas - tells whether the file holds a value of that name.
+  ArchiveHas - tells whether the archive holds a value of that name.
 
   Collective
 
   Input Parameters:
-+ a    - from ArchiveOpen()
++ a    - from ArchiveOpen() or ArchiveKeep()
 - name - of the value
 
   Output Parameter:
@@ -359,9 +425,16 @@ static PetscErrorCode OpenDataset(Archive a, const char *name, hssize_t values, 
 @*/
 PetscErrorCode ArchiveHas(Archive a, const char *name, PetscBool *there)
 {
-  char path[PETSC_MAX_PATH_LEN];
+  char        path[PETSC_MAX_PATH_LEN];
+  const void *kept;
+  size_t      bytes;
 
   PetscFunctionBeginUser;
+  if (a->stays) {
+    PetscCall(MemoryFind(a->memory, name, &bytes, &kept));
+    *there = kept ? PETSC_TRUE : PETSC_FALSE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   *there = PETSC_TRUE;
   /* H5Lexists() wants every group on the way to be there. */
   for (const char *end = strchr(name + 1, '/'); *there && end; end = strchr(end + 1, '/')) {
@@ -395,7 +468,9 @@ static PetscErrorCode ArchiveShared(Archive a, const char *name, PetscInt n, hid
   hsize_t found;
 
   PetscFunctionBeginUser;
-  if (a->loads) {
+  if (a->stays) {
+    PetscCall(ArchiveHere(a, name, (size_t)n * size, values));
+  } else if (a->loads) {
     PetscCall(OpenDataset(a, name, n, &data, &found));
     PetscCall(ReadPart(data, 0, found, 1, type, values));
     CallHDF5(H5Dclose(data));
@@ -522,13 +597,20 @@ PetscErrorCode ArchiveBoolean(Archive a, const char *name, PetscBool *value)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many values a dataset has. */
-static PetscErrorCode LoadedLength(Archive a, const char *name, PetscInt *n)
+/* How many values of `size` bytes are to be loaded. */
+static PetscErrorCode LoadedLength(Archive a, const char *name, size_t size, PetscInt *n)
 {
-  hid_t   data;
-  hsize_t found;
+  const void *kept;
+  size_t      bytes;
+  hid_t       data;
+  hsize_t     found;
 
   PetscFunctionBeginUser;
+  if (a->stays) {
+    PetscCall(MemoryFind(a->memory, name, &bytes, &kept));
+    *n = (PetscInt)(bytes / size);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(OpenDataset(a, name, -1, &data, &found));
   CallHDF5(H5Dclose(data));
   *n = (PetscInt)found;
@@ -552,7 +634,7 @@ PetscErrorCode ArchiveIntegerList(Archive a, const char *name, PetscInt *n, Pets
 {
   PetscFunctionBeginUser;
   if (a->loads) {
-    PetscCall(LoadedLength(a, name, n));
+    PetscCall(LoadedLength(a, name, sizeof(int64_t), n));
     PetscCall(PetscMalloc1(*n, list));
   }
   PetscCall(ArchiveIntegers(a, name, *n, *list));
@@ -577,7 +659,7 @@ PetscErrorCode ArchiveText(Archive a, const char *name, char **text)
 
   PetscFunctionBeginUser;
   if (a->loads) {
-    PetscCall(LoadedLength(a, name, &n));
+    PetscCall(LoadedLength(a, name, 1, &n));
     PetscCall(PetscCalloc1(n + 1, text));
   } else
     PetscCall(PetscIntCast(strlen(*text), &n));
@@ -631,7 +713,9 @@ PetscErrorCode ArchiveRows(Archive a, const char *name, const Hdf5Table *rows, i
   hsize_t    found;
 
   PetscFunctionBeginUser;
-  if (a->loads) {
+  if (a->stays) {
+    PetscCall(ArchiveHere(a, name, (size_t)rows->items * (size_t)width * sizeof(PetscReal), items));
+  } else if (a->loads) {
     PetscCall(OpenDataset(a, name, (hssize_t)rows->total * width, &data, &found));
     PetscCall(PetscMalloc1(rows->n * width, &values));
     PetscCall(ReadPart(data, (hsize_t)rows->first, (hsize_t)rows->n, width, H5T_NATIVE_DOUBLE, values));
@@ -656,19 +740,27 @@ PetscErrorCode ArchiveRows(Archive a, const char *name, const Hdf5Table *rows, i
 
   Input/Output Parameters:
 + n     - number of bytes of this rank
-- bytes - are saved behind those of the ranks before; loaded, each rank gets an equal share, to be freed with
-  PetscFree()
+- bytes - are saved behind those of the ranks before; loaded, each rank gets an equal share, from memory its own, to
+  be freed with PetscFree()
 @*/
 PetscErrorCode ArchiveBytes(Archive a, const char *name, PetscInt64 *n, char **bytes)
 {
   PetscInt64  first = 0, total;
   PetscMPIInt size;
+  PetscInt    length;
   hid_t       data;
   hsize_t     found;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(a->comm, &size));
-  if (a->loads) {
+  if (a->stays) {
+    if (a->loads) {
+      PetscCall(LoadedLength(a, name, 1, &length));
+      *n = length;
+      PetscCall(PetscMalloc1(*n, bytes));
+    }
+    PetscCall(ArchiveHere(a, name, (size_t)*n, *bytes));
+  } else if (a->loads) {
     PetscCall(OpenDataset(a, name, -1, &data, &found));
     total = (PetscInt64)found;
     first = total * a->rank / size;

@@ -5,6 +5,8 @@
      to save: ArchiveMeasure(), the objects' functions, ArchiveSize(), ArchiveClose() for the size of the file; then
               ArchiveCreate(), the objects' functions, ArchiveClose()
      to load: ArchiveOpen(), the objects' functions, ArchiveClose()
+     to make objects anew: ArchiveKeep(), the old objects' functions, ArchiveTurn(), the new objects' functions,
+              ArchiveClose(); each rank keeps its own values, and nothing is written
 
    A new file is written under a temporary name, goes to the disk, and is renamed when it is whole. The file before it
    stays until then. The file begins with a text that holds version, length and checksum, and HDF5 data follow.
@@ -16,6 +18,9 @@
 typedef struct _n_Archive *Archive;
 
 PetscErrorCode ArchiveMeasure(MPI_Comm, Archive *);
+PetscErrorCode ArchiveKeep(MPI_Comm, Archive *);
+void           ArchiveTurn(Archive);
+PetscBool      ArchiveRenumbers(Archive);
 PetscErrorCode ArchiveSize(Archive, PetscInt64 *bytes);
 PetscErrorCode ArchiveCreate(MPI_Comm, const char *file, PetscInt64 bytes, Archive *);
 PetscErrorCode ArchiveOpen(MPI_Comm, const char *file, Archive *);

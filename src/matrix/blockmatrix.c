@@ -1098,7 +1098,7 @@ PetscErrorCode BlockMatrixReturn(BlockMatrix blocks, PetscInt rows)
   Note:
   A pattern that is kept depends on what was assembled before, and another pattern orders the solver's sums in another
   way. With the pattern, runs on one rank repeat to the last bit. On several ranks the function does nothing, because
-  dofs are numbered by rank; the pattern is found anew.
+  dofs are numbered by rank; the pattern is found anew. So it is where the unknowns change.
 @*/
 PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const char *name, PetscInt rows)
 {
@@ -1110,6 +1110,7 @@ PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const cha
   char               path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
+  if (ArchiveRenumbers(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCallMPI(MPI_Comm_size(blocks->comm, &size));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/key", name));
   if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, path, &there));

@@ -65,14 +65,14 @@ PetscErrorCode RootSkinsShare(Scene scene, Mesh mesh, int first)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The one component of the displacement that supports fix on a group; -1: none, or several. */
+/* The one component of the displacement that supports fix on a group all the time; -1: none, or several. */
 static int SlidingComponent(Scene scene, const MeshGroup *group)
 {
   int fixed[3] = {0, 0, 0}, found = -1;
 
   for (int s = 0; s < scene->n_supports; s++)
     for (int d = 0; d < 3 && !strcmp(scene->supports[s].surface, group->name); d++)
-      fixed[d] = fixed[d] || scene->supports[s].fixed[d];
+      fixed[d] = fixed[d] || (scene->supports[s].fixed[d] && !scene->supports[s].during.some);
   for (int d = 0; d < 3; d++) {
     if (!fixed[d]) continue;
     if (found >= 0) return -1;

@@ -122,6 +122,45 @@ static void WarnOfLengths(Model model)
   }
 }
 
+/* Says whether other supports hold in a step than in the one before. */
+static PetscBool SupportsDiffer(Scene scene, int step)
+{
+  for (int s = 0; s < scene->n_supports; s++)
+    if (SceneHolds(&scene->supports[s].during, step) != SceneHolds(&scene->supports[s].during, step - 1))
+      return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Looks at what holds the bodies in each step that has other supports than the step before. It prints that to a stream,
+   or refuses a body that nothing holds where there is none. */
+static PetscErrorCode LookAtSteps(Model model, FILE *stream)
+{
+  const Scene    scene = model->scene;
+  const Loads    loads = model->problem->loads;
+  PetscErrorCode code  = PETSC_SUCCESS;
+  PetscMPIInt    rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &rank));
+  for (int k = 1; k < scene->stepping.n_steps && !code; k++) {
+    const char *name = scene->stepping.steps[k].name;
+    FreeModes   modes;
+
+    if (!SupportsDiffer(scene, k)) continue;
+    PetscCall(LoadsShowPhase(loads, k));
+    PetscCall(FreeModesCreate(model->mesh, scene, loads, &modes));
+    PetscCall(LoadsShowPhase(loads, LoadsPhase(loads)));
+    if (stream && !rank) fprintf(stream, "         from step '%s' on:\n", name);
+    if (stream)
+      PetscCall(FreeModesReport(modes, PETSC_TRUE, stream));
+    else
+      code = FreeModesRefuse(modes, name);
+    PetscCall(FreeModesDestroy(&modes));
+  }
+  PetscCall(code);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   PrecheckModel - looks for what makes a scene fail before anything is solved.
 
@@ -137,6 +176,7 @@ static void WarnOfLengths(Model model)
 @*/
 PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
 {
+  const Scene scene = model->scene;
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
@@ -151,10 +191,12 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
     PetscCall(PrecheckPlasticity(model, stream));
     if (!rank) LawReport(model->scene, stream);
     PetscCall(FreeModesReport(model->problem->modes, PETSC_TRUE, stream));
+    PetscCall(LookAtSteps(model, stream));
     PetscCall(ContactReport(model->contact, stream));
     PetscCall(EstimatePrint(model, stream));
   }
-  PetscCall(FreeModesRefuse(model->problem->modes));
+  PetscCall(FreeModesRefuse(model->problem->modes, SceneSupportsChange(scene) ? scene->stepping.steps[0].name : NULL));
+  PetscCall(LookAtSteps(model, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

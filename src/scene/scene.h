@@ -6,7 +6,8 @@
    reads the scene of a checkpoint, and SceneSameProblem() tells whether a restart may continue results of another text.
    Reading loads and runs nothing: SceneLoadRoutines() loads the libraries of users that the scene names.
    Checks that need the mesh are made later by the part that owns them. Their messages start with SceneWhere().
-   SceneBreaks() tells the step control where loads change their rate, SceneStepAt() the name of the step at t.
+   SceneBreaks() tells the step control where loads change their rate, SceneStepAt() the name of the step at t, and
+   SceneStepFrom() the number of the one that follows. SceneSupportsChange() and SceneHolds() tell about supports.
    SceneReference() prints the scene reference. */
 #pragma once
 #include <petscsys.h>
@@ -48,11 +49,17 @@ typedef struct {
   double locked;  /* of the bolt: load parameter from which its length is kept; above 1: it never is */
 } SceneBody;
 
+/* Steps in which a support holds, by their numbers; with some = 0 it holds all the time. */
 typedef struct {
-  char   *path, *surface;
-  int     fixed[3];  /* whether a component of the displacement is held at 0 */
-  double  spring[3]; /* stiffness of springs to the ground (force per length and area); 0: there are none */
-  History history;   /* factor on springs over the load parameter; with n = 0 it is 1 */
+  int some, first, last;
+} SceneSpan;
+
+typedef struct {
+  char     *path, *surface;
+  int       fixed[3]; /* whether a component of the displacement is held at 0, or where it is when the support comes */
+  SceneSpan during;   /* of what it fixes */
+  double    spring[3]; /* stiffness of springs to the ground (force per length and area); 0: there are none */
+  History   history;   /* factor on springs over the load parameter; with n = 0 it is 1 */
 } SceneSupport;
 
 /* A step with a name: a part of the load parameter's way, which may have many load steps. */
@@ -82,6 +89,7 @@ typedef struct {
   int        open;          /* 1 if a pressure is that of a fluid that enters between surfaces, with the two ends */
   SceneEnd   from, to;
   History    history; /* factor over the load parameter on values and on expressions without t */
+  SceneSpan  during;  /* of a displacement that a support imposes in some steps; it has no history then */
 } SceneLoad;
 
 /* The side to which the normals of a meshed rigid master point: that of the slave's start, the other side of that of
@@ -306,6 +314,9 @@ PetscBool      SceneIsPlastic(Scene);
 PetscBool      SceneHasRoutine(Scene);
 PetscBool      SceneBreaks(Scene, PetscReal t);
 const char    *SceneStepAt(Scene, PetscReal t);
+int            SceneStepFrom(Scene, PetscReal t);
+PetscBool      SceneSupportsChange(Scene);
+PetscBool      SceneHolds(const SceneSpan *, PetscInt step);
 PetscBool      SceneLoadVaries(const SceneLoad *, int component);
 PetscReal      SceneLoadValue(const SceneLoad *, int component, const PetscReal X[3], PetscReal t);
 PetscErrorCode SceneReference(FILE *);

@@ -1,6 +1,7 @@
 /* Supports and loads of a scene, see sceneload.h. */
 #include "sceneload.h"
 #include "sceneread.h"
+#include "scenesteps.h"
 #include <string.h>
 
 static const char *const Displacements[] = {"ux", "uy", "uz"};
@@ -26,11 +27,23 @@ static PetscErrorCode SceneReadSupportValue(Scene scene, SceneSupport *support, 
     load = &scene->loads[scene->n_loads++];
     PetscCall(PetscStrallocpy(support->path, &load->path));
     PetscCall(PetscStrallocpy(support->surface, &load->region));
-    load->kind = LOAD_DISPLACEMENT;
-    PetscCall(SceneReadHistory(scene, load->path, &load->history));
+    load->kind   = LOAD_DISPLACEMENT;
+    load->during = support->during;
+    if (!load->during.some) PetscCall(SceneReadHistory(scene, load->path, &load->history));
   }
   load->has[component]        = 1;
   load->expression[component] = expression;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads in which steps a support holds that prescribes displacements. */
+static PetscErrorCode SceneReadSupportSpan(Scene scene, SceneSupport *support)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SceneReadSpan(scene, support->path, &support->during));
+  if (support->during.some && SceneHas(scene, support->path, "spring"))
+    PetscCall(SceneRefuse(scene, support->path, "spring",
+                          "stands beside a displacement with `during`; allowed: an entry for each of the two", NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -43,8 +56,8 @@ static PetscErrorCode SceneReadSpringHistory(Scene scene, SceneSupport *support)
   for (int k = 0; k < 3; k++)
     if (SceneHas(scene, support->path, Displacements[k]))
       PetscCall(SceneRefuse(scene, support->path, Displacements[k],
-                            "holds all the time, but the entry has a history or `during`, which only springs take; "
-                            "allowed: an entry for each of the two, or a stiff spring",
+                            "stands beside a history, which only springs take; allowed: an entry for each of the "
+                            "two, or `during`, which names the steps in which it holds",
                             NULL));
   for (int i = 0; i < support->history.n; i++)
     if (support->history.v[i] < 0)
@@ -97,6 +110,7 @@ PetscErrorCode SceneReadSupports(Scene scene)
     PetscCall(ScenePath(&support->path, "supports", i));
     PetscCall(SceneReadText(scene, support->path, "surface", &support->surface));
     PetscCall(SceneRefuseRigid(scene, support->path, "surface", support->surface));
+    PetscCall(SceneReadSupportSpan(scene, support));
     PetscCall(SceneReadSpringHistory(scene, support));
     PetscCall(SceneReadSprings(scene, support, &held));
     for (int k = 0; k < 3; k++) {

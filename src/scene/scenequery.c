@@ -38,6 +38,17 @@ static PetscBool MotionBreaks(const Motion *motion, PetscReal t)
   return HistoryBreaks(&motion->history, t) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Tells whether a support that holds in some steps comes or leaves at t, or whether its last forces have faded there.
+ */
+static PetscBool SpanBreaks(Scene scene, const SceneSpan *span, PetscReal t)
+{
+  const SceneStep *step = scene->stepping.steps;
+
+  if (!span->some) return PETSC_FALSE;
+  if (t == step[span->first].begin || t == step[span->first].until || t == step[span->last].until) return PETSC_TRUE;
+  return (PetscBool)(span->last + 1 < scene->stepping.n_steps && t == step[span->last + 1].until);
+}
+
 /*@
   SceneBreaks - tells whether some load, imposed displacement or motion has a breakpoint at load parameter t.
 
@@ -56,7 +67,8 @@ PetscBool SceneBreaks(Scene scene, PetscReal t)
   for (int l = 0; l < scene->n_loads; l++)
     if (HistoryBreaks(&scene->loads[l].history, t)) return PETSC_TRUE;
   for (int s = 0; s < scene->n_supports; s++)
-    if (HistoryBreaks(&scene->supports[s].history, t)) return PETSC_TRUE;
+    if (HistoryBreaks(&scene->supports[s].history, t) || SpanBreaks(scene, &scene->supports[s].during, t))
+      return PETSC_TRUE;
   for (int b = 0; b < scene->n_bodies; b++)
     if (MotionBreaks(&scene->bodies[b].motion, t) || (scene->bodies[b].bolt && scene->bodies[b].locked == t))
       return PETSC_TRUE;
@@ -98,4 +110,33 @@ PetscBool SceneLoadVaries(const SceneLoad *load, int component)
 PetscReal SceneLoadValue(const SceneLoad *load, int component, const PetscReal X[3], PetscReal t)
 {
   return load->expression[component] ? ExpressionValue(load->expression[component], X, t) : load->value[component];
+}
+
+/*@
+  SceneSupportsChange - tells whether some support holds in some steps only.
+
+  Not collective
+
+  Input Parameter:
+. scene - the scene
+@*/
+PetscBool SceneSupportsChange(Scene scene)
+{
+  for (int s = 0; s < scene->n_supports; s++)
+    if (scene->supports[s].during.some) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/*@
+  SceneHolds - tells whether a support holds in a step.
+
+  Not collective
+
+  Input Parameters:
++ span - the steps of the support
+- step - number of the step
+@*/
+PetscBool SceneHolds(const SceneSpan *span, PetscInt step)
+{
+  return (PetscBool)(!span->some || (span->first <= step && step <= span->last));
 }

@@ -96,6 +96,10 @@ static PetscErrorCode CheckPath(Scene scene)
       PetscCall(Refuse(scene, NULL,
                        "is not available where a bolt is locked at a length that comes from an earlier force, as the "
                        "answer depends on the way to it; allowed: bolts that keep their force"));
+  if (SceneSupportsChange(scene))
+    PetscCall(Refuse(scene, NULL,
+                     "is not available where supports come and go, as the answer depends on the way to it; allowed: "
+                     "supports that hold all the time"));
   for (int l = 0; l < scene->n_loads; l++)
     if (scene->loads[l].open)
       PetscCall(Refuse(scene, NULL, "is not available where a fluid enters between surfaces; allowed: other loads"));

@@ -2,6 +2,9 @@
 #include "scenesteps.h"
 #include <string.h>
 
+/* Load parameters that are closer than this are the same one, as they are for the load stepper. */
+#define STEPS_SAME_T 1e-12
+
 /* Characters of a history with at most six points */
 enum { STEPS_HISTORY = 400 };
 
@@ -130,11 +133,13 @@ static PetscErrorCode Note(SceneStep *step, const char *path)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts a history in the place of the `during` of a map. */
+/* Puts a history in the place of the `during` of a map. That of a support that prescribes displacements stays: these
+   are there or not. */
 static PetscErrorCode ResolveMap(Scene scene, Node map, int place, const char *path)
 {
-  const Node during = map->child[place];
-  const int  moves  = strstr(path, ".motion.") || NodeChild(map, "ux") || NodeChild(map, "uy") || NodeChild(map, "uz");
+  const Node during              = map->child[place];
+  const int  prescribes          = NodeChild(map, "ux") || NodeChild(map, "uy") || NodeChild(map, "uz");
+  const int  moves               = strstr(path, ".motion.") || prescribes;
   char       text[STEPS_HISTORY] = "", below[KEY_PATH_LENGTH];
   int        span[2]             = {0, 0};
 
@@ -142,12 +147,13 @@ static PetscErrorCode ResolveMap(Scene scene, Node map, int place, const char *p
   if (NodeChild(map, "history"))
     PetscCall(SceneRefuse(scene, path, "during", "stands beside a history; allowed: one of them", NULL));
   PetscCall(FindSpan(scene, path, during, span));
+  for (int k = span[0]; k <= span[1]; k++) PetscCall(Note(&scene->stepping.steps[k], path));
+  if (prescribes && !strncmp(path, "supports.", 9)) PetscFunctionReturn(PETSC_SUCCESS);
   if (IsThere(path))
     SpringText(&scene->stepping.steps[span[0]], &scene->stepping.steps[span[1]], text);
   else
     (moves ? WayText : ForceText)(&scene->stepping.steps[span[0]], &scene->stepping.steps[span[1]], text);
   strcat(text, "]");
-  for (int k = span[0]; k <= span[1]; k++) PetscCall(Note(&scene->stepping.steps[k], path));
   KeyPathJoin(below, path, "during");
   PetscCall(DocumentReplace(SceneDocument(scene), during, below, text));
   PetscCall(PetscFree(map->key[place]));
@@ -198,6 +204,31 @@ PetscErrorCode SceneReadSteps(Scene scene)
 }
 
 /*@
+  SceneReadSpan - reads the steps of a `during` that SceneReadSteps() has left in its place.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+- path  - of the map with the key
+
+  Output Parameter:
+. span - the steps; without the key it says all the time
+@*/
+PetscErrorCode SceneReadSpan(Scene scene, const char *path, SceneSpan *span)
+{
+  const Node during = SceneNode(scene, path, "during");
+  int        ends[2];
+
+  PetscFunctionBeginUser;
+  *span = (SceneSpan){.some = 0};
+  if (!during) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FindSpan(scene, path, during, ends));
+  *span = (SceneSpan){1, ends[0], ends[1]};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   SceneDestroySteps - frees what SceneReadSteps() made.
 
   Not collective
@@ -233,4 +264,24 @@ const char *SceneStepAt(Scene scene, PetscReal t)
   for (int i = 0; i < scene->stepping.n_steps; i++)
     if (t <= scene->stepping.steps[i].until || i == scene->stepping.n_steps - 1) return scene->stepping.steps[i].name;
   return NULL;
+}
+
+/*@
+  SceneStepFrom - returns the number of the step that is under way from a load parameter on.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+- t     - load parameter
+
+  Note:
+  Where one step ends and the next one begins it is the number of the next one. It is 0 without steps with names.
+@*/
+int SceneStepFrom(Scene scene, PetscReal t)
+{
+  int i = 0;
+
+  while (i < scene->stepping.n_steps - 1 && t >= scene->stepping.steps[i].until - STEPS_SAME_T) i++;
+  return i;
 }

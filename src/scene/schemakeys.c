@@ -175,16 +175,21 @@ const SchemaKey SchemaKeys[] = {
   {"supports.*", MAP, .help = "a surface with at least one component or springs"},
   {"supports.*.surface", TEXT, REQUIRED, .help = "physical surface"},
   {"supports.*.ux|uy", REAL | FORMULA, .unit = "length",
-   .help = "0 holds this component of the displacement; an expression imposes it, as in loads"},
+   .help = "0 holds this component of the displacement, with during where it is when the support comes; an expression "
+           "imposes it, as in loads"},
   {"supports.*.uz", REAL | FORMULA, SOLID, .unit = "length",
-   .help = "0 holds this component of the displacement; an expression imposes it, as in loads"},
+   .help = "0 holds this component of the displacement, with during where it is when the support comes; an expression "
+           "imposes it, as in loads"},
   {"supports.*.spring", POINT, .range = "[0, inf)", .unit = "force per length and area",
    .help = "stiffness of springs from the surface to the ground, along each axis; an axisymmetric scene has the radius "
            "as x. They act on the reference area along the axes, however the body moves"},
   {"supports.*.history", HISTORY, .help = "factor on spring over the load parameter t; without the key it is 1"},
   {"supports.*.during", NAME | TEXTS,
-   .help = "steps in which springs hold, in the place of history, as loads.N.during; in the first step of all they are "
-           "there from the start"},
+   .help = "step, or list of steps one after the other, in which the support holds; several entries for one surface let "
+           "it come again. Where it comes, 0 holds the displacement that is there by then, and an expression is reached "
+           "at the end of the first step, from there evenly. Where it leaves, its last forces fade evenly over the step "
+           "that follows. Springs come and fade as loads.N.during, in the place of history; in the first step of all "
+           "they are there from the start"},
   {"loads", LIST,
    .help = "loads, each of one kind and equal to its value multiplied by its history. A value may be an expression "
            "such as \"1e7 + 1e6*cos(2*theta)\", in x, y, z (reference coordinates), r = sqrt(x^2 + y^2), theta = "

@@ -35,11 +35,13 @@ static PetscErrorCode GroupPlane(Mesh mesh, const MeshGroup *group, int *axis, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Does a support fix this displacement component on the surface? */
+/* Does a support fix this displacement component on the surface, all the time? */
 static PetscBool SupportHolds(Scene scene, const char *surface, int component)
 {
   for (int s = 0; s < scene->n_supports; s++)
-    if (!strcmp(scene->supports[s].surface, surface) && scene->supports[s].fixed[component]) return PETSC_TRUE;
+    if (!strcmp(scene->supports[s].surface, surface) && scene->supports[s].fixed[component] &&
+        !scene->supports[s].during.some)
+      return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -235,13 +237,14 @@ static PetscErrorCode SurfaceAtPlane(ContactSurface surface, int axis, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes of which supports fix a component. */
+/* Nodes of which supports fix a component all the time. */
 static PetscErrorCode HeldNodes(Mesh mesh, Scene scene, int component, PetscBool *held)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(held, mesh->n_nodes));
   for (int s = 0; s < scene->n_supports; s++) {
-    for (int dim = 0; dim < mesh->dim && scene->supports[s].fixed[component]; dim++) {
+    for (int dim = 0; dim < mesh->dim && scene->supports[s].fixed[component] && !scene->supports[s].during.some;
+         dim++) {
       const int g = MeshFindGroup(mesh, dim, scene->supports[s].surface);
 
       for (PetscInt i = 0; g >= 0 && i < mesh->groups[g].n_nodes; i++) held[mesh->groups[g].nodes[i]] = PETSC_TRUE;

@@ -266,6 +266,30 @@ PetscErrorCode FreeBodiesAccept(FreeBodies b, ContactSprings springs)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Saves or loads what holds each free motion. Other bodies may be free where the supports have changed: what a motion
+   that is not the same one was tied by is not known then. */
+static PetscErrorCode ArchiveStates(FreeBodies b, Archive archive)
+{
+  const int motions = b->n;
+  PetscInt  n       = 2 * motions, *list;
+  PetscBool there   = PETSC_TRUE, same;
+
+  PetscFunctionBeginUser;
+  if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, "bodies/tied", &there));
+  if (!there) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ArchiveLoads(archive)) PetscCall(PetscMalloc1(n, &list));
+  for (int k = 0; k < motions && !ArchiveLoads(archive); k++) {
+    list[2 * k]     = b->owner[k];
+    list[2 * k + 1] = b->state[k];
+  }
+  PetscCall(ArchiveIntegerList(archive, "bodies/tied", &n, &list));
+  same = (PetscBool)(n == 2 * motions);
+  for (int k = 0; k < motions && same; k++) same = (PetscBool)(list[2 * k] == b->owner[k]);
+  for (int k = 0; k < motions && same; k++) b->state[k] = list[2 * k + 1];
+  PetscCall(PetscFree(list));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FreeBodiesArchive - saves or loads what is tied in the accepted state, and what FreeBodiesMoved() says.
 
@@ -277,9 +301,12 @@ PetscErrorCode FreeBodiesAccept(FreeBodies b, ContactSprings springs)
 @*/
 PetscErrorCode FreeBodiesArchive(FreeBodies b, Archive archive)
 {
+  PetscBool there = PETSC_TRUE;
+
   PetscFunctionBeginUser;
-  if (b->n) PetscCall(ArchiveIntegers(archive, "bodies/tied", b->n, b->state));
-  PetscCall(ArchiveString(archive, "bodies/moved", sizeof(b->moved), b->moved));
+  if (b->n) PetscCall(ArchiveStates(b, archive));
+  if (ArchiveRenumbers(archive) && ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, "bodies/moved", &there));
+  if (there) PetscCall(ArchiveString(archive, "bodies/moved", sizeof(b->moved), b->moved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -26,30 +26,16 @@ const char *const SolveResults[] = {
   "the tangent was indefinite on the way, and the first step is too long to say whether the bodies jump",
   "not-a-number in the residual"};
 
-/*@
-  ModelCreate - creates the problem of a scene and its nonlinear solver.
-
-  Collective
-
-  Input Parameters:
-+ scene - borrowed
-- mesh  - borrowed
-
-  Output Parameter:
-. out - the model; ModelPlace() comes next
-@*/
-PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
+/* Makes all parts of a model for the supports of a phase. */
+static PetscErrorCode ModelBuild(Model model, PetscInt phase)
 {
-  Model          model;
-  const PetscInt n = mesh->n_nodes * mesh->dim;
+  const Scene    scene = model->scene;
+  const Mesh     mesh  = model->mesh;
+  const PetscInt n     = mesh->n_nodes * mesh->dim;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&model));
   PetscCall(PetscNew(&model->work));
-  *out = model; /* ModelDestroy() frees what a refusal leaves */
-  PetscCall(ProblemCreate(scene, mesh, &model->problem));
-  model->scene   = scene;
-  model->mesh    = mesh;
+  PetscCall(ProblemCreate(scene, mesh, phase, &model->problem));
   model->contact = model->problem->contact;
   PetscCall(PetscCalloc2(n, &model->u, n, &model->work->accepted_u));
   PetscCall(MatCreateVecs(model->problem->A, &model->x, NULL));
@@ -59,8 +45,7 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(VecDuplicate(model->x, &model->work->step));
   if (scene->kinematics != KINEMATICS_SMALL || SceneIsPlastic(scene))
     PetscCall(ExtrapolationCreate(mesh, &model->work->extrapolation));
-  if (ProblemIsPlastic(model->problem))
-    PetscCall(EnergyBalanceCreate(model->problem, &model->balance));
+  if (ProblemIsPlastic(model->problem)) PetscCall(EnergyBalanceCreate(model->problem, &model->balance));
   PetscCall(ModelCreateSNES(model));
   PetscCall(ModelCreatePenaltyError(model));
   if (model->contact) PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
@@ -69,20 +54,10 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ModelDestroy - destroys the model and its problem; the scene and the mesh remain.
-
-  Collective
-
-  Input Parameter:
-. model - set to NULL; may be NULL already
-@*/
-PetscErrorCode ModelDestroy(Model *model)
+/* Frees all parts of a model. */
+static PetscErrorCode ModelClear(Model m)
 {
-  Model m = *model;
-
   PetscFunctionBeginUser;
-  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CertificateDestroy(&m->certificate));
   PetscCall(SNESDestroy(&m->snes));
   PetscCall(LinearSolverDestroy(&m->work->solver));
@@ -104,6 +79,48 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(PetscFree(m->work->penalty_error));
   PetscCall(PetscFree3(m->work->stiffened_at, m->work->stiffened_by, m->work->accepted_stays));
   PetscCall(PetscFree(m->work));
+  *m = (struct _n_Model){.scene = m->scene, .mesh = m->mesh};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelCreate - creates the problem of a scene and its nonlinear solver.
+
+  Collective
+
+  Input Parameters:
++ scene - borrowed
+- mesh  - borrowed
+
+  Output Parameter:
+. out - the model; ModelPlace() comes next
+@*/
+PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
+{
+  Model model;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&model));
+  *out         = model; /* ModelDestroy() frees what a refusal leaves */
+  model->scene = scene;
+  model->mesh  = mesh;
+  PetscCall(ModelBuild(model, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelDestroy - destroys the model and its problem; the scene and the mesh remain.
+
+  Collective
+
+  Input Parameter:
+. model - set to NULL; may be NULL already
+@*/
+PetscErrorCode ModelDestroy(Model *model)
+{
+  PetscFunctionBeginUser;
+  if (!*model) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelClear(*model));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -303,6 +320,23 @@ PetscErrorCode ModelRestore(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Saves or loads which supports hold. A model that loads is built anew where other ones do. */
+static PetscErrorCode ModelArchivePhase(Model model, Archive archive)
+{
+  PetscInt phase = LoadsPhase(model->problem->loads);
+
+  PetscFunctionBeginUser;
+  PetscCall(ArchiveIntegers(archive, "supports/phase", 1, &phase));
+  PetscCheck(phase >= 0 && phase < PetscMax(1, model->scene->stepping.n_steps), model->mesh->comm,
+             PETSC_ERR_FILE_UNEXPECTED, "step %" PetscInt_FMT " of the supports", phase);
+  if (phase != LoadsPhase(model->problem->loads)) {
+    PetscCall(ModelClear(model));
+    PetscCall(ModelBuild(model, phase));
+  }
+  PetscCall(LoadsArchive(model->problem->loads, archive));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelArchive - saves or loads the accepted state: displacements, states for the extrapolation, load parameter, scales
   and contact.
@@ -319,12 +353,15 @@ PetscErrorCode ModelRestore(Model model)
 PetscErrorCode ModelArchive(Model model, Archive archive)
 {
   const Mesh mesh = model->mesh;
-  ModelWork *work = model->work;
-  PetscInt   held = work->accepted_held;
+  ModelWork *work;
+  PetscInt   held;
   Hdf5Table  nodes;
   PetscBool  ok;
 
   PetscFunctionBeginUser;
+  if (SceneSupportsChange(model->scene)) PetscCall(ModelArchivePhase(model, archive));
+  work = model->work;
+  held = work->accepted_held;
   PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_global, mesh->n_nodes, mesh->node_id, &nodes));
   PetscCall(ArchiveRows(archive, "model/displacement", &nodes, mesh->dim, work->accepted_u));
   if (work->extrapolation) PetscCall(ExtrapolationArchive(work->extrapolation, archive, &nodes, work->accepted_u));
@@ -356,6 +393,48 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscCall(FluidRestore(model->problem->fluids, model->u, model->t));
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   if (model->contact) PetscCall(ContactRestore(model->contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelChangeSupports - lets supports come and go where a step with a name ends in the accepted state.
+
+  Collective
+
+  Input Parameter:
+. model - between two steps
+
+  Output Parameter:
+. changed - other supports hold from here on
+
+  Note:
+  The unknowns are those of the step that begins. All parts of the model are made anew for them and take over the
+  accepted state, as they do in a restart. The forces of supports that leave fade over the step.
+@*/
+PetscErrorCode ModelChangeSupports(Model model, PetscBool *changed)
+{
+  const PetscInt n     = model->mesh->n_nodes * model->mesh->dim;
+  const PetscInt phase = SceneStepFrom(model->scene, model->work->accepted_t);
+  PetscReal     *force;
+  Archive        archive;
+
+  PetscFunctionBeginUser;
+  *changed = PETSC_FALSE;
+  if (!SceneSupportsChange(model->scene) || phase == LoadsPhase(model->problem->loads))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  *changed = PETSC_TRUE;
+  PetscCall(PetscMalloc1(n, &force));
+  PetscCall(PetscArraycpy(force, model->problem->f, n));
+  PetscCall(MeshSumNodes(model->mesh, model->mesh->dim, force));
+  PetscCall(LoadsChangePhase(model->problem->loads, phase, model->work->accepted_u, force));
+  PetscCall(PetscFree(force));
+  PetscCall(ArchiveKeep(model->mesh->comm, &archive));
+  PetscCall(ModelArchive(model, archive));
+  ArchiveTurn(archive);
+  PetscCall(ModelClear(model));
+  PetscCall(ModelBuild(model, phase));
+  PetscCall(ModelArchive(model, archive));
+  PetscCall(ArchiveClose(&archive));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -4,7 +4,8 @@
    ModelCreate(), ModelPlace() and ModelSetUp() are called once, in this order; ModelArchive() with an archive that
    loads takes the place of ModelSetUp(). ModelSolve() finds equilibrium at t, ModelSolveSlowly() by way of a viscous
    motion where that fails. ModelAccept() makes it the accepted state, ModelCertify() judges the step to it before.
-   ModelRestore() returns to the accepted state. The model does not know step sizes; src/step chooses them. */
+   ModelRestore() returns to the accepted state. ModelChangeSupports() comes between two steps. The model does not know
+   step sizes; src/step chooses them. */
 #pragma once
 #include "certificate/certificate.h"
 #include "linear/linearcheck.h"
@@ -82,11 +83,11 @@ typedef struct {
 
 /* What penetration leaves of error in the present state, estimated: parts of the present values. */
 typedef struct {
-  PetscReal force;        /* of the sum of a pair's nodal forces; NaN: not estimated */
-  PetscReal pressure;     /* of its mean pressure, nodes weighted by their forces */
-  PetscReal peak;         /* of its largest pressure; where pressures scatter, that of the scatter too */
-  PetscReal displacement; /* of the largest displacement in the model */
-  PetscReal slip_force;   /* by elastic slip: of the sum of a pair's forces by friction, or of its normal ones */
+  PetscReal force;             /* of the sum of a pair's nodal forces; NaN: not estimated */
+  PetscReal pressure;          /* of its mean pressure, nodes weighted by their forces */
+  PetscReal peak;              /* of its largest pressure; where pressures scatter, that of the scatter too */
+  PetscReal displacement;      /* of the largest displacement in the model */
+  PetscReal slip_force;        /* by elastic slip: of the sum of a pair's forces by friction, or of its normal ones */
   PetscReal slip_displacement; /* by elastic slip: of the largest displacement */
 } PenaltyError;
 #define PENALTY_ERROR_VALUES 6
@@ -119,6 +120,7 @@ PetscErrorCode ModelCertify(Model, SolveReport *);
 PetscErrorCode ModelAccept(Model);
 PetscErrorCode ModelRestore(Model);
 PetscErrorCode ModelArchive(Model, Archive);
+PetscErrorCode ModelChangeSupports(Model, PetscBool *changed);
 PetscErrorCode ModelEffects(Model, char *text, size_t size);
 PetscErrorCode ModelDofs(Model, PetscInt *free_dofs);
 PenaltyError   ModelPenaltyError(Model, int pair);

@@ -31,7 +31,8 @@ static PetscErrorCode ShortestEdge(Mesh mesh, PetscReal *length)
 
   Input Parameters:
 + scene - borrowed
-- mesh  - borrowed
+. mesh  - borrowed
+- phase - number of the step with a name whose supports hold, see LoadsCreate()
 
   Output Parameter:
 . out - the problem, with its tangent in the form TANGENT_JOINED
@@ -39,7 +40,7 @@ static PetscErrorCode ShortestEdge(Mesh mesh, PetscReal *length)
   Note:
   The loads come first, because they decide which dofs are free.
 @*/
-PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
+PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, PetscInt phase, Problem *out)
 {
   const PetscInt n = mesh->n_nodes * mesh->dim;
   Problem        problem;
@@ -52,7 +53,7 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   problem->form     = TANGENT_JOINED;
   problem->inverted = -1;
   if (scene->kinematics == KINEMATICS_FINITE) PetscCall(ShortestEdge(mesh, &problem->edge));
-  PetscCall(LoadsCreate(mesh, scene, &problem->loads));
+  PetscCall(LoadsCreate(mesh, scene, phase, &problem->loads));
   PetscCall(ElasticityCreate(mesh, scene, &problem->elasticity));
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, problem->elasticity, problem->loads, &problem->contact));
   PetscCall(ElasticitySetSymmetric(problem->elasticity, ProblemConservative(problem)));
@@ -586,7 +587,8 @@ PetscErrorCode ProblemRenewLists(Problem problem, const PetscReal *u_0, PetscRea
 
   Note:
   The residual is summed over the prescribed dofs of the group, and the forces of springs over all of its dofs. These
-  include dofs on the edges that the group shares with other supported surfaces.
+  include dofs on the edges that the group shares with other supported surfaces. Where supports have left, their fading
+  forces count.
 @*/
 PetscErrorCode ProblemReaction(Problem problem, const MeshGroup *group, PetscReal force[3])
 {
@@ -599,7 +601,7 @@ PetscErrorCode ProblemReaction(Problem problem, const MeshGroup *group, PetscRea
     for (int d = 0; d < dim; d++) {
       const PetscInt dof = group->nodes[i] * dim + d;
 
-      if (LoadsPrescribed(problem->loads, dof)) force[d] += problem->f[dof];
+      force[d] += LoadsPrescribed(problem->loads, dof) ? problem->f[dof] : LoadsFadingForce(problem->loads, dof);
       if (spring) force[d] += spring[dof];
     }
   }

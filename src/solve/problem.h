@@ -72,9 +72,9 @@ typedef struct _n_Problem {
   PetscReal      expected;     /* motion (length) that ProblemGatherLists() made the contact lists for */
   PetscInt       inverted;     /* gmsh's tag of a cell of this rank that a residual found inverted, or -1 */
   int            fault;        /* of the routine of the user in that cell, for UmatTell() */
-} * Problem;
+} *Problem;
 
-PetscErrorCode ProblemCreate(Scene, Mesh, Problem *);
+PetscErrorCode ProblemCreate(Scene, Mesh, PetscInt phase, Problem *);
 PetscErrorCode ProblemDestroy(Problem *);
 PetscErrorCode ProblemDisplacements(Problem, Vec x, PetscReal t, PetscReal *u);
 PetscErrorCode ProblemSetTrial(Problem, Vec x, PetscReal t);

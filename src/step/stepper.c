@@ -335,17 +335,33 @@ static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The next step is as at the start, unless steps have become shorter: those before say nothing of it. */
+static void StartAnew(StepSize *size)
+{
+  size->dt      = PetscMin(size->dt, size->initial);
+  size->last_dt = size->failed_dt = 0;
+}
+
+/* Where supports come or leave, bodies begin to move otherwise than before. */
+static PetscErrorCode LoadStepperMeetSupports(Model model, StepSize *size)
+{
+  PetscBool changed;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelChangeSupports(model, &changed));
+  if (changed) StartAnew(size);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Where a fluid begins to press, the steps before say nothing of it: it moves bodies that only contact holds, until
-   contact holds them elsewhere. The next step is as at the start, unless steps have become shorter. */
+   contact holds them elsewhere. */
 static PetscErrorCode LoadStepperMeetFluid(Model model, StepSize *size)
 {
   PetscBool begins = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (SceneBreaks(model->scene, model->t)) PetscCall(FluidBegins(model->problem->fluids, model->t, &begins));
-  if (!begins) PetscFunctionReturn(PETSC_SUCCESS);
-  size->dt      = PetscMin(size->dt, size->initial);
-  size->last_dt = size->failed_dt = 0;
+  if (begins) StartAnew(size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -670,6 +686,7 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
   stepper->next_landing = 0;
   if (stepper->view) PetscCall(LoadStepperView(stepper, PETSC_VIEWER_STDOUT_(stepper->comm)));
   while (stepper->report.t < 1 - STEPPER_SAME_T && advanced && !stepper->report.stopped) {
+    PetscCall(LoadStepperMeetSupports(stepper->model, &stepper->size));
     PetscCall(LoadStepperAdvance(stepper, &record, &advanced));
     if (advanced && stepper->monitor) PetscCall(stepper->monitor(stepper, &record, stepper->monitor_context));
   }

@@ -79,37 +79,66 @@ static void Save(State *state)
   assert_int_equal(ArchiveClose(&archive), 0);
 }
 
+/* Loads a state, compares it with what was saved, and frees it. */
+static void Load(const State *saved, Archive archive)
+{
+  State      loaded = {0};
+  PetscInt64 all    = saved->n_bytes, bytes;
+  PetscBool  there;
+
+  assert_true(ArchiveLoads(archive));
+  StateArchive(&loaded, archive);
+  assert_true(loaded.real[0] == 1.0 / 3 && PetscIsNanReal(loaded.real[1]) && loaded.flag);
+  assert_memory_equal(loaded.items, saved->items, sizeof(saved->items));
+  assert_int_equal(loaded.n, 3);
+  assert_memory_equal(loaded.list, saved->list, 3 * sizeof(PetscInt));
+  assert_string_equal(loaded.text, saved->text);
+  bytes = loaded.n_bytes;
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPIU_INT64, MPI_SUM, PETSC_COMM_WORLD), 0);
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &bytes, 1, MPIU_INT64, MPI_SUM, PETSC_COMM_WORLD), 0);
+  assert_true(all == bytes);
+  assert_int_equal(ArchiveHas(archive, "group/items", &there), 0);
+  assert_true(there);
+  assert_int_equal(ArchiveHas(archive, "no/such/value", &there), 0);
+  assert_false(there);
+  PetscFree(loaded.list);
+  PetscFree(loaded.text);
+  PetscFree(loaded.bytes);
+}
+
 static void test_round_trip(void **unused)
 {
-  PetscInt   list[3] = {7, -1, 3};
-  char       text[]  = "a text\n", bytes[64];
-  State      saved = StateFill(list, text, bytes), loaded = {0};
-  Archive    archive;
-  PetscInt64 all = saved.n_bytes;
-  PetscBool  there;
+  PetscInt list[3] = {7, -1, 3};
+  char     text[]  = "a text\n", bytes[64];
+  State    saved   = StateFill(list, text, bytes);
+  Archive  archive;
 
   (void)unused;
   Save(&saved);
   assert_int_not_equal(access("test_archive.h5.tmp", F_OK), 0);
   assert_int_equal(ArchiveOpen(PETSC_COMM_WORLD, name, &archive), 0);
-  assert_true(ArchiveLoads(archive));
-  StateArchive(&loaded, archive);
-  assert_true(loaded.real[0] == 1.0 / 3 && PetscIsNanReal(loaded.real[1]) && loaded.flag);
-  assert_memory_equal(loaded.items, saved.items, sizeof(saved.items));
-  assert_int_equal(loaded.n, 3);
-  assert_memory_equal(loaded.list, list, sizeof(list));
-  assert_string_equal(loaded.text, text);
-  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPIU_INT64, MPI_SUM, PETSC_COMM_WORLD), 0);
-  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &loaded.n_bytes, 1, MPIU_INT64, MPI_SUM, PETSC_COMM_WORLD), 0);
-  assert_true(all == loaded.n_bytes);
-  assert_int_equal(ArchiveHas(archive, "group/items", &there), 0);
-  assert_true(there);
-  assert_int_equal(ArchiveHas(archive, "no/such/value", &there), 0);
-  assert_false(there);
+  assert_false(ArchiveRenumbers(archive));
+  Load(&saved, archive);
   assert_int_equal(ArchiveClose(&archive), 0);
-  PetscFree(loaded.list);
-  PetscFree(loaded.text);
-  PetscFree(loaded.bytes);
+}
+
+/* An archive in memory gives each rank its own values. */
+static void test_memory(void **unused)
+{
+  PetscInt list[3] = {7, -1, 3};
+  char     text[]  = "a text\n", bytes[64];
+  State    saved   = StateFill(list, text, bytes);
+  Archive  archive;
+
+  (void)unused;
+  assert_int_equal(ArchiveKeep(PETSC_COMM_WORLD, &archive), 0);
+  assert_true(ArchiveRenumbers(archive));
+  assert_false(ArchiveLoads(archive));
+  StateArchive(&saved, archive);
+  ArchiveTurn(archive);
+  Load(&saved, archive);
+  Load(&saved, archive);
+  assert_int_equal(ArchiveClose(&archive), 0);
 }
 
 /* No disk has so much room, and a file that cannot be finished is not begun. */
@@ -130,7 +159,8 @@ static void test_no_room(void **unused)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trip), cmocka_unit_test(test_no_room)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trip), cmocka_unit_test(test_memory),
+                                     cmocka_unit_test(test_no_room)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;

@@ -11,6 +11,7 @@ from harness import SCENES, Check, arguments, run
 
 ROOT = SCENES.parent.parent
 STACK, SQUARE, BEAMS = SCENES / "stack.yaml", SCENES / "wrong_mesh.yaml", SCENES / "crossed_beams.yaml"
+BAR = SCENES / "held_bar.yaml"
 args = arguments()
 check = Check()
 out = pathlib.Path(args.out).resolve()
@@ -43,6 +44,9 @@ INPUT = {
     "B119": (STACK, (), ["loads.0.uy=\"3*q\""]),
     "B121": (STACK, (), ["loads.0.history={csv: \"{}/wrong.csv\"}"]),
     "B122": (STACK, (), ["loads.0.during=press"]),
+    "B130": (BAR, (), ["bodies.0={volume: bar, material: {law: linear, mu: 1000, nu: 0.5}, formulation: mixed}",
+                       "mesh.order=2", "supports.0.ux=0", "supports.4={surface: right, ux: 0}"]),
+    "B131": (BAR, (), ["supports.2={surface: high, uy: 0, spring: [1, 0], during: pull}"]),
     "B143": (STACK, (), ["sensitivity=[\"force:contact.0.name\"]"]),
     "B144": (STACK, (), ["sensitivity=[\"force:loads.0.uy\"]", "contact.0.friction={mu: 0.1}"]),
     "B145": (STACK, (), ["sensitivity=[\"force:mesh.parameters.n_lower\"]", "mesh.parameters.n_lower=6"]),

@@ -102,7 +102,7 @@ static void CheckBlocks(const char *smoother, const char *formulation, double ga
   assert_string_equal(SmootherNames[scene->contacts[0].smoother], smoother);
   assert_int_equal(MeshGenerate(PETSC_COMM_WORLD, scene, folder, PETSC_FALSE, mesh_file, &seconds), 0);
   assert_int_equal(MeshCreate(PETSC_COMM_WORLD, scene, mesh_file, &mesh), 0);
-  assert_int_equal(LoadsCreate(mesh, scene, &loads), 0);
+  assert_int_equal(LoadsCreate(mesh, scene, 0, &loads), 0);
   assert_int_equal(ElasticityCreate(mesh, scene, &elasticity), 0);
   assert_int_equal(ContactCreate(mesh, scene, elasticity, loads, &contact), 0);
   assert_int_equal(PetscCalloc2(mesh->n_nodes * mesh->dim, &u, mesh->n_nodes * mesh->dim, &f), 0);
