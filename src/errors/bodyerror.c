@@ -201,14 +201,13 @@ static PetscReal CellError(BodyError b, PetscInt cell, const PointRates *rates)
 
   Output Parameters:
 + cells - share of each local cell
-. error - true less computed value, the same on all ranks
-- holds - the theory does: enhanced elements do not turn too much within themselves
+- sums  - of all cells, the same on all ranks
 @*/
-PetscErrorCode BodyErrorEvaluate(BodyError b, const PetscReal *y, PetscReal *cells, PetscReal *error, PetscBool *holds)
+PetscErrorCode BodyErrorEvaluate(BodyError b, const PetscReal *y, PetscReal *cells, BodyErrorSums *sums)
 {
-  const PetscInt points  = RecoveryPoints(b->recovery, b->mesh->n_cells, NULL);
-  PointRates     rates   = {.modes = NULL};
-  PetscReal      sums[2] = {0, 0}; /* the error, the work on the modes */
+  const PetscInt points = RecoveryPoints(b->recovery, b->mesh->n_cells, NULL);
+  PointRates     rates  = {.modes = NULL};
+  PetscReal      sum[3] = {0, 0, 0}; /* the error, its spread, the work on the modes */
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(points * b->rate_width, &rates.value));
@@ -217,12 +216,14 @@ PetscErrorCode BodyErrorEvaluate(BodyError b, const PetscReal *y, PetscReal *cel
   PetscCall(RecoveryFit(b->recovery, b->rate_width, rates.value, &rates.patches));
   for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
     cells[c] = CellError(b, c, &rates);
-    sums[0] += cells[c];
+    sum[0] += cells[c];
+    sum[1] += PetscAbsReal(cells[c]);
   }
-  sums[1] = ModesWork(b, &rates);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, b->mesh->comm));
-  *error = sums[0];
-  *holds = (PetscBool)(PetscAbsReal(sums[1]) <= BODYERROR_MODES_WORK * PetscAbsReal(sums[0]));
+  sum[2] = ModesWork(b, &rates);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPIU_SUM, b->mesh->comm));
+  sums->error  = sum[0];
+  sums->spread = sum[1];
+  sums->holds  = (PetscBool)(PetscAbsReal(sum[2]) <= BODYERROR_MODES_WORK * PetscAbsReal(sum[0]));
   PetscCall(PetscFree(rates.patches));
   PetscCall(PetscFree(rates.modes));
   PetscCall(PetscFree(rates.value));

@@ -37,6 +37,12 @@
 
 typedef struct _n_BodyError *BodyError;
 
+typedef struct {
+  PetscReal error;  /* true less computed value */
+  PetscReal spread; /* sum of the magnitudes of the cells' shares: parts of the error that cancel out count here */
+  PetscBool holds;  /* the theory does: enhanced elements do not turn too much within themselves */
+} BodyErrorSums;
+
 PetscErrorCode BodyErrorCreate(Mesh, Elasticity, Kinematics, const PetscReal *u, BodyError *);
 PetscErrorCode BodyErrorDestroy(BodyError *);
-PetscErrorCode BodyErrorEvaluate(BodyError, const PetscReal *y, PetscReal *cells, PetscReal *error, PetscBool *holds);
+PetscErrorCode BodyErrorEvaluate(BodyError, const PetscReal *y, PetscReal *cells, BodyErrorSums *);

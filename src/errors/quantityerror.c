@@ -16,17 +16,19 @@ static PetscBool DependsOnPath(Model model)
 /* Joins the parts of one quantity. bodies: NULL where no adjoint solution is known. */
 static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint, QuantityError *error)
 {
-  PetscBool holds;
+  BodyErrorSums sums;
 
   PetscFunctionBeginUser;
   error->why = adjoint->known ? NULL : "the transposed tangent cannot be solved with";
-  error->sum = error->magnitude = 0;
-  error->cells                  = NULL;
+  error->sum = error->magnitude = error->spread = 0;
+  error->cells                                  = NULL;
   for (int c = 0; c < ERROR_CAUSES; c++) error->part[c] = NAN;
   if (error->why) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(model->mesh->n_cells, &error->cells));
-  PetscCall(BodyErrorEvaluate(bodies, adjoint->y, error->cells, &error->part[ERROR_BODIES], &holds));
-  if (!holds) error->why = "enhanced elements (bodies.*.formulation) turn too much within themselves";
+  PetscCall(BodyErrorEvaluate(bodies, adjoint->y, error->cells, &sums));
+  error->part[ERROR_BODIES] = sums.error;
+  error->spread             = sums.spread;
+  if (!sums.holds) error->why = "enhanced elements (bodies.*.formulation) turn too much within themselves";
   error->part[ERROR_GEOMETRY]    = model->contact ? NAN : 0;
   error->part[ERROR_PENETRATION] = adjoint->penetration;
   error->part[ERROR_SLIP]        = adjoint->slip;

@@ -26,6 +26,7 @@ typedef struct {
   PetscReal   part[ERROR_CAUSES];
   PetscReal   sum;       /* of the known parts */
   PetscReal   magnitude; /* sum of their absolute values */
+  PetscReal   spread;    /* sum of the magnitudes of the cells' shares in that of the bodies */
   PetscReal  *cells;     /* share of each local cell in that of the bodies; NULL: not known */
 } QuantityError;
 
