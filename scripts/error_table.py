@@ -33,6 +33,10 @@ CASES = {
     "cook":
     Case("runs/cook.yaml", ("tip_uy", ), ("n: 4", "n: 8", "n: 16"), "n: 48", second=("bodies.0.formulation=mixed", ),
          finest=("mesh.order=2", "bodies.0.formulation=mixed")),
+    "cook enhanced":
+    Case("runs/cook.yaml", ("tip_uy", ), ("n: 4", "n: 8", "n: 16"), "n: 48", orders=(1, ),
+         overrides=("bodies.0.formulation=enhanced", "bodies.0.material.nu=0.3"),
+         finest=("mesh.order=2", "bodies.0.formulation=mixed")),
     "cantilever":
     Case("runs/cantilever.yaml", ("high_x", "high_y"), orders=(2, ), meshes=
          ("lx: 100, ly: 1, nx: 8, ny: 1, skew: 0", "lx: 100, ly: 1, nx: 16, ny: 1, skew: 0",
@@ -41,7 +45,7 @@ CASES = {
     "ring_pinch":
     Case("runs/ring_pinch.yaml", ("force", "width"),
          ("r_in: 99, r_out: 101, n_arc: 8, n_wall: 1", "r_in: 99, r_out: 101, n_arc: 16, n_wall: 1",
-          "r_in: 99, r_out: 101, n_arc: 32, n_wall: 1"), "r_in: 99, r_out: 101, n_arc: 128, n_wall: 3", second=SHORT,
+          "r_in: 99, r_out: 101, n_arc: 32, n_wall: 1"), "r_in: 99, r_out: 101, n_arc: 200, n_wall: 24", second=SHORT,
          orders=(2, ),
          finest=("mesh.order=2", *SHORT)),
     "ring_in_ring":

@@ -262,6 +262,13 @@ static const Explanation Unsolved[] = {
    "the load is more than the model can carry.",
    "Take a smaller `stepping.initial`, impose displacements instead of forces, or follow the jump with "
    "`stepping.damping: auto`. The lines `try` of the last screen fit the scene at hand."},
+  {"B153",
+   {"confirmed by a second mesh", "with an error of"},
+   "the accuracy that was asked for is not reached, or not confirmed",
+   "A limit ended the loop over meshes before the error was below the wish, or before a second mesh had confirmed the "
+   "estimate of the first one; or what is left of error does not come from the mesh.",
+   "Raise `accuracy.limit`, `accuracy.meshes` or `accuracy.to`. Where another cause than the mesh leaves the most, change "
+   "that one: a penalty that the scene gives, `solver.tolerance`."},
   {"B200",
    {NULL},
    "any other end without an equilibrium",

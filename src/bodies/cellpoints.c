@@ -27,6 +27,43 @@ PetscErrorCode ElasticityEnhanced(Elasticity e, PetscBool *any)
 }
 
 /*@
+  ElasticityPointModes - gives the part of displacement gradients, or of their rates, that are not those of nodes: the
+  modes of an enhanced element.
+
+  Not collective
+
+  Input Parameters:
++ e    - the elasticity
+. cell - a local cell
+- v    - local displacements (length) [n_nodes*dim], or a motion
+
+  Input/Output Parameter:
+. H - displacement gradient of ElasticityPointStates(), or its rate along v, less that of v itself [points][9]
+@*/
+PetscErrorCode ElasticityPointModes(Elasticity e, PetscInt cell, const PetscReal *v, PetscReal *H)
+{
+  CellGroup       *g     = &e->groups[e->cell_group[cell]];
+  const KernelCase nodal = {.type        = g->kernel.type,
+                            .geometry    = g->kernel.geometry,
+                            .kinematics  = KINEMATICS_SMALL,
+                            .law         = MATERIAL_LINEAR,
+                            .formulation = FORMULATION_FULL};
+  const int        n     = ElementGet(g->kernel.type)->points * 9;
+  PetscReal        X[MAX_DOFS], cell_v[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES],
+    gradient[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
+
+  PetscFunctionBeginUser;
+  if (g->kernel.formulation != FORMULATION_ENHANCED) {
+    PetscCall(PetscArrayzero(H, n));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  ElasticityGatherCell(e, g, e->cell_slot[cell], v, X, cell_v, constants, m);
+  ElementPointState(&nodal, X, cell_v, (PetscReal[]){1, 1}, NULL, gradient, pressure);
+  for (int k = 0; k < n; k++) H[k] -= gradient[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ElasticityPlacePoints - gives the quadrature points of a cell.
 
   Not collective
@@ -103,8 +140,8 @@ static PetscReal LargestDifference(int nodes, int dim, const PetscReal *v)
 }
 
 /*@
-  ElasticityPointRates - gives how displacement gradients and pressures at the quadrature points of a cell change along
-  a motion.
+  ElasticityPointRates - gives how displacement gradients, stresses and pressures at the quadrature points of a cell
+  change along a motion.
 
   Not collective
 
@@ -116,20 +153,23 @@ static PetscReal LargestDifference(int nodes, int dim, const PetscReal *v)
 
   Output Parameters:
 + H        - derivative of the displacement gradient along v [points][9]
+. P        - likewise of the stress [points][9]; or NULL
 - pressure - derivative of the pressure of a mixed element, 0 of others [points]
 @*/
 PetscErrorCode ElasticityPointRates(Elasticity e, PetscInt cell, const PetscReal *u, const PetscReal *v, PetscReal *H,
-                                    PetscReal *pressure)
+                                    PetscReal *P, PetscReal *pressure)
 {
   CellGroup *g      = &e->groups[e->cell_group[cell]];
   const int  points = ElementGet(g->kernel.type)->points, nodes = ElementGet(g->kernel.type)->nodes;
   PetscReal  X[MAX_DOFS], at[MAX_DOFS], cell_u[MAX_DOFS], cell_v[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS],
-    m[MIXED_PRESSURES], H_at[ELEMENT_MAX_POINTS * 9], pressure_at[ELEMENT_MAX_POINTS], most, step;
+    m[MIXED_PRESSURES], H_at[ELEMENT_MAX_POINTS * 9], P_at[ELEMENT_MAX_POINTS * 9], pressure_at[ELEMENT_MAX_POINTS],
+    most, step;
 
   PetscFunctionBeginUser;
   ElasticityGatherCell(e, g, e->cell_slot[cell], v, X, cell_v, constants, m);
   ElasticityGatherCell(e, g, e->cell_slot[cell], u, X, cell_u, constants, m);
   PetscCall(PetscArrayzero(H, points * 9));
+  if (P) PetscCall(PetscArrayzero(P, points * 9));
   PetscCall(PetscArrayzero(pressure, points));
   most = PetscMax(LargestDifference(nodes, e->dim, cell_v),
                   LargestDifference(g->nodes - nodes, e->dim, &cell_v[nodes * e->dim]));
@@ -139,8 +179,9 @@ PetscErrorCode ElasticityPointRates(Elasticity e, PetscInt cell, const PetscReal
   step = POINT_STEP * CellLength(g->kernel.type, e->dim, X) / most;
   for (int side = -1; side <= 1; side += 2) {
     for (int k = 0; k < g->nodes * e->dim; k++) at[k] = cell_u[k] + side * step * cell_v[k];
-    ElementPointNominal(&g->kernel, X, at, constants, m, H_at, pressure_at, NULL);
+    ElementPointNominal(&g->kernel, X, at, constants, m, H_at, pressure_at, P ? P_at : NULL);
     for (int k = 0; k < points * 9; k++) H[k] += side * H_at[k] / (2 * step);
+    for (int k = 0; k < points * 9 && P; k++) P[k] += side * P_at[k] / (2 * step);
     for (int p = 0; p < points; p++) pressure[p] += side * pressure_at[p] / (2 * step);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -82,6 +82,7 @@ PetscErrorCode ElasticityPlacePoints(Elasticity, PetscInt cell, PetscReal *x, Pe
 PetscErrorCode ElasticityPointStates(Elasticity, PetscInt cell, const PetscReal *u, PetscReal *H, PetscReal *P,
                                      PetscReal *pressure, PetscReal *compliance);
 PetscErrorCode ElasticityPointRates(Elasticity, PetscInt cell, const PetscReal *u, const PetscReal *v, PetscReal *H,
-                                    PetscReal *pressure);
+                                    PetscReal *P, PetscReal *pressure);
+PetscErrorCode ElasticityPointModes(Elasticity, PetscInt cell, const PetscReal *v, PetscReal *H);
 PetscReal      ElasticityCellModulus(Elasticity, PetscInt cell);
 PetscInt       ElasticityInvertedCell(Elasticity, int *fault);

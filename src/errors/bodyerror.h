@@ -17,6 +17,16 @@
 
    is added to the product at each point; p itself is in P already.
 
+   Where the elements are enhanced, modes add E to the displacement gradient of the nodes and e to that of the adjoint.
+   The true solutions have none. With T the rate of P along the adjoint,
+
+     P* : e + E : T*
+
+   is added to the product at each point. With the true fields in the place of the recovered ones this is exact in
+   linear elasticity: P is the exact stress there, but that of the elements does no work on the modes.
+   In large strains modes turn with the element's centre, and P : e is 0 no more. Thin elements that bend by large
+   angles have much of it; where it is not small beside the sum, there is no estimate.
+
    The product of two recovered differences is of the order of the true one, and its sign is kept. It is no bound.
    Near a singularity both fields are off, and there the estimate is low.
 
@@ -27,6 +37,12 @@
 
 typedef struct _n_BodyError *BodyError;
 
+typedef struct {
+  PetscReal error;  /* true less computed value */
+  PetscReal spread; /* sum of the magnitudes of the cells' shares: parts of the error that cancel out count here */
+  PetscBool holds;  /* the theory does: enhanced elements do not turn too much within themselves */
+} BodyErrorSums;
+
 PetscErrorCode BodyErrorCreate(Mesh, Elasticity, Kinematics, const PetscReal *u, BodyError *);
 PetscErrorCode BodyErrorDestroy(BodyError *);
-PetscErrorCode BodyErrorEvaluate(BodyError, const PetscReal *y, PetscReal *cells, PetscReal *error);
+PetscErrorCode BodyErrorEvaluate(BodyError, const PetscReal *y, PetscReal *cells, BodyErrorSums *);

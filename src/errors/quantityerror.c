@@ -3,12 +3,9 @@
 #include "errors/bodyerror.h"
 #include <math.h>
 
-const char *const ErrorCauses[] = {[ERROR_BODIES]      = "bodies",
-                                   [ERROR_GEOMETRY]    = "contact surfaces",
-                                   [ERROR_PENETRATION] = "penetration",
-                                   [ERROR_SLIP]        = "elastic slip",
-                                   [ERROR_STEPS]       = "load steps",
-                                   [ERROR_SOLVER]      = "solver"};
+const char *const ErrorCauses[] = {
+  [ERROR_BODIES] = "bodies",     [ERROR_GEOMETRY] = "contact surfaces", [ERROR_PENETRATION] = "penetration",
+  [ERROR_SLIP] = "elastic slip", [ERROR_STEPS] = "load steps",          [ERROR_SOLVER] = "solver"};
 
 /* Does the answer depend on the way to it? */
 static PetscBool DependsOnPath(Model model)
@@ -20,14 +17,19 @@ static PetscBool DependsOnPath(Model model)
 /* Joins the parts of one quantity. bodies: NULL where no adjoint solution is known. */
 static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint, QuantityError *error)
 {
+  BodyErrorSums sums;
+
   PetscFunctionBeginUser;
-  error->known = adjoint->known;
-  error->sum = error->magnitude = 0;
-  error->cells                  = NULL;
+  error->why = adjoint->known ? NULL : "the transposed tangent cannot be solved with";
+  error->sum = error->magnitude = error->spread = 0;
+  error->cells                                  = NULL;
   for (int c = 0; c < ERROR_CAUSES; c++) error->part[c] = NAN;
-  if (!error->known) PetscFunctionReturn(PETSC_SUCCESS);
+  if (error->why) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(model->mesh->n_cells, &error->cells));
-  PetscCall(BodyErrorEvaluate(bodies, adjoint->y, error->cells, &error->part[ERROR_BODIES]));
+  PetscCall(BodyErrorEvaluate(bodies, adjoint->y, error->cells, &sums));
+  error->part[ERROR_BODIES] = sums.error;
+  error->spread             = sums.spread;
+  if (!sums.holds) error->why = "enhanced elements (bodies.*.formulation) turn too much within themselves";
   error->part[ERROR_GEOMETRY]    = model->contact ? NAN : 0;
   error->part[ERROR_PENETRATION] = adjoint->penetration;
   error->part[ERROR_SLIP]        = adjoint->slip;
@@ -68,8 +70,8 @@ PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional funct
   PetscCall(PetscMalloc1(n, &adjoint));
   for (int i = 0; i < n; i++) PetscCall(PetscCalloc1(dofs, &adjoint[i].y));
   PetscCall(ModelAdjoint(model, n, functional, adjoint));
-  PetscCall(BodyErrorCreate(model->mesh, model->problem->elasticity, model->scene->kinematics, model->problem->trial,
-                            &bodies));
+  PetscCall(
+    BodyErrorCreate(model->mesh, model->problem->elasticity, model->scene->kinematics, model->problem->trial, &bodies));
   for (int i = 0; i < n; i++) PetscCall(Join(model, bodies, &adjoint[i], &error[i]));
   PetscCall(BodyErrorDestroy(&bodies));
   for (int i = 0; i < n; i++) PetscCall(PetscFree(adjoint[i].y));

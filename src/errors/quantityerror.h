@@ -6,10 +6,7 @@
    solver stopped. Every part is the true less the computed value, in the units of the quantity. A part that is not
    known is NaN: that of the load steps where the answer depends on the path, and that of the surfaces in contact,
    whose facets and fits are not the true surface. It is 0 where there is no such cause. That straight edges of
-   elements stand for curved boundaries is in no part.
-
-   Models with enhanced elements have no estimate: the true solution has no such modes, and what they leave is not
-   the product of two recovered differences. */
+   elements stand for curved boundaries is in no part. */
 #pragma once
 #include "solve/adjoint.h"
 
@@ -25,11 +22,12 @@ typedef enum {
 extern const char *const ErrorCauses[]; /* in words */
 
 typedef struct {
-  PetscBool  known;
-  PetscReal  part[ERROR_CAUSES];
-  PetscReal  sum;       /* of the known parts */
-  PetscReal  magnitude; /* sum of their absolute values */
-  PetscReal *cells;     /* share of each local cell in that of the bodies; NULL: not known */
+  const char *why; /* there is no estimate; NULL: there is one */
+  PetscReal   part[ERROR_CAUSES];
+  PetscReal   sum;       /* of the known parts */
+  PetscReal   magnitude; /* sum of their absolute values */
+  PetscReal   spread;    /* sum of the magnitudes of the cells' shares in that of the bodies */
+  PetscReal  *cells;     /* share of each local cell in that of the bodies; NULL: not known */
 } QuantityError;
 
 PetscErrorCode QuantityErrorsEstimate(Model, int n, const Functional[], QuantityError[]);

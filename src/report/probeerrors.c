@@ -37,8 +37,8 @@ PetscErrorCode ProbeErrorsCreate(Model model, Probes probes, Scene scene, ProbeE
   errors->model  = model;
   errors->probes = probes;
   errors->scene  = scene;
-  PetscCall(PetscCalloc3(scene->n_probes, &errors->value, scene->n_probes, &errors->why, scene->n_probes,
-                         &errors->error));
+  PetscCall(
+    PetscCalloc3(scene->n_probes, &errors->value, scene->n_probes, &errors->why, scene->n_probes, &errors->error));
   for (int i = 0; i < scene->n_probes; i++) errors->why[i] = "the run ended before the end of its load";
   PetscCall(PetscClassIdRegister("ProbeErrors", &classid));
   PetscCall(PetscLogEventRegister("ProbeErrors", classid, &errors->event));
@@ -70,16 +70,11 @@ static PetscErrorCode Estimate(ProbeErrors errors, Functional *functional)
   const int      all = errors->scene->n_probes;
   int            n   = 0, *probe;
   QuantityError *error;
-  PetscBool      enhanced;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(all, &probe, all, &error));
-  PetscCall(ElasticityEnhanced(errors->model->problem->elasticity, &enhanced));
   for (int i = 0; i < all; i++) {
-    if (enhanced)
-      errors->why[i] = "a body has enhanced elements (bodies.*.formulation)";
-    else
-      PetscCall(ProbeVary(errors->probes, i, &functional[n], &errors->why[i]));
+    PetscCall(ProbeVary(errors->probes, i, &functional[n], &errors->why[i]));
     if (errors->why[i]) PetscCall(ProbeVariationFree(&functional[n]));
     probe[n] = i;
     n += !errors->why[i];
@@ -87,7 +82,7 @@ static PetscErrorCode Estimate(ProbeErrors errors, Functional *functional)
   PetscCall(QuantityErrorsEstimate(errors->model, n, functional, error));
   for (int k = 0; k < n; k++) {
     errors->error[probe[k]] = error[k];
-    if (!error[k].known) errors->why[probe[k]] = "the transposed tangent cannot be solved with";
+    errors->why[probe[k]]   = error[k].why;
     PetscCall(ProbeVariationFree(&functional[k]));
   }
   PetscCall(PetscFree2(probe, error));

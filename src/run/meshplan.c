@@ -8,6 +8,12 @@
 #define MESHPLAN_FINER 1.2
 /* The power of the error is at least this one. A smaller one is that of meshes that are too coarse to tell. */
 #define MESHPLAN_LEAST_RATE 0.7
+/* The error of the next mesh is taken as at most this part of the last one's, where the change of the answer is to tell
+   how much is left: that of elements MESHPLAN_WITNESS times smaller at the power MESHPLAN_LEAST_RATE. */
+#define MESHPLAN_SLOWEST 0.75
+/* What the change implies is taken so many times: where several causes leave errors, the one that falls slowest shows
+   least in a change. It is the factor of Roache's grid convergence index for a measured power. */
+#define MESHPLAN_SAFETY 1.25
 /* Power of CPU seconds over unknowns before two meshes show it, and its bounds. */
 #define MESHPLAN_CPU_POWER 1.3
 #define MESHPLAN_LEAST_CPU 0.8
@@ -20,11 +26,17 @@ static double Within(double value, double least, double most)
   return isfinite(value) ? fmin(fmax(value, least), most) : least;
 }
 
-/* The power with which the error falls with the factor. The one that smooth solutions have is twice the order; edges of
-   contact and corners make it smaller, so that order + 1 is assumed at first. */
+/* The power that is assumed before it is measured. The one that smooth solutions have is twice the order; edges of
+   contact and corners make it smaller. */
+static double FirstRate(int order)
+{
+  return order + 1;
+}
+
+/* The power with which the error falls with the factor. */
 static double Rate(int n, const MeshFigures m[], int order)
 {
-  if (n < 2) return order + 1;
+  if (n < 2) return FirstRate(order);
   return Within(log(m[n - 2].error / m[n - 1].error) / log(m[n - 1].factor / m[n - 2].factor), MESHPLAN_LEAST_RATE,
                 2 * order);
 }
@@ -55,4 +67,15 @@ MeshFigures MeshPlanForecast(int n, const MeshFigures m[], int dim, int order, d
   next.cpu_s  = last->cpu_s * pow(next.unknowns / last->unknowns, power);
   next.rss_mb = last->rss_mb + memory * (next.unknowns - last->unknowns);
   return next;
+}
+
+/* MeshPlanImplied - gives the error of the last of two meshes that the change of the answer implies. change: of the
+   answer; fall: estimated error of the last mesh over that of the one before; finer: all elements became smaller by
+   this factor, or 0; order: of the elements. */
+double MeshPlanImplied(double change, double fall, double finer, int order)
+{
+  const double most = finer > 1 ? pow(finer, -FirstRate(order)) : 0,
+               left = isfinite(fall) ? fmin(fmax(fall, most), MESHPLAN_SLOWEST) : MESHPLAN_SLOWEST;
+
+  return MESHPLAN_SAFETY * fabs(change) * left / (1 - left);
 }

@@ -6,6 +6,7 @@
 #include "mesh/meshdensities.h"
 #include "mesh/meshsizes.h"
 #include "meshplan.h"
+#include "base/explanation.h"
 #include "base/refusal.h"
 
 /* Of the error that is allowed the next mesh is made for this part: forecasts are not exact. */
@@ -15,8 +16,11 @@
 
 /* A mesh with sizes of its own has at most so many times the elements of the last one. */
 #define REFINEMENT_MOST_ELEMENTS 8
-/* It is made for at most this part of the present error, or the estimate would hardly change. */
-#define REFINEMENT_PART 0.8
+/* It is made for at most this part of the present error, or the change of the answer would hardly tell anything. */
+#define REFINEMENT_PART 0.5
+/* A mesh that only is to confirm the estimate has elements so many times smaller, all of them: an estimate that misses
+   a place is not to choose where. */
+#define REFINEMENT_WITNESS 1.5
 
 enum { TABLE_ROW = 1024, EDIT_LENGTH = 2 * PETSC_MAX_PATH_LEN };
 
@@ -24,7 +28,8 @@ enum { TABLE_ROW = 1024, EDIT_LENGTH = 2 * PETSC_MAX_PATH_LEN };
 typedef struct {
   QuantityError error;
   PetscReal     value, mesh_s;
-  PetscInt      dofs;
+  PetscReal implied; /* error of the elements and surfaces by the change of the answer; NaN: there is no mesh before */
+  PetscInt  dofs;
 } SolvedMesh;
 
 typedef struct {
@@ -36,6 +41,7 @@ typedef struct {
   int           dim, order, n_densities, n_given; /* edits that the user gave */
   MeshDensity  *density;
   PetscBool     structured; /* meshes follow densities, else sizes of elements in a file */
+  PetscBool     even;       /* all elements of the next mesh are smaller by the same factor */
   PetscReal    *size;       /* wanted of the next mesh at each local cell of the last one */
   int           n_edits;
   char        **edit; /* of each density, or of the file of sizes */
@@ -61,30 +67,46 @@ static void Say(const Refinement *r, const char *format, ...)
   fflush(stdout);
 }
 
-/* The error of the last mesh over the value. */
-static PetscReal Error(const Refinement *r)
-{
-  const SolvedMesh *mesh = &r->mesh[r->n - 1];
-
-  return mesh->error.magnitude / PetscAbsReal(mesh->value);
-}
-
-/* What the elements and the contact surfaces leave of error. */
-static PetscReal MeshError(const QuantityError *error)
+/* What the elements and the contact surfaces leave of error, as estimated. */
+static PetscReal MeshEstimate(const QuantityError *error)
 {
   const PetscReal geometry = error->part[ERROR_GEOMETRY];
 
   return PetscAbsReal(error->part[ERROR_BODIES]) + (isnan((double)geometry) ? 0 : PetscAbsReal(geometry));
 }
 
+/* What they leave: the estimate, and no less than what the change from the mesh before implies. */
+static PetscReal MeshError(const SolvedMesh *mesh)
+{
+  const PetscReal estimate = MeshEstimate(&mesh->error);
+
+  return isnan((double)mesh->implied) ? estimate : PetscMax(estimate, mesh->implied);
+}
+
+/* What the other causes leave. */
+static PetscReal OtherError(const SolvedMesh *mesh)
+{
+  return mesh->error.magnitude - MeshEstimate(&mesh->error);
+}
+
+/* The error of a mesh over the value. */
+static PetscReal Error(const SolvedMesh *mesh)
+{
+  return (OtherError(mesh) + MeshError(mesh)) / PetscAbsReal(mesh->value);
+}
+
+static const SolvedMesh *Last(const Refinement *r)
+{
+  return &r->mesh[r->n - 1];
+}
+
 /* What the next mesh may leave of error, in the units of the probe. */
 static PetscReal WantedMeshError(const Refinement *r)
 {
-  const SolvedMesh *mesh    = &r->mesh[r->n - 1];
-  const PetscReal   allowed = r->wish.to * PetscAbsReal(mesh->value),
-                  others    = mesh->error.magnitude - MeshError(&mesh->error);
+  const SolvedMesh *mesh    = Last(r);
+  const PetscReal   allowed = r->wish.to * PetscAbsReal(mesh->value);
 
-  return REFINEMENT_AIM * PetscMax(allowed - others, REFINEMENT_LEAST_SHARE * allowed);
+  return REFINEMENT_AIM * PetscMax(allowed - OtherError(mesh), REFINEMENT_LEAST_SHARE * allowed);
 }
 
 /* Makes room, and finds out how the mesh can be refined. */
@@ -129,6 +151,31 @@ static PetscErrorCode End(Refinement *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The answer of a mesh without the errors of other causes than the mesh, as far as they are known. */
+static PetscReal MeshAnswer(const SolvedMesh *mesh)
+{
+  const PetscReal geometry = mesh->error.part[ERROR_GEOMETRY];
+
+  return mesh->value + mesh->error.sum - mesh->error.part[ERROR_BODIES] - (isnan((double)geometry) ? 0 : geometry);
+}
+
+/* Takes what the change from the mesh before implies. Where it is more than was estimated, so was it on that mesh. */
+static void Compare(Refinement *r)
+{
+  SolvedMesh       *mesh    = &r->mesh[r->n];
+  const SolvedMesh *before  = mesh - 1;
+  MeshFigures      *figures = &r->figures[r->n];
+  double            change;
+
+  mesh->implied = NAN;
+  if (!r->n) return;
+  change            = (double)(MeshAnswer(mesh) - MeshAnswer(before));
+  mesh->implied     = (PetscReal)MeshPlanImplied(change, (double)(mesh->error.spread / before->error.spread),
+                                             r->even ? figures->factor / figures[-1].factor : 0, r->order);
+  figures->error    = (double)MeshError(mesh);
+  figures[-1].error = fmax(figures[-1].error, (double)mesh->implied + fabs(change));
+}
+
 /* Takes the figures of the mesh that was solved last. */
 static PetscErrorCode Record(Refinement *r, double factor)
 {
@@ -149,10 +196,11 @@ static PetscErrorCode Record(Refinement *r, double factor)
   mesh->mesh_s      = r->run->mesh_s;
   r->figures[r->n]  = (MeshFigures){.factor   = factor,
                                     .unknowns = (double)mesh->dofs,
-                                    .error    = (double)MeshError(error),
+                                    .error    = (double)MeshEstimate(error),
                                     .cpu_s    = (double)usage.cpu_s - r->cpu_s,
                                     .rss_mb   = (double)usage.peak_rss_mb};
   r->cpu_s          = (double)usage.cpu_s;
+  Compare(r);
   r->n++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -160,16 +208,18 @@ static PetscErrorCode Record(Refinement *r, double factor)
 /* Prints the last mesh. */
 static void Print(const Refinement *r)
 {
-  const SolvedMesh *mesh = &r->mesh[r->n - 1];
+  const SolvedMesh *mesh = Last(r);
   const double      part = 100 / fabs((double)mesh->value);
 
   Say(r, "mesh %-2d  %" PetscInt_FMT " unknowns, %s %.6g, error %.3g %% =", r->n, mesh->dofs, r->probe,
-      (double)mesh->value, 100 * (double)Error(r));
+      (double)mesh->value, 100 * (double)Error(mesh));
   for (int c = 0; c < ERROR_CAUSES; c++)
     if (isnan((double)mesh->error.part[c]))
       Say(r, " %s not included", ErrorCauses[c]);
     else if (mesh->error.part[c] != 0)
       Say(r, " %s %+.2g", ErrorCauses[c], part * (double)mesh->error.part[c]);
+  if (MeshError(mesh) > MeshEstimate(&mesh->error))
+    Say(r, "; %.2g by the change from the mesh before", fabs(part) * (double)MeshError(mesh));
   Say(r, "; CPU %.2f s, gmsh %.2f s\n", r->figures[r->n - 1].cpu_s, (double)mesh->mesh_s);
 }
 
@@ -185,7 +235,7 @@ static PetscErrorCode Write(const Refinement *r)
   PetscCall(PetscCalloc1(size, &text));
   used += (size_t)snprintf(text, size, "mesh,unknowns,value,error,magnitude");
   for (int c = 0; c < ERROR_CAUSES; c++) used += (size_t)snprintf(text + used, size - used, ",%s", ErrorCauses[c]);
-  used += (size_t)snprintf(text + used, size - used, ",per_cent,cpu_s,gmsh_s,peak_rss_mb\n");
+  used += (size_t)snprintf(text + used, size - used, ",by_change,per_cent,cpu_s,gmsh_s,peak_rss_mb\n");
   for (int k = 0; k < r->n; k++) {
     const SolvedMesh *mesh = &r->mesh[k];
 
@@ -194,9 +244,10 @@ static PetscErrorCode Write(const Refinement *r)
     for (int c = 0; c < ERROR_CAUSES; c++)
       used += (size_t)snprintf(text + used, size - used, isnan((double)mesh->error.part[c]) ? "," : ",%.6g",
                                (double)mesh->error.part[c]);
-    used += (size_t)snprintf(text + used, size - used, ",%.4g,%.3f,%.3f,%.1f\n",
-                             100 * (double)(mesh->error.magnitude / PetscAbsReal(mesh->value)), r->figures[k].cpu_s,
-                             (double)mesh->mesh_s, r->figures[k].rss_mb);
+    used +=
+      (size_t)snprintf(text + used, size - used, isnan((double)mesh->implied) ? "," : ",%.6g", (double)mesh->implied);
+    used += (size_t)snprintf(text + used, size - used, ",%.4g,%.3f,%.3f,%.1f\n", 100 * (double)Error(mesh),
+                             r->figures[k].cpu_s, (double)mesh->mesh_s, r->figures[k].rss_mb);
   }
   PetscCall(TextFileReplace(r->directory, "accuracy.csv", text));
   PetscCall(PetscFree(text));
@@ -226,11 +277,34 @@ static PetscErrorCode PlanSizes(Refinement *r, MeshFigures *next)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Plans a mesh whose elements are all smaller, as a witness of the estimate. */
+static PetscErrorCode PlanWitness(Refinement *r, MeshFigures *next)
+{
+  const Mesh mesh = r->run->mesh;
+  PetscReal *measure;
+
+  PetscFunctionBeginUser;
+  *next = MeshPlanForecast(r->n, r->figures, r->dim, r->order, REFINEMENT_WITNESS * r->figures[r->n - 1].factor);
+  if (r->structured) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree(r->size));
+  PetscCall(PetscMalloc1(mesh->n_cells, &r->size));
+  PetscCall(PetscMalloc1(mesh->n_cells, &measure));
+  MeshCellSizes(mesh, r->size, measure);
+  for (PetscInt c = 0; c < mesh->n_cells; c++) r->size[c] /= REFINEMENT_WITNESS;
+  PetscCall(PetscFree(measure));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Chooses the next mesh and forecasts it. r->why: there is none. */
 static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
 {
+  const PetscBool met = (PetscBool)(Error(Last(r)) <= r->wish.to);
+
   PetscFunctionBeginUser;
-  if (r->structured)
+  r->even = (PetscBool)(r->structured || met);
+  if (met)
+    PetscCall(PlanWitness(r, next));
+  else if (r->structured)
     *next = MeshPlanForecast(r->n, r->figures, r->dim, r->order,
                              MeshPlanFactor(r->n, r->figures, r->order, (double)WantedMeshError(r)));
   else
@@ -241,8 +315,8 @@ static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
     r->why = "the next mesh would take more than accuracy.limit.time";
   else if (r->wish.rss_mb > 0 && next->rss_mb > r->wish.rss_mb)
     r->why = "the next mesh would take more than accuracy.limit.memory";
-  else if (MeshError(&r->mesh[r->n - 1].error) < REFINEMENT_LEAST_SHARE * r->mesh[r->n - 1].error.magnitude &&
-           (double)MeshError(&r->mesh[r->n - 1].error) < (double)WantedMeshError(r))
+  else if (!met && MeshError(Last(r)) < REFINEMENT_LEAST_SHARE * (MeshError(Last(r)) + OtherError(Last(r))) &&
+           MeshError(Last(r)) < WantedMeshError(r))
     r->why = "what is left of error does not come from the mesh";
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -312,17 +386,17 @@ static void Conclude(Refinement *r, BurnishStatus *status)
 {
   if (r->why) {
     if (*status == BURNISH_DONE || *status == BURNISH_NOT_CONVERGED) *status = BURNISH_INACCURATE;
-    snprintf(
-      r->run->message, sizeof(r->run->message),
-      "the accuracy of %g %% is not reached: %s; the best is %s %.6g with an error of %.3g %%, in %.600s/mesh-%d",
-      100 * (double)r->wish.to, r->why, r->probe, (double)r->mesh[r->n - 1].value, 100 * (double)Error(r), r->directory,
-      r->n);
+    snprintf(r->run->message, sizeof(r->run->message),
+             "the accuracy of %g %% is not %s: %s; the best is %s %.6g with an error of %.3g %%, in %.600s/mesh-%d",
+             100 * (double)r->wish.to, Error(Last(r)) <= r->wish.to ? "confirmed by a second mesh" : "reached", r->why,
+             r->probe, (double)Last(r)->value, 100 * (double)Error(Last(r)), r->directory, r->n);
+    ExplanationAppend(r->run->message, sizeof(r->run->message), EXPLANATION_UNSOLVED);
     if (!r->rank) fprintf(stderr, "burnish: %s\n", r->run->message);
   } else
     Say(r, "done: %s %.6g with an estimated error of %.3g %%%s, %d meshes, %.1f s of CPU; results in %s/mesh-%d\n",
-        r->probe, (double)r->mesh[r->n - 1].value, 100 * (double)Error(r),
-        isnan((double)r->mesh[r->n - 1].error.part[ERROR_GEOMETRY]) ? " besides that of the contact surfaces" : "",
-        r->n, r->cpu_s, r->directory, r->n);
+        r->probe, (double)Last(r)->value, 100 * (double)Error(Last(r)),
+        isnan((double)Last(r)->error.part[ERROR_GEOMETRY]) ? " besides that of the contact surfaces" : "", r->n,
+        r->cpu_s, r->directory, r->n);
 }
 
 /* Solves meshes until the last one is accurate enough. */
@@ -335,7 +409,7 @@ static PetscErrorCode Loop(Refinement *r, BurnishStatus *status)
     PetscCall(Record(r, next.factor));
     Print(r);
     PetscCall(Write(r));
-    if (Error(r) <= r->wish.to) break;
+    if (r->n > 1 && Error(Last(r)) <= r->wish.to) break;
     PetscCall(Plan(r, &next));
     if (!r->why) PetscCall(SolveNext(r, &next, status));
   }

@@ -113,6 +113,8 @@ many = run(args, SQUARE, out="B114", ranks=5, must=None)
 check.holds("B114: more ranks than elements", many.status == 1 and "[B114]" in many.text, many.text[-400:])
 usage = subprocess.run([args.burnish, "-wrong"], capture_output=True, text=True)
 check.holds("B120: the command line", usage.returncode == 1 and "[B120]\nusage" in usage.stderr, usage.stderr)
+short = run(args, ROOT / "runs/cook.yaml", "-to", "1", "-probe", "tip_uy", out="B153", overrides=["accuracy.meshes=1"], must=5)
+check.holds("B153: an accuracy that is not reached", short.text.rstrip().endswith("[B153]"), short.text[-400:])
 slow = subprocess.Popen([args.burnish, str(STACK), "-o", str(out / "B300"), "-set", "stepping.initial=1e-4", "-set",
                          "stepping.control=fixed"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 while not (out / "B300/steps.csv").exists() and slow.poll() is None:

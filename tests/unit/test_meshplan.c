@@ -43,10 +43,24 @@ static void test_no_fall(void **state)
   assert_true(MeshPlanForecast(2, meshes, 2, 1, 4).error < 9);
 }
 
+/* With an answer 1 + C f^q the change of two meshes gives the error of the last one, times the factor of safety. */
+static void test_change_implies_error(void **state)
+{
+  const double coarse = 1 + 0.4, fine = 1 + 0.4 / 4;
+
+  (void)state;
+  assert_float_equal(MeshPlanImplied(fine - coarse, 0.25, 0, 2), 1.25 * 0.1, 1e-12);
+  assert_float_equal(MeshPlanImplied(coarse - fine, 0.25, 0, 2), 1.25 * 0.1, 1e-12);
+  assert_float_equal(MeshPlanImplied(0.3, 2, 0, 2), 1.25 * 0.9, 1e-12); /* no fall: that of the least power */
+  assert_float_equal(MeshPlanImplied(0.3, NAN, 0, 2), 1.25 * 0.9, 1e-12);
+  assert_float_equal(MeshPlanImplied(0.7, 0.01, 2, 2), 1.25 * 0.1, 1e-12); /* even meshes: no faster than order + 1 */
+  assert_float_equal(MeshPlanImplied(0, 0.5, 0, 2), 0, 1e-12);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_first_mesh), cmocka_unit_test(test_measured),
-                                     cmocka_unit_test(test_no_fall)};
+                                     cmocka_unit_test(test_no_fall), cmocka_unit_test(test_change_implies_error)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,7 +3,12 @@
    The error of a mesh is taken as C f^-q, where f is the factor by which its elements are smaller than those of the
    first mesh; its CPU seconds as a power of its unknowns. Both powers are those between the last two meshes, within
    bounds; before there are two they are assumed. MeshPlanFactor() gives the factor that is wanted, MeshPlanForecast()
-   the figures of a mesh with a factor, or with a number of unknowns. */
+   the figures of a mesh with a factor, or with a number of unknowns.
+
+   Two meshes are witnesses of each other: where the error falls by the part q from one to the next, the change of the
+   answer is (1 - q) / q times what is left. MeshPlanImplied() gives that from the change and the fall, without any
+   trust in the size of an estimate, and with a factor of safety. Source: Roache, Journal of Fluids Engineering 116
+   (1994), 405. */
 #pragma once
 
 typedef struct {
@@ -13,3 +18,4 @@ typedef struct {
 
 double      MeshPlanFactor(int n, const MeshFigures[], int order, double wanted);
 MeshFigures MeshPlanForecast(int n, const MeshFigures[], int dim, int order, double factor);
+double      MeshPlanImplied(double change, double fall, double finer, int order);
