@@ -67,8 +67,8 @@ void FormulationsCrowded(SceneBody *body)
 }
 
 /*@
-  ContactFormulationsChoose - measures the gap to an analytic master, or of a surface to itself, on the faces of the
-  slave, where these are 6-node triangles.
+  ContactFormulationsChoose - measures the gap to an analytic master on the faces of the slave, where these are 6-node
+  triangles.
 
   Collective
 
@@ -79,7 +79,7 @@ void FormulationsCrowded(SceneBody *body)
 
   Note:
   Corners of 6-node triangles have no part of the face's area. Node to surface would leave them without a force, and a
-  tool, or the surface itself, would go into the body there.
+  tool would go into the body there.
 @*/
 PetscErrorCode ContactFormulationsChoose(Scene scene, const RootMesh *root, Mesh mesh)
 {

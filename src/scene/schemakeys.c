@@ -266,8 +266,8 @@ const SchemaKey SchemaKeys[] = {
    .help = "surface of the master in the contact: its faces (facet) or a smooth surface near them (diffuse)"},
   {"contact.*.formulation", CHOICE, .values = "node_to_surface | surface_to_surface | auto", .preset = "auto",
    .help = "where the gap is measured: at the nodes of the slave, or at quadrature points of its faces; auto: "
-           "surface_to_surface, and node_to_surface where the master is an analytic surface or the slave itself (but for "
-           "faces of 6-node triangles)"},
+           "surface_to_surface, and node_to_surface where the master is an analytic surface (but for faces of 6-node "
+           "triangles)"},
   {"contact.*.offset", CHOICE, .values = "held | live", .preset = "held",
    .help = "of surface_to_surface; held: the offsets are computed before each solve; live: they follow the nodes "
            "within the solve"},
