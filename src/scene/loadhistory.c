@@ -192,10 +192,14 @@ double MotionForce(const Motion *motion, double t, int component)
 /* Computes v = R(turn) V by Rodrigues' formula. */
 static void RotatePoint(const double turn[3], const double V[3], double v[3])
 {
-  const double angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]), s = sin(angle), c = cos(angle);
-  double       a[3] = {0, 0, 0}, along = 0;
+  const double angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
+  double       a[3], s, c, along = 0;
 
-  for (int d = 0; d < 3 && angle > 0; d++) a[d] = turn[d] / angle;
+  for (int d = 0; d < 3; d++) v[d] = V[d];
+  if (angle == 0) return;
+  s = sin(angle);
+  c = cos(angle);
+  for (int d = 0; d < 3; d++) a[d] = turn[d] / angle;
   for (int d = 0; d < 3; d++) along += a[d] * V[d];
   for (int d = 0; d < 3; d++)
     v[d] = c * V[d] + s * (a[(d + 1) % 3] * V[(d + 2) % 3] - a[(d + 2) % 3] * V[(d + 1) % 3]) + (1 - c) * along * a[d];

@@ -53,25 +53,37 @@ static PetscReal CandidateDistance(const Nearest *look, const Candidate *c)
   return CandidateFoot(look, c, &foot);
 }
 
-static PetscBool HasNode(const Candidate *c, PetscInt node)
+static PetscBool HasNode(const Candidate *c, int corners, PetscInt node)
 {
-  for (int a = 0; a < ElementGet(c->facet.type)->corners; a++)
+  for (int a = 0; a < corners; a++)
     if (c->facet.nodes[a] == node) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Says whether the boxes of two facets are apart: they share nothing then. */
+static PetscBool AreApart(const Nearest *look, const Candidate *c, const Candidate *o)
+{
+  for (int d = 0; d < look->lists->dim; d++)
+    if (c->lower[d] - o->upper[d] > look->tie || o->lower[d] - c->upper[d] > look->tie) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
 /* Finds the edge of c that it shares with o. */
 static PetscBool SharedEdge(const Nearest *look, const Candidate *c, const Candidate *o, FlankEdge *shared)
 {
-  const Element *e   = ElementGet(c->facet.type);
+  const Element *e;
   const int      dim = look->lists->dim;
+  int            corners;
 
+  if (AreApart(look, c, o)) return PETSC_FALSE;
+  e       = ElementGet(c->facet.type);
+  corners = ElementGet(o->facet.type)->corners;
   for (int k = 0; k < (e->dim == 1 ? 2 : e->edges); k++) {
     const PetscInt a = c->facet.nodes[e->dim == 1 ? k : e->edge_corners[k][0]],
                    b = c->facet.nodes[e->dim == 1 ? k : e->edge_corners[k][1]];
     PetscReal height = 0;
 
-    if (!HasNode(o, a) || !HasNode(o, b)) continue;
+    if (!HasNode(o, corners, a) || !HasNode(o, corners, b)) continue;
     for (int d = 0; d < dim; d++)
       height += c->normal[d] * (o->centre[d] - look->lists->point_X[a * dim + d] - look->lists->point_u[a * dim + d]);
     *shared = (FlankEdge){k, {a, b}, (PetscBool)(height < -FLANK_BELOW * look->size)};
@@ -142,9 +154,10 @@ PetscBool FlankFaces(const Nearest *look, const Candidate *c)
 PetscBool FlankIsOwn(const Nearest *look, const Candidate *c)
 {
   const NeighbourLists lists  = look->lists;
+  const int            nodes  = ElementGet(c->facet.type)->nodes;
   PetscInt             shared = 0;
 
-  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++) {
+  for (int a = 0; a < nodes; a++) {
     const PetscInt p = c->facet.nodes[a];
 
     if (look->one_body && lists->point_image[p]) continue; /* the mirror image of a body is another body */
