@@ -1,5 +1,6 @@
-"""Supports that hold in some steps only, in the plane, about an axis and in space, against closed forms: a bar that is let
-go and held again, a block that contact alone holds in the end, a bar that yields; a restart; what cannot be is refused."""
+"""Supports that hold in some steps only, in the plane, about an axis and in space, against closed forms: a bar that is
+let go and held again, a block that contact alone holds in the end, one that falls, a bar that yields; restarts; what
+cannot be is refused."""
 import re
 import subprocess
 
@@ -127,8 +128,8 @@ def falls():
 
 
 def yields():
-    """An end is driven until the bar flows, and let go. Exact: linear hardening in one dimension. What enters from outside
-    is what is stored and what flow takes."""
+    """An end is driven until the bar flows, and let go. Exact: linear hardening in one dimension. What enters from
+    outside is what is stored and what flow takes."""
     y, h, way = 10, 100, 0.04
     sides, _ = form("solid")
     finished = run(args, SCENES / "held_bar.yaml", out="yields", overrides=[
