@@ -36,6 +36,12 @@ static const Explanation Input[] = {
    "Springs have a `history`, or fade over a step. Displacements are prescribed or not, in the steps that `during` "
    "names.",
    "Write an entry for the springs and another one for the displacements, on the same surface."},
+  {"B132",
+   {"sides of a sector that repeat by a rotation"},
+   "cyclic sectors",
+   "The sides of a sector cannot be tied to each other by a rotation.",
+   "Take a sector whose sides are planes of symmetry: hold their normal displacement by supports, and name them by "
+   "`symmetry` under contact. Parts that twist, such as fans, need the whole model."},
   {"B122",
    {"names a step, but there are none", "is no step;", "does not follow the step named before",
     "stands beside a history"},

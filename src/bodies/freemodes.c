@@ -700,6 +700,21 @@ PetscErrorCode FreeModesGetPieces(FreeModes modes, PetscInt *n, const FreePiece 
 }
 
 /*@
+  FreeModesAny - tells whether supports leave some piece a motion.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. modes - the motions
+@*/
+PetscBool FreeModesAny(FreeModes modes)
+{
+  for (PetscInt p = 0; p < modes->n_pieces; p++)
+    if (modes->pieces[p].n_free) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/*@
   FreeModesMotionText - writes a motion of a piece in words.
 
   Not collective

@@ -30,6 +30,7 @@ PetscErrorCode FreeModesCreate(Mesh, Scene, Loads, FreeModes *);
 PetscErrorCode FreeModesDestroy(FreeModes *);
 PetscErrorCode FreeModesReport(FreeModes, PetscBool held, FILE *);
 PetscErrorCode FreeModesRefuse(FreeModes, const char *step);
+PetscBool      FreeModesAny(FreeModes);
 PetscErrorCode FreeModesGetPieces(FreeModes, PetscInt *n, const FreePiece **pieces, const PetscInt **piece);
 void           FreeModesMotionText(FreeModes, PetscInt piece, const double motion[RIGID_MODES], char text[FREE_TEXT]);
 PetscErrorCode FreeModesOnSide(FreeModes, int contact, PetscBool master, int on[]);

@@ -132,8 +132,8 @@ static PetscBool SupportsDiffer(Scene scene, int step)
 }
 
 /* Looks at what holds the bodies in each step that has other supports than the step before. It prints that to a stream,
-   or refuses a body that nothing holds where there is none. */
-static PetscErrorCode LookAtSteps(Model model, FILE *stream)
+   with the bodies that supports hold if `held`, or refuses a body that nothing holds where there is none. */
+static PetscErrorCode LookAtSteps(Model model, PetscBool held, FILE *stream)
 {
   const Scene    scene = model->scene;
   const Loads    loads = model->problem->loads;
@@ -150,9 +150,9 @@ static PetscErrorCode LookAtSteps(Model model, FILE *stream)
     PetscCall(LoadsShowPhase(loads, k));
     PetscCall(FreeModesCreate(model->mesh, scene, loads, &modes));
     PetscCall(LoadsShowPhase(loads, LoadsPhase(loads)));
-    if (stream && !rank) fprintf(stream, "         from step '%s' on:\n", name);
+    if (stream && !rank && (held || FreeModesAny(modes))) fprintf(stream, "         from step '%s' on:\n", name);
     if (stream)
-      PetscCall(FreeModesReport(modes, PETSC_TRUE, stream));
+      PetscCall(FreeModesReport(modes, held, stream));
     else
       code = FreeModesRefuse(modes, name);
     PetscCall(FreeModesDestroy(&modes));
@@ -191,12 +191,12 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
     PetscCall(PrecheckPlasticity(model, stream));
     if (!rank) LawReport(model->scene, stream);
     PetscCall(FreeModesReport(model->problem->modes, PETSC_TRUE, stream));
-    PetscCall(LookAtSteps(model, stream));
+    PetscCall(LookAtSteps(model, PETSC_TRUE, stream));
     PetscCall(ContactReport(model->contact, stream));
     PetscCall(EstimatePrint(model, stream));
   }
   PetscCall(FreeModesRefuse(model->problem->modes, SceneSupportsChange(scene) ? scene->stepping.steps[0].name : NULL));
-  PetscCall(LookAtSteps(model, NULL));
+  PetscCall(LookAtSteps(model, PETSC_FALSE, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -213,5 +213,6 @@ PetscErrorCode PrecheckMotions(Model model, FILE *stream)
 {
   PetscFunctionBeginUser;
   PetscCall(FreeModesReport(model->problem->modes, PETSC_FALSE, stream));
+  PetscCall(LookAtSteps(model, PETSC_FALSE, stream));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -280,7 +280,16 @@ static int WordDistance(const char *a, size_t na, const char *b, size_t nb)
   return row[nb];
 }
 
-/* Refuses an unknown key and names the most similar key and all keys that are allowed. */
+/* Keys that other programs have and that users look for, and what there is instead. */
+static const struct {
+  const char *key, *instead;
+} Wanted[] = {
+  {"cyclic", "sides of a sector that repeat by a rotation cannot be tied to each other; allowed: a sector whose sides "
+             "are planes of symmetry, held by supports and named by symmetry under contact, or the whole part"},
+};
+
+/* Refuses an unknown key and names the most similar key and all keys that are allowed, or what there is in its place.
+ */
 static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path,
                                           const char *unknown)
 {
@@ -289,6 +298,8 @@ static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const c
   int         least = 1000, length = 0;
 
   PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(Wanted); i++)
+    if (!strcmp(unknown, Wanted[i].key)) PetscCall(DocumentRefuseNode(document, node, path, "%s", Wanted[i].instead));
   for (int i = 0; i < SchemaKeysCount; i++) {
     if (!SchemaKeyIsChild(&SchemaKeys[i], parent)) continue;
     for (const char *key = SchemaKeyName(&SchemaKeys[i]); *key;) {

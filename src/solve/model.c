@@ -1,5 +1,6 @@
 /* The accepted state of a model: set-up, acceptance, return, and its place in an archive. */
 #include "modelimpl.h"
+#include "base/timing.h"
 #include "smooth/smoother.h"
 #include "solve/forcebalance.h"
 
@@ -423,6 +424,7 @@ PetscErrorCode ModelChangeSupports(Model model, PetscBool *changed)
   if (!SceneSupportsChange(model->scene) || phase == LoadsPhase(model->problem->loads))
     PetscFunctionReturn(PETSC_SUCCESS);
   *changed = PETSC_TRUE;
+  TimingBegin(TIMING_SETUP);
   PetscCall(PetscMalloc1(n, &force));
   PetscCall(PetscArraycpy(force, model->problem->f, n));
   PetscCall(MeshSumNodes(model->mesh, model->mesh->dim, force));
@@ -435,6 +437,7 @@ PetscErrorCode ModelChangeSupports(Model model, PetscBool *changed)
   PetscCall(ModelBuild(model, phase));
   PetscCall(ModelArchive(model, archive));
   PetscCall(ArchiveClose(&archive));
+  TimingEnd(TIMING_SETUP);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

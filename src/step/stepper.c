@@ -343,13 +343,15 @@ static void StartAnew(StepSize *size)
 }
 
 /* Where supports come or leave, bodies begin to move otherwise than before. */
-static PetscErrorCode LoadStepperMeetSupports(Model model, StepSize *size)
+static PetscErrorCode LoadStepperMeetSupports(LoadStepper stepper)
 {
   PetscBool changed;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelChangeSupports(model, &changed));
-  if (changed) StartAnew(size);
+  PetscCall(ModelChangeSupports(stepper->model, &changed));
+  if (!changed) PetscFunctionReturn(PETSC_SUCCESS);
+  StartAnew(&stepper->size);
+  stepper->start = stepper->size;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -686,7 +688,7 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
   stepper->next_landing = 0;
   if (stepper->view) PetscCall(LoadStepperView(stepper, PETSC_VIEWER_STDOUT_(stepper->comm)));
   while (stepper->report.t < 1 - STEPPER_SAME_T && advanced && !stepper->report.stopped) {
-    PetscCall(LoadStepperMeetSupports(stepper->model, &stepper->size));
+    PetscCall(LoadStepperMeetSupports(stepper));
     PetscCall(LoadStepperAdvance(stepper, &record, &advanced));
     if (advanced && stepper->monitor) PetscCall(stepper->monitor(stepper, &record, stepper->monitor_context));
   }

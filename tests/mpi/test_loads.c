@@ -191,6 +191,64 @@ static void test_follower_tangent(void **state)
   }
 }
 
+/* Makes the loads of the second step anew, as a run does where a step ends: every node has gone by (0.2, -0.1), and
+   supports exert 3 along y on each. */
+static void EnterSecondStep(void)
+{
+  const PetscInt n = parts.mesh->n_nodes * 2;
+  Archive        archive;
+
+  for (PetscInt i = 0; i < n; i++) {
+    parts.u[i] = i % 2 ? -0.1 : 0.2;
+    parts.f[i] = i % 2 ? 3 : 0;
+  }
+  assert_int_equal(LoadsPhase(parts.problem->loads), 0);
+  OK(LoadsChangePhase(parts.problem->loads, 1, parts.u, parts.f));
+  OK(ArchiveKeep(PETSC_COMM_WORLD, &archive));
+  OK(LoadsArchive(parts.problem->loads, archive));
+  ArchiveTurn(archive);
+  OK(ProblemDestroy(&parts.problem));
+  OK(ProblemCreate(parts.scene, parts.mesh, 1, &parts.problem));
+  OK(LoadsArchive(parts.problem->loads, archive));
+  OK(ArchiveClose(&archive));
+}
+
+/* A support leaves: its forces fade, and their potential gives them. Another one comes: it holds where nodes are, or
+   leads them from there to an expression. */
+static void test_changing_supports(void **state)
+{
+  static const double times[] = {0.5, 0.625, 0.75, 0.9};
+  Resultant           r;
+
+  (void)state;
+  Create("plane_strain", "small",
+         "supports: [{surface: block_top, uy: 0, during: a}, {surface: block_bottom, uy: 0, during: [b, c]},\n"
+         "  {surface: block_left, ux: \"0.1*x + y\", during: [b, c]}]\nloads: []\n"
+         "stepping: {control: fixed, initial: 0.1, steps: [{name: a, until: 0.5}, {name: b, until: 0.75}, {name: c, "
+         "until: 1}]}");
+  CheckResultant(0.2, 0, 0, 0);
+  EnterSecondStep();
+  assert_int_equal(LoadsPhase(parts.problem->loads), 1);
+  for (int k = 0; k < 4; k++) {
+    const double t = times[k], left = PetscMax(0, (0.75 - t) / 0.25);
+
+    r = Resulting(t);
+    assert_near(r.force[0], 0, 1e-12);
+    assert_near(r.force[1], 4 * 3 * left, 1e-12); /* four nodes on top */
+    assert_near(r.energy, -4 * 3 * left * -0.1, 1e-12);
+    OK(LoadsPrescribe(parts.problem->loads, t, parts.u));
+    for (PetscInt node = 0; node < parts.mesh->n_nodes; node++) {
+      double X[2];
+
+      PartsPlace(&parts, node, X);
+      if (LoadsPrescribed(parts.problem->loads, node * 2))
+        assert_near(parts.u[node * 2], 0.2 * left + (0.1 * X[0] + X[1]) * (1 - left), 1e-14);
+      assert_near(parts.u[node * 2 + 1], -0.1, 1e-15);
+    }
+  }
+  PartsDestroy(&parts);
+}
+
 /* A linear problem is solved once for each load parameter, and every solve is looked at. */
 static void test_counts(void **state)
 {
@@ -221,9 +279,13 @@ static void test_counts(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_traction),         cmocka_unit_test(test_pressure),
-                                     cmocka_unit_test(test_body_force),       cmocka_unit_test(test_prescribed),
-                                     cmocka_unit_test(test_follower_tangent), cmocka_unit_test(test_counts)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_traction),
+                                     cmocka_unit_test(test_pressure),
+                                     cmocka_unit_test(test_body_force),
+                                     cmocka_unit_test(test_prescribed),
+                                     cmocka_unit_test(test_follower_tangent),
+                                     cmocka_unit_test(test_changing_supports),
+                                     cmocka_unit_test(test_counts)};
 
   if (PartsStart(&argc, &argv)) return 1;
   return PartsEnd(cmocka_run_group_tests(tests, NULL, NULL));

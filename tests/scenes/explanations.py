@@ -47,6 +47,7 @@ INPUT = {
     "B130": (BAR, (), ["bodies.0={volume: bar, material: {law: linear, mu: 1000, nu: 0.5}, formulation: mixed}",
                        "mesh.order=2", "supports.0.ux=0", "supports.4={surface: right, ux: 0}"]),
     "B131": (BAR, (), ["supports.2={surface: high, uy: 0, spring: [1, 0], during: pull}"]),
+    "B132": (BAR, (), ["cyclic={surfaces: [left, right], axis: z}"]),
     "B143": (STACK, (), ["sensitivity=[\"force:contact.0.name\"]"]),
     "B144": (STACK, (), ["sensitivity=[\"force:loads.0.uy\"]", "contact.0.friction={mu: 0.1}"]),
     "B145": (STACK, (), ["sensitivity=[\"force:mesh.parameters.n_lower\"]", "mesh.parameters.n_lower=6"]),

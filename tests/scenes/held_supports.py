@@ -1,6 +1,6 @@
-"""Supports that hold in some steps only, in the plane, about an axis and in space, against closed forms: a bar that is let
-go and held again, a block that contact alone holds in the end, a bar that yields; a restart; what cannot be is refused."""
-import pathlib
+"""Supports that hold in some steps only, in the plane, about an axis and in space, against closed forms: a bar that is
+let go and held again, a block that contact alone holds in the end, one that falls, a bar that yields; restarts; what
+cannot be is refused."""
 import re
 import subprocess
 
@@ -128,8 +128,8 @@ def falls():
 
 
 def yields():
-    """An end is driven until the bar flows, and let go. Exact: linear hardening in one dimension. What enters from outside
-    is what is stored and what flow takes."""
+    """An end is driven until the bar flows, and let go. Exact: linear hardening in one dimension. What enters from
+    outside is what is stored and what flow takes."""
     y, h, way = 10, 100, 0.04
     sides, _ = form("solid")
     finished = run(args, SCENES / "held_bar.yaml", out="yields", overrides=[
@@ -145,6 +145,27 @@ def yields():
     check.near("yields: energy balance", energy["work"] / (energy["elastic"] + energy["plastic"]), 1, 1e-8)
 
 
+def go_on(directory, ranks, *overrides):
+    command = ["mpirun", "-n", str(ranks), args.burnish, "-restart", str(directory)]
+    for override in overrides:
+        command += ["-set", override]
+    again = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    check.holds("the restart ends well", again.returncode == 0, again.stdout if again.returncode else "")
+    return Run(0, "", directory).steps()
+
+
+def fails():
+    """A run that fails in its first load step with other supports goes on with these."""
+    overrides = ["kinematics=finite", "bodies.0.material.law=svk", "loads.0.force=[0, 100]", "stepping.dt_min=0.09"]
+    first = run(args, SCENES / "held_bar.yaml", out="fails", must=2, overrides=[*overrides, "solver.max_iterations=2"])
+    check.holds("it fails where the support has left", first.summary()["during"] == "pull")
+    after = go_on(first.directory, args.ranks, "solver.max_iterations=20")
+    whole = run(args, SCENES / "held_bar.yaml", out="fails_not", overrides=[*overrides, "solver.max_iterations=20"])
+    for name, scale in (("low", 100), ("high", 100), ("end", 0.1)):
+        values, expected = ([row[name] / scale for row in rows] for rows in (after, whole.steps()))
+        check.near(f"goes on after a failure: {name}", values, expected, 1e-9)
+
+
 def restart():
     """A run that goes on from where a support leaves, or from amidst its fading forces, ends as one in a whole."""
     friction = "{name: bed, slave: low, master: {plane: {point: [0, -0.001], normal: [0, 1]}}, friction: {mu: 0.3}}"
@@ -158,10 +179,7 @@ def restart():
         ])
         before = whole.steps()
         ranks = args.ranks if step == 5 else max(1, (args.ranks + 1) % 4)  # 1 goes on as 2, 2 as 3, 3 as 1
-        command = ["mpirun", "-n", str(ranks), args.burnish, "-restart", str(whole.directory)]
-        again = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        check.holds(f"restart after step {step}", again.returncode == 0, again.stdout if again.returncode else "")
-        after = Run(0, "", whole.directory).steps()
+        after = go_on(whole.directory, ranks)
         for name in ("held", "punch", "bed", "contact_nodes", "newton"):
             values, expected = ([row[name] or 0 for row in rows] for rows in (after, before))
             scale = max(1, numpy.abs(expected).max())
@@ -202,6 +220,7 @@ for each in AREA:
     contact(each)
 falls()
 yields()
+fails()
 restart()
 if args.ranks == 1:
     words()
