@@ -138,6 +138,7 @@ FULL = {
     f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix_friction.csv",
     f"{PYTHON} scripts/compare_calculix.py --record runs/records/calculix_laws.csv yields rubber":
     f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix_laws.csv",
+    f"{PYTHON} scripts/fit_rubber.py runs/rubber/treloar": None,
     f"{PYTHON} scripts/wish_table.py --record runs/records/wish.csv": printed("wish_table", "wish"),
     f"{PYTHON} scripts/deck_table.py --record runs/records/decks.csv": printed("deck_table", "decks"),
     f"{PYTHON} scripts/all_table.py --record runs/records/all.csv": printed("all_table", "all"),
