@@ -6,6 +6,7 @@ Where bricks of 20 nodes or quadrilaterals of 8 were completed, the elements dif
 mesh that is once refined. `displacement` is the largest difference of a displacement component at any node of the deck,
 `force` that of the contact force on a body, in per cent of the largest one. Forces of the reference are the sums of the
 outer forces on a body."""
+import gzip
 import pathlib
 import re
 import shutil
@@ -202,6 +203,19 @@ def solve(name, args):
     return records
 
 
+def unpacked(folder, out):
+    """The folder, or a copy of its decks where some are packed, as Debian packs large files of documentation."""
+    packed = sorted(folder.glob("*.inp.gz"))
+    if not packed:
+        return folder
+    out.mkdir(parents=True, exist_ok=True)
+    for file in folder.glob("*.inp"):
+        shutil.copy(file, out)
+    for file in packed:
+        (out / file.stem).write_bytes(gzip.decompress(file.read_bytes()))
+    return out
+
+
 def contact_decks(folder):
     """Names of the decks that have contact."""
     return [file.stem for file in sorted(folder.glob("*.inp"))
@@ -258,6 +272,7 @@ def main():
     args = parser.parse_args()
     args.burnish, args.out = args.burnish.resolve(), args.out.resolve()
     if not args.only_print:
+        args.decks = unpacked(args.decks, args.out / "decks")
         names = args.deck or contact_decks(args.decks)
         if not names:
             raise SystemExit(f"no deck with *CONTACT PAIR in {args.decks}; allowed: a folder with decks, such as that "

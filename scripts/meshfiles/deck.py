@@ -1,5 +1,6 @@
 """Keyword files of Abaqus and CalculiX (.inp): cards with their parameters and data lines, and the mesh that they
 define. A deck is read with all files that it includes."""
+import contextlib
 import dataclasses
 import math
 import pathlib
@@ -26,6 +27,7 @@ PLANES = {3: "tri3", 6: "tri6", 4: "quad4", 8: "quad8"}
 RIGID = {"R3D3": "tri3", "R3D4": "quad4", "SFM3D3": "tri3", "SFM3D4": "quad4", "R2D2": "edge2", "RAX2": "edge2",
          "T3D2": "edge2"}
 DEEPEST_INCLUDE = 20  # files that include each other in a circle would never end
+MOST = 10_000_000  # numbers that one line may generate: more than a mesh has that these scripts can read
 
 
 @dataclasses.dataclass
@@ -43,15 +45,17 @@ class Card:
         return f"{self.file}:{self.line}: *{self.name}"
 
 
-def read_cards(file, depth=0):
-    """All cards of a deck, those of included files in their place."""
+def read_cards(file, depth=0, cards=None):
+    """All cards of a deck, the text of included files in its place."""
     if depth > DEEPEST_INCLUDE:
         raise MeshError(f"{file}: files include each other more than {DEEPEST_INCLUDE} deep")
+    if pathlib.Path(file).exists() and not pathlib.Path(file).is_file():
+        raise MeshError(f"{file} is no file but a folder, a device or a pipe; allowed: files")
     try:
         text = pathlib.Path(file).read_text(errors="replace")
     except OSError as error:
         raise MeshError(f"cannot read {file}: {error.strerror}") from None
-    cards, pending = [], ""
+    cards, pending = [] if cards is None else cards, ""
     for number, line in enumerate(text.splitlines(), 1):
         line = line.strip()
         if not line or line.startswith("**"):
@@ -62,12 +66,25 @@ def read_cards(file, depth=0):
                 continue
             card, pending = _card(pending, str(file), number), ""
             if card.name == "INCLUDE":
-                cards += read_cards(_included(card, file), depth + 1)
+                read_cards(_included(card, file), depth + 1, cards)
             else:
                 cards.append(card)
         elif cards:
             cards[-1].lines.append([part.strip() for part in line.split(",")])
+        elif depth:  # what stands before the first card of a deck itself is no part of it
+            raise MeshError(f"{file}:{number}: data stand before any card; allowed: a deck begins with a card, as *NODE")
     return cards
+
+
+@contextlib.contextmanager
+def reading(card):
+    """Refuses a text at the place of a number in the lines of a card, and lines that are too short."""
+    try:
+        yield
+    except IndexError:
+        raise MeshError(f"{card.where}: a line has too few entries") from None
+    except ValueError as error:
+        raise MeshError(f"{card.where}: what is no number stands where a number is needed ({error})") from None
 
 
 def _card(text, file, line):
@@ -158,6 +175,14 @@ def _read_elements(part, card):
     return None
 
 
+def _generated(card, values):
+    """The numbers of a line of GENERATE: first, last and step."""
+    if len(values) not in (2, 3) or values[-1] < 1 or len(numbers := range(values[0], values[1] + 1, *values[2:])) > MOST:
+        raise MeshError(f"{card.where}, GENERATE: {', '.join(map(str, values))}; allowed: a first and a last number, and a "
+                        f"step of 1 or more, for at most {MOST} numbers")
+    return numbers
+
+
 def _read_set(table, card, parameter):
     name = card.parameters.get(parameter)
     if name is None:
@@ -165,8 +190,7 @@ def _read_set(table, card, parameter):
     members = table.setdefault(_key(table, name), [])
     for line in card.lines:
         if "GENERATE" in card.parameters:
-            first, last, *step = [int(text) for text in line if text]
-            members.extend(range(first, last + 1, step[0] if step else 1))
+            members.extend(_generated(card, [int(text) for text in line if text]))
             continue
         for text in line:
             if text.lstrip("-").isdigit():
@@ -224,7 +248,8 @@ class Deck:
             elif card.name == "STEP":
                 part = self.whole
             else:
-                self._read_card(part, card)
+                with reading(card):
+                    self._read_card(part, card)
 
     def _read_card(self, part, card):
         instance = card.parameters.get("INSTANCE")

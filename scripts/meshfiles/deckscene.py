@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy
 
-from meshfiles.deck import resolve
+from meshfiles.deck import reading, resolve
 from meshfiles.mesh import MeshError
 from meshfiles.projection import put_on_surface
 from meshfiles.shapes import SHAPES
@@ -82,38 +82,42 @@ class DeckScene:
     def _read(self):
         self.count = max(1, sum(card.name == "STEP" for card in self.deck.cards))
         self.step = -1  # before the first step
-        material = interaction = None
+        self._material_now = self._interaction_now = None  # those that the next cards belong to
         readers = {"BOUNDARY": self._boundary, "CLOAD": self._cload, "DLOAD": self._dload, "DSLOAD": self._dsload,
                    "CONTACT PAIR": self._contact_pair, "STATIC": self._static}
         for card in self.deck.cards:
-            if card.name == "MATERIAL":
-                material = self.materials.setdefault(card.parameters.get("NAME", "").upper(), {})
-            elif card.name in ("ELASTIC", "HYPERELASTIC", "PLASTIC", "DENSITY"):
-                self._material(material, card)
-            elif card.name == "SOLID SECTION":
-                self._section(card)
-            elif card.name == "SURFACE INTERACTION":
-                interaction = self.interactions.setdefault(card.parameters.get("NAME", "").upper(), {})
-            elif card.name == "CHANGE FRICTION":
-                interaction = self.interactions.setdefault(card.parameters.get("INTERACTION", "").upper(), {})
-            elif card.name in ("SURFACE BEHAVIOR", "FRICTION"):
-                self._behaviour(interaction, card)
-            elif card.name == "AMPLITUDE":
-                self._amplitude(card)
-            elif card.name == "STEP":
-                self.step += 1
-                self.nlgeom = self.nlgeom or ("NLGEOM" in card.parameters and
-                                              card.parameters["NLGEOM"].upper() != "NO")
-            elif card.name in ("END STEP", "ENDSTEP"):
-                self._close_step()
-            elif card.name in readers:
-                readers[card.name](card)
-            elif card.name in HEAT and not any(card.name == "TEMPERATURE" for card in self.deck.cards):
-                continue
-            elif card.name not in TAKEN | SILENT:
-                self.missing.append(f"{card.where}: not available")
+            with reading(card):
+                self._read_card(card, readers)
         for kind, count in self.deck.left_out.items():
             self.missing.append(f"{count} elements of type {kind}: not available")
+
+    def _read_card(self, card, readers):
+        if card.name == "MATERIAL":
+            self._material_now = self.materials.setdefault(card.parameters.get("NAME", "").upper(), {})
+        elif card.name in ("ELASTIC", "HYPERELASTIC", "PLASTIC", "DENSITY"):
+            self._material(self._material_now, card)
+        elif card.name == "SOLID SECTION":
+            self._section(card)
+        elif card.name == "SURFACE INTERACTION":
+            self._interaction_now = self.interactions.setdefault(card.parameters.get("NAME", "").upper(), {})
+        elif card.name == "CHANGE FRICTION":
+            self._interaction_now = self.interactions.setdefault(card.parameters.get("INTERACTION", "").upper(), {})
+        elif card.name in ("SURFACE BEHAVIOR", "FRICTION"):
+            self._behaviour(self._interaction_now, card)
+        elif card.name == "AMPLITUDE":
+            self._amplitude(card)
+        elif card.name == "STEP":
+            self.step += 1
+            self.nlgeom = self.nlgeom or ("NLGEOM" in card.parameters and
+                                          card.parameters["NLGEOM"].upper() != "NO")
+        elif card.name in ("END STEP", "ENDSTEP"):
+            self._close_step()
+        elif card.name in readers:
+            readers[card.name](card)
+        elif card.name in HEAT and not any(card.name == "TEMPERATURE" for card in self.deck.cards):
+            return
+        elif card.name not in TAKEN | SILENT:
+            self.missing.append(f"{card.where}: not available")
 
     def _material(self, material, card):
         if material is None:

@@ -25,16 +25,22 @@ MOST_VALUES = 1000  # an array of cells with more different values than this is 
 
 
 def read_gmsh(file, dim):
-    """Reads what gmsh reads. Groups are its physical groups; entities that no group has are named by their number."""
+    """Reads what gmsh reads. Groups are its physical groups; entities that no group has are named by their number. What
+    gmsh warns of, such as groups that it leaves out, are notes of the mesh."""
     import gmsh
 
     if file.suffix == ".msh" and not file.read_bytes()[:1024].lstrip().startswith((b"$MeshFormat", b"$NOD", b"$Comm")):
         raise MeshError("this is no .msh file: it does not start with $MeshFormat")
     gmsh.initialize(readConfigFiles=False)
-    gmsh.option.setNumber("General.Verbosity", 0)
+    gmsh.option.setNumber("General.Verbosity", 2)  # errors and warnings
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.logger.start()
     try:
         gmsh.open(str(file))
-        return mesh_of_entities(gmsh, dim, _names_of_entities(gmsh, dim))
+        mesh = mesh_of_entities(gmsh, dim, _names_of_entities(gmsh, dim))
+        warnings = [line.split(": ", 1)[-1] for line in gmsh.logger.get() if line.startswith("Warning")]
+        mesh.notes += [f"gmsh says: {text}" for text in dict.fromkeys(warnings)]
+        return mesh
     except MeshError:
         raise
     except Exception as error:  # gmsh raises Exception itself

@@ -48,6 +48,13 @@ fields = finished.fields()
 check.near("way of the lid", fields["displacement"][fields["nodes"][:, 2] > 1.5, 2],
            -(4 / 2000 + 4 / 1000 + 1 / 1000 + 4 / 1000), 1e-6)
 
+head, _, rest = (SCENES / "deck_stack.inp").read_text().partition("*NODE, NSET=all\n")
+nodes, _, rest = rest.partition("*")
+(place / "nodes.txt").write_text(nodes)
+(place / "split.inp").write_text(f"{head}*NODE, NSET=all\n*INCLUDE, INPUT=nodes.txt\n*{rest}")
+made = imported(place / "split.inp")
+check.holds("lines of data in a file of their own", made.returncode == 0 and
+            (place / "split.msh").read_text() == (place / "deck_stack.msh").read_text(), made.stdout)
 again = imported(SCENES / "deck_stack.inp")
 check.holds("nothing is overwritten", again.returncode == 1 and "is there already" in again.stdout, again.stdout)
 other = imported(SCENES / "deck_stack.inp", "other.yaml")

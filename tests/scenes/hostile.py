@@ -1,6 +1,7 @@
 """Scenes of strangers: geometry that runs programs or writes files is refused with its file and line, does nothing, and
-leaves no mesh. So is a scene that names a library, which is not loaded. With -trust they are taken. A file that the
+leaves no mesh. Decks that would read devices, take all memory or never end are refused by name. So is a scene that names a library, which is not loaded. With -trust they are taken. A file that the
 geometry reads makes a new mesh when it changes."""
+import os
 import pathlib
 import re
 import shutil
@@ -120,6 +121,29 @@ for mode in ("-check", "-mesh", "-quiet"):
 trusted = scene(place / "plain.geo", "-trust", overrides=MATERIAL)
 check.holds("library, -trust: loaded", trusted.status == 0 and (place / "done").exists(), trusted.text.strip()[-200:])
 (place / "done").unlink()
+
+# Decks: each begins with these lines and goes on with a whole deck.
+DECKS = {
+    "circle": ("*INCLUDE, INPUT=circle.inp", "include each other"),
+    "device": ("*INCLUDE, INPUT=/dev/zero", "/dev/zero is no file"),
+    "pipe": ("*INCLUDE, INPUT=pipe", "pipe is no file"),
+    "folder": ("*INCLUDE, INPUT=sub", "sub is no file"),
+    "no_deck": ("*INCLUDE, INPUT=numbers.txt", r"numbers.txt:1: data stand before any card"),
+    "memory": ("*NSET, NSET=many, GENERATE\n1, 2000000000", r"memory.inp:1: \*NSET, GENERATE: 1, 2000000000; allowed"),
+    "no_step": ("*NSET, NSET=many, GENERATE\n1, 9, 0", r"no_step.inp:1: \*NSET, GENERATE: 1, 9, 0; allowed"),
+    "in_itself": ("*SOLID SECTION, ELSET=a, MATERIAL=soft\n*ELSET, ELSET=a\nb\n*ELSET, ELSET=b\na", "contains itself"),
+    "word": ("*NODE\n1, zero, 0, 0", r"word.inp:1: \*NODE: what is no number"),
+    "short": ("*NODE\n1\n*ELASTIC\n", r"short.inp:\d+: \*ELASTIC"),
+}
+os.mkfifo(place / "pipe")
+write("numbers.txt", "1\n")
+for name, (lines, pattern) in DECKS.items():
+    write(f"{name}.inp", f"{lines}\n" + (SCENES / "deck_stack.inp").read_text())
+    before = footprint()
+    finished = subprocess.run([pathlib.Path(args.burnish).resolve(), "-import", f"{name}.inp"], cwd=place, timeout=60,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    check.holds(f"deck {name}: refused", finished.returncode == 1 and re.search(pattern, finished.stdout) and
+                footprint() == before, finished.stdout.strip()[-300:])
 
 # With -trust the same commands run, and files of names that are made while gmsh runs make a new mesh when they change.
 trusted = scene(place / "printf.geo", "-trust")

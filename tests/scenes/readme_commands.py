@@ -17,6 +17,9 @@ def printed(script, record, options=""):
     return f"{PYTHON} scripts/{script}.py --print --record runs/records/{record}.csv {options}"
 
 
+# The pages' commands install into the user's folders; here into one of the test's, and what is tested is not built anew.
+INSTALL = "test -x prefix/bin/burnish || make -o build/burnish -o build/libburnish.a install PREFIX=$WORK/prefix"
+
 # Run in both sets, with other settings than the page shows
 LIKE = {
     f"{PYTHON} scripts/reference.py": f"{PYTHON} scripts/reference.py --check {BURNISH}",
@@ -31,8 +34,10 @@ LIKE = {
     "tests/scenes/deck_stack.inp out/deck_stack.yaml",
     f"{PYTHON} -m http.server -d out/site": f"timeout 1 {PYTHON} -m http.server 0 -d out/site; test $? = 124",
     "mpirun -x OPENBLAS_CORETYPE": "mpirun -x OPENBLAS_CORETYPE -n 2 build/burnish -version",
-    "make install PREFIX=$HOME/.local": "test -x prefix/bin/burnish || "
-    "make -o build/burnish -o build/libburnish.a install PREFIX=$WORK/prefix",
+    "make install": INSTALL,
+    "pip install ./scripts": f"{PYTHON} -m pip install --no-index --no-deps --no-build-isolation --target $WORK/site "
+    "./scripts",
+    "make install PREFIX=$HOME/.local": INSTALL,
     "mpicc tests/library/library.c $(pkg-config --cflags --libs burnish) -o library":
     "PKG_CONFIG_PATH=$WORK/prefix/lib/pkgconfig; export PKG_CONFIG_PATH; "
     "mpicc tests/library/library.c $(pkg-config --cflags --libs burnish) -o library",
@@ -133,7 +138,9 @@ FULL = {
     f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix_friction.csv",
     f"{PYTHON} scripts/compare_calculix.py --record runs/records/calculix_laws.csv yields rubber":
     f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix_laws.csv",
-    f"{PYTHON} scripts/deck_table.py --record runs/records/decks.csv --decks FOLDER": printed("deck_table", "decks"),
+    f"{PYTHON} scripts/fit_rubber.py runs/rubber/treloar": None,
+    f"{PYTHON} scripts/wish_table.py --record runs/records/wish.csv": printed("wish_table", "wish"),
+    f"{PYTHON} scripts/deck_table.py --record runs/records/decks.csv": printed("deck_table", "decks"),
     f"{PYTHON} scripts/all_table.py --record runs/records/all.csv": printed("all_table", "all"),
     f"{PYTHON} tests/hard/run.py --group guards":
     f"{PYTHON} tests/hard/run.py {BURNISH} --out $WORK/out/hard --case 'corner of two walls' --ranks 1",

@@ -1,6 +1,7 @@
 """results.vtkhdf shows VTK what it holds by steps, and tools that move: read by h5py as the format says, and by VTK's
-own reader where Python has it."""
+own reader and PyVista where Python has them."""
 
+import importlib.util
 import pathlib
 
 import h5py
@@ -88,12 +89,23 @@ def by_vtk(what, path):
     check.holds(f"{what}: VTK reads the same", good)
 
 
-try:
-    import vtkmodules.vtkIOHDF  # noqa: F401
-    readers = [by_format, by_vtk]
-except ImportError:
-    readers = [by_format]
-    print("     VTK is not there to read the files as well (pip install vtk)")
+def by_pyvista(what, path):
+    """The grid of the last step with its arrays, and its bodies apart."""
+    import pyvista
+    grid = pyvista.read(path)
+    with h5py.File(path, "r") as file:
+        good = grid.n_points == file["VTKHDF/NumberOfPoints"][0] and grid["stress"].shape == (grid.n_points, 6)
+        good &= set(file["VTKHDF/PointData"]) <= set(grid.point_data)
+    parts = [grid.extract_cells(grid["body"] == body).n_cells for body in (0, 1)]
+    check.holds(f"{what}: PyVista reads it, tools apart", good and min(parts) > 0 and sum(parts) == grid.n_cells, f"{parts}")
+
+
+readers = [by_format]
+for module, reader in (("vtkmodules.vtkIOHDF", by_vtk), ("pyvista", by_pyvista)):
+    if importlib.util.find_spec(module.split(".")[0]):
+        readers.append(reader)
+    else:
+        print(f"     {module.split('.')[0]} is not there to read the files as well (pip install vtk pyvista)")
 for name, (geometry, order, tool) in TOOLS.items():
     scene = SCENES.parents[1] / "meshes"
     path = pathlib.Path(args.out).resolve() / f"{name}.yaml"
