@@ -35,6 +35,39 @@ static PetscErrorCode GroupPlane(Mesh mesh, const MeshGroup *group, int *axis, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds the planes normal to an axis on which all of a group lies: one, or two where each of its faces is on either.
+ *n: how many, 0 if there are none. */
+static PetscErrorCode GroupPlanes(Mesh mesh, const MeshGroup *group, int axis, int *n, PetscReal position[2])
+{
+  const PetscReal flat     = SURFACE_FLATNESS * mesh->size;
+  PetscReal       range[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL}; /* -min and max, over all ranks */
+  int             between  = !group->attached;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < group->n_nodes; i++) {
+    const PetscReal x = mesh->coords[group->nodes[i] * mesh->dim + axis];
+
+    range[0] = PetscMax(range[0], -x);
+    range[1] = PetscMax(range[1], x);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPI_MAX, mesh->comm));
+  for (PetscInt f = 0; f < group->n_faces; f++) {
+    PetscInt       nodes[FACE_MAX_NODES];
+    const Element *e = ElementGet(MeshFaceNodes(mesh, group, f, nodes));
+
+    for (int a = 0; a < e->nodes; a++) {
+      const PetscReal x = mesh->coords[nodes[a] * mesh->dim + axis], first = mesh->coords[nodes[0] * mesh->dim + axis];
+
+      between = between || PetscAbsReal(x - first) > flat || PetscMin(x + range[0], range[1] - x) > flat;
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &between, 1, MPI_INT, MPI_LOR, mesh->comm));
+  *n          = range[0] + range[1] <= flat ? 1 : between ? 0 : 2;
+  position[0] = *n == 1 ? 0.5 * (range[1] - range[0]) : -range[0];
+  position[1] = range[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Does a support fix this displacement component on the surface, all the time? */
 static PetscBool SupportHolds(Scene scene, const char *surface, int component)
 {
@@ -283,6 +316,22 @@ static PetscErrorCode PairContinues(Mesh mesh, Scene scene, ContactSurface slave
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds a plane that a support shows, if slave and master continue beyond it, and unless there are two already. */
+static PetscErrorCode AddPlaneOfSupport(Mesh mesh, Scene scene, ContactSurface slave, ContactSurface master, int axis,
+                                        PetscReal position, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES])
+{
+  PetscBool continues = PETSC_FALSE;
+  int       taken     = 0;
+
+  PetscFunctionBeginUser;
+  for (int bit = 1; bit < *n_images; bit <<= 1) taken += images[bit].sign[axis] < 0;
+  if (taken == SURFACE_AXIS_PLANES || ImagesHavePlane(axis, position, mesh->size, *n_images, images))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PairContinues(mesh, scene, slave, master, axis, position, &continues));
+  if (continues) ImagesAddPlane(axis, position, n_images, images);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SurfaceImagesFromSupports - adds the planes of symmetry that the supports show.
 
@@ -300,27 +349,25 @@ static PetscErrorCode PairContinues(Mesh mesh, Scene scene, ContactSurface slave
 
   Note:
   Such a plane is one on which a support fixes the normal displacement and nothing else, at which slave or master end
-  square to it, and beyond which neither of them reaches. A fit that ended there would hand the slave's forces wrongly
-  to the master's nodes. A wall r = constant of an axisymmetric scene is such a plane too.
+  square to it, and beyond which neither of them reaches. Both ends of a strip may be one surface of a support. A fit
+that ended there would hand the slave's forces wrongly to the master's nodes. A wall r = constant of an axisymmetric
+scene is such a plane too.
 @*/
 PetscErrorCode SurfaceImagesFromSupports(Mesh mesh, Scene scene, ContactSurface slave, ContactSurface master,
                                          int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES])
 {
   PetscFunctionBeginUser;
   for (int s = 0; s < scene->n_supports; s++) {
-    const char *name     = scene->supports[s].surface;
-    const int   g        = MeshFindGroup(mesh, mesh->dim - 1, name);
-    PetscReal   position = 0;
-    int         axis = -1, taken = 0;
-    PetscBool   continues = PETSC_FALSE;
+    const char *name = scene->supports[s].surface;
+    const int   g    = MeshFindGroup(mesh, mesh->dim - 1, name);
+    PetscReal   position[2];
+    int         axis = 0, n;
 
-    if (g < 0) continue;
-    PetscCall(GroupPlane(mesh, &mesh->groups[g], &axis, &position));
-    if (axis < 0 || !SupportSlides(scene, name, axis)) continue;
-    for (int bit = 1; bit < *n_images; bit <<= 1) taken += images[bit].sign[axis] < 0;
-    if (taken == SURFACE_AXIS_PLANES || ImagesHavePlane(axis, position, mesh->size, *n_images, images)) continue;
-    PetscCall(PairContinues(mesh, scene, slave, master, axis, position, &continues));
-    if (continues) ImagesAddPlane(axis, position, n_images, images);
+    while (axis < mesh->dim && !SupportSlides(scene, name, axis)) axis++;
+    if (g < 0 || axis == mesh->dim) continue;
+    PetscCall(GroupPlanes(mesh, &mesh->groups[g], axis, &n, position));
+    for (int k = 0; k < n; k++)
+      PetscCall(AddPlaneOfSupport(mesh, scene, slave, master, axis, position[k], n_images, images));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,6 +38,12 @@ if args.cases == "all":
     CASES += [(element, "one", nu) for element in ("quad9", "tri6") for nu in (0.45, 0.49, 0.499, 0.4999)]
     CASES += [("tri3 mixed", "steps", nu) for nu in (0.49, 0.4999)]
     CASES += [("tri6 mixed", "rolling", nu) for nu in (0.499, 0.4999)]
+# Force by nu, squeezed as it is and deeper: quad9 with mixed elements, n = 16. quad4 is up to 0.98 % below it, the others
+# are up to 0.44 % above.
+FINE = {
+    False: {0.45: 424.758, 0.49: 463.652, 0.499: 474.742, 0.4999: 475.913, 0.49999: 476.031},
+    True: {0.45: 893.077, 0.49: 1021.326, 0.499: 1061.198, 0.4999: 1065.514}
+}
 forces = {}
 for element, way, nu in CASES:
     name = f"{element}, {way}, nu {nu}"
@@ -49,9 +55,9 @@ for element, way, nu in CASES:
     check.holds(f"{name}: iterations", summary["newton_iterations"] <= iterations, str(summary["newton_iterations"]))
     causes = summary["guards"]["cut_causes"]
     check.holds(f"{name}: every cut has a cause", sum(causes.values()) == summary["guards"]["line_search_cuts"])
-    first = forces.setdefault((way == "deeper", nu), summary["probes"]["force"])
+    fine = FINE[way == "deeper"][nu]
     forces[way, nu, element] = summary["probes"]["force"]
-    check.near(f"{name}: force", summary["probes"]["force"], first, 0.012 * first)
+    check.near(f"{name}: force", summary["probes"]["force"], fine, 0.01 * fine)
 # The unit of stress is free. Pressures at nodes are unknowns beside the displacements and no lengths: taken for lengths
 # they gave 32 instead of 34 iterations and another force with the second unit.
 small = run(args, RING, out="other_unit",
@@ -59,11 +65,15 @@ small = run(args, RING, out="other_unit",
 usual = forces["steps", 0.499, "tri3 mixed"]
 check.near("other unit of stress: force", 1e6 * small["probes"]["force"], usual, 1e-6 * usual)
 if args.cases == "all":
-    # A search that compares residuals, and a fluid that dries places within a step, end below 3 MPa.
-    pressed = run(args, RUNS / "o_ring_pressure.yaml", out="pressed",
-                  overrides=("mesh.parameters.n=6", "stepping.dt_max=0.1", "output.every=0")).summary()
+    # Rubber goes into the mouth of a gap. Faces as long as the mouth do not follow it, those of 0.05 do. A search that
+    # compares residuals, and a fluid that dries places within a step, end below 3 MPa.
+    pressed = run(args, RUNS / "o_ring_pressure.yaml", out="pressed", overrides=(
+        *(value for value in ELEMENTS["tri6 mixed"] if value.startswith("mesh")), "mesh.parameters.n=12",
+        "mesh.parameters.gap=0.05", "stepping.dt_max=0.1", "output.every=0")).summary()
     check.holds("pressed: 10 MPa", pressed["status"] == "done", pressed["status"])
-    check.holds("pressed: steps", pressed["steps"] <= 20, f"{pressed['steps']}, {pressed['steps_failed']} failed")
+    check.holds("pressed: steps", pressed["steps"] <= 14 and pressed["steps_failed"] == 0,
+                f"{pressed['steps']}, {pressed['steps_failed']} failed")
+    check.near("pressed: tight", pressed["probes"]["tight_to"], 11.94, 0.003 * 11.94)  # faces of 0.025
     # Squeezed deeper, then 10 MPa. These guard that offsets which a rolling ring turns to and fro are damped, that the first
     # step of the fluid is a short one, and that a prediction which leads nowhere is left: without them quad4 takes 10
     # steps with one failed, at nu 0.4999 18 with 23 failed, and ends at 9.7 MPa.

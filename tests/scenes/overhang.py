@@ -26,6 +26,12 @@ for name, finished in (("slab", slab), ("block", block)):
                 pair["nodes"] == finished.steps()[-1]["contact_nodes"] > 0, str(pair["nodes"]))
     raised = pair["penalty"]["stiffened"]
     check.holds(f"{name} as slave: penalty", raised <= RAISED, f"{raised:.3g}")
+if args.geometry == "solid":  # the ends of the strip are one surface, on two planes
+    looked = run(args, SCENES / "overhang.yaml", "-check", out="looked", overrides=form).text
+    check.holds("both ends are planes of symmetry", "mirrored at x = 0 and z = 0 and z = 2" in looked)
+    askew = run(args, SCENES / "overhang.yaml", "-check", out="askew",
+                overrides=[value.replace("surface: ends", "surface: slab_top") for value in form]).text
+    check.holds("a surface that goes from one to the other is none", "mirrored at x = 0\n" in askew)
 if args.geometry == "plane_strain":
     check.holds("a raise that brings too little is told", "lowered it by less than forecast" in slab.text)
     check.holds("no stiffer penalty is advised", "penalty.scale" not in slab.text)

@@ -66,7 +66,8 @@ for name, (scene, overrides, tool, pushed, force) in WAYS.items():
 # A roller that is pressed and drawn along rolls; the way on the slab is a little longer than that on the roller, because
 # contact stretches the slab and presses the roller's place into it.
 rolled = run(args, SCENES / "tool.yaml", out="rolled", overrides=[
-    "contact.0.friction.mu=0.3", "mesh.order=1", "probes.5={name: torque, friction_torque: punch, at: [8, 8.2]}",
+    "contact.0.friction.mu=0.3", "stepping.contact_travel=0", "mesh.order=1",
+    "probes.5={name: torque, friction_torque: punch, at: [8, 8.2]}",
     cylinder("free: [uy, rz], force: [0, -30], history: [[0, 0], [0.3, 1], [1, 1]], "
              "motion: [{ux: 3, history: [[0, 0], [0.3, 0], [1, 1]]}]")
 ])
