@@ -395,8 +395,10 @@ static void Conclude(Refinement *r, BurnishStatus *status)
   } else
     Say(r, "done: %s %.6g with an estimated error of %.3g %%%s, %d meshes, %.1f s of CPU; results in %s/mesh-%d\n",
         r->probe, (double)Last(r)->value, 100 * (double)Error(Last(r)),
-        isnan((double)Last(r)->error.part[ERROR_GEOMETRY]) ? " besides that of the contact surfaces" : "", r->n,
-        r->cpu_s, r->directory, r->n);
+        isnan((double)Last(r)->error.part[ERROR_GEOMETRY])
+          ? ", that of the contact surfaces by the change of the answer alone"
+          : "",
+        r->n, r->cpu_s, r->directory, r->n);
 }
 
 /* Solves meshes until the last one is accurate enough. */
