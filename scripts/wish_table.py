@@ -23,6 +23,8 @@ CASES = {  # scene, probe, overrides; a number: the reference of a job
     "punch": ("runs/punch.yaml", "force", ("mesh.parameters.n=2", SECOND), None),
     "o_ring": ("runs/o_ring.yaml", "force", ("mesh.parameters.n=6", SECOND), None),
     "cup_flattening": ("runs/cup_flattening.yaml", "plane_force", ("mesh.parameters={n_arc: 30, n_wall: 1}", ), None),
+    "ring_in_ring": ("runs/ring_in_ring.yaml", "mean_pressure", ("mesh.parameters={n_inner: 8, n_outer: 10}", ), None),
+    "spheres": ("runs/spheres.yaml", "mean_pressure", ("mesh.parameters={n_inner: 3, n_outer: 4}", ), None),
     "hertz_line": ("runs/hertz_line.yaml", "force",
                    ("mesh.parameters={h: 1.6, growth: 0.6}", "loads=[{surface: cylinder_cut, uy: -0.3}]", SECOND), None),
     "lip_seal": ("tests/jobs/lip_seal.yaml", "lip_up", FREE, 0.46007),

@@ -189,6 +189,7 @@ PetscErrorCode ContactTravel(Contact, PetscReal *travel);
 PetscErrorCode ContactPairLoad(Contact, int pair, const PetscReal *u, ContactLoad *);
 PetscErrorCode ContactStifferForces(Contact, PenaltySource, PetscReal *f);
 PetscErrorCode ContactPairStifferForces(Contact, int pair, PenaltySource, PetscReal *f);
+PetscErrorCode ContactPairShapeForces(Contact, int pair, const PetscReal *u, PetscReal *f, PetscBool *known);
 PetscErrorCode ContactLoadChanges(Contact, PenaltySource, const PetscReal *u, const PetscReal *v, ContactLoad change[]);
 PetscErrorCode ContactAdjustPenalty(Contact, ContactWindowState *);
 PetscErrorCode ContactAdjustNextPenalty(Contact);

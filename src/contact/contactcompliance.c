@@ -1,6 +1,6 @@
-/* First variations of contact by its penalties: the forces that stiffer penalties add where nothing moves, and how the
-   loads of the pairs change along the motion that follows. What is in contact stays so, and what slips goes on
-   slipping. No step is taken, so that no digits are lost. */
+/* First variations of contact by its penalties and by the shape of its masters: the forces that stiffer penalties add
+   where nothing moves, and how the loads of the pairs change along the motion that follows. What is in contact stays
+   so, and what slips goes on slipping. No step is taken, so that no digits are lost. */
 #include "base/largest.h"
 #include "contactimpl.h"
 
@@ -118,6 +118,101 @@ static PetscErrorCode PairChangeDestroy(PairChange *change)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the forces of a pair's slave points to those of the mesh. */
+static PetscErrorCode AddForces(ContactPair *pair, const PairChange *change, PetscReal *f)
+{
+  PetscReal *values;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(pair->lists->n_nodes * pair->mesh->dim, &values));
+  PetscCall(ContactPointForces(pair, change->on_point, values));
+  for (PetscInt q = 0; pair->friction && q < pair->lists->n_slaves; q++)
+    PetscCall(FrictionPointForces(pair, q, &change->friction[3 * q], values));
+  if (pair->tool) PetscCall(ContactToolForces(pair, values));
+  PetscCall(NeighbourListsReduce(pair->lists, values, f));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Changes of the forces of slave points where the master's nodes move by `motion` for the gaps alone. */
+static PetscErrorCode ShapeChanges(ContactPair *pair, const PetscReal *motion, PairChange *change)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    PetscReal area, gap;
+    LawValue  value;
+
+    ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
+    if (!(value.stiffness > 0)) continue;
+    PetscCall(TermGapAlong(pair, c, area, motion, &gap));
+    ContactTermPress(pair, c, -value.stiffness * gap, change->on_point);
+    if (pair->friction)
+      PetscCall(TermFriction(pair, c, BY_PENETRATION, -value.stiffness * gap, NULL, change->friction));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Does the miss of the master's nodes say what its surface leaves of error? Facets meet their nodes, and miss the
+   surface between them. Nodes that are slaves as well would move with the points whose gaps are measured. */
+static PetscErrorCode ShapeKnown(const ContactPair *pair, const PetscReal *miss, PetscBool *known)
+{
+  const MeshGroup *group = pair->slave->group;
+  const int        dim   = pair->mesh->dim;
+
+  PetscFunctionBeginUser;
+  *known = PETSC_TRUE;
+  for (PetscInt i = 0; i < group->n_nodes; i++)
+    for (int d = 0; d < dim; d++) *known = (PetscBool)(*known && miss[group->nodes[i] * dim + d] == 0);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, known, 1, MPIU_BOOL, MPI_LAND, pair->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairShapeForces - computes the forces that a pair adds where its master is nearer to its own nodes, and nothing
+  moves.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact, in the state of its last ContactResidual() with forces
+. p       - number of the pair
+- u       - local displacements of that residual, u[n_nodes*dim] (length)
+
+  Input/Output Parameter:
+. f - as of ContactPairStifferForces()
+
+  Output Parameter:
+. known - PETSC_FALSE: not known for a rigid master, one of facets, and one that shares nodes with its slave
+
+  Note:
+  The true surface goes through the nodes. The smooth one misses them by m and is, to first order, a linear function of
+  their positions: fitted to nodes that are moved by m it is nearer to the true one by one order (twicing). The slave's
+  own surface interpolates its nodes.
+@*/
+PetscErrorCode ContactPairShapeForces(Contact contact, int p, const PetscReal *u, PetscReal *f, PetscBool *known)
+{
+  ContactPair *pair = &contact->pairs[p];
+  PetscReal   *miss, *motion;
+  PairChange   change;
+
+  PetscFunctionBeginUser;
+  *known = (PetscBool)(pair->fit.fitted && pair->master && !pair->master->rigid && !pair->slave->rigid);
+  if (!*known) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(contact->mesh->n_nodes * contact->mesh->dim, &miss, pair->lists->n_nodes * contact->mesh->dim,
+                         &motion));
+  PetscCall(SearchMasterMiss(pair->search, u, pair->t, miss));
+  PetscCall(ShapeKnown(pair, miss, known));
+  if (*known) {
+    PetscCall(PairChangeCreate(pair, &change));
+    PetscCall(ContactPairMove(contact, pair, miss, pair->t, pair->t, motion));
+    PetscCall(ShapeChanges(pair, motion, &change));
+    PetscCall(AddForces(pair, &change, f));
+    PetscCall(PairChangeDestroy(&change));
+  }
+  PetscCall(PetscFree2(miss, motion));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactPairStifferForces - computes the forces that stiffer penalties add in one pair where nothing moves.
 
@@ -135,19 +230,12 @@ static PetscErrorCode PairChangeDestroy(PairChange *change)
 PetscErrorCode ContactPairStifferForces(Contact contact, int p, PenaltySource source, PetscReal *f)
 {
   ContactPair *pair = &contact->pairs[p];
-  PetscReal   *values;
   PairChange   change;
 
   PetscFunctionBeginUser;
   PetscCall(PairChangeCreate(pair, &change));
-  PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
   PetscCall(PointChanges(pair, source, NULL, &change));
-  PetscCall(ContactPointForces(pair, change.on_point, values));
-  for (PetscInt q = 0; pair->friction && q < pair->lists->n_slaves; q++)
-    PetscCall(FrictionPointForces(pair, q, &change.friction[3 * q], values));
-  if (pair->tool) PetscCall(ContactToolForces(pair, values));
-  PetscCall(NeighbourListsReduce(pair->lists, values, f));
-  PetscCall(PetscFree(values));
+  PetscCall(AddForces(pair, &change, f));
   PetscCall(PairChangeDestroy(&change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -30,7 +30,7 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
   error->part[ERROR_BODIES] = sums.error;
   error->spread             = sums.spread;
   if (!sums.holds) error->why = "enhanced elements (bodies.*.formulation) turn too much within themselves";
-  error->part[ERROR_GEOMETRY]    = model->contact ? NAN : 0;
+  error->part[ERROR_GEOMETRY]    = adjoint->shape;
   error->part[ERROR_PENETRATION] = adjoint->penetration;
   error->part[ERROR_SLIP]        = adjoint->slip;
   error->part[ERROR_STEPS]       = DependsOnPath(model) ? NAN : 0;

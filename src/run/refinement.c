@@ -159,6 +159,14 @@ static PetscReal MeshAnswer(const SolvedMesh *mesh)
   return mesh->value + mesh->error.sum - mesh->error.part[ERROR_BODIES] - (isnan((double)geometry) ? 0 : geometry);
 }
 
+/* Sum of the magnitudes of what single places leave, by which the fall of the error shows. */
+static double Spread(const QuantityError *error)
+{
+  const double geometry = (double)error->part[ERROR_GEOMETRY];
+
+  return (double)error->spread + (isnan(geometry) ? 0 : fabs(geometry));
+}
+
 /* Takes what the change from the mesh before implies. Where it is more than was estimated, so was it on that mesh. */
 static void Compare(Refinement *r)
 {
@@ -170,7 +178,7 @@ static void Compare(Refinement *r)
   mesh->implied = NAN;
   if (!r->n) return;
   change            = (double)(MeshAnswer(mesh) - MeshAnswer(before));
-  mesh->implied     = (PetscReal)MeshPlanImplied(change, (double)(mesh->error.spread / before->error.spread),
+  mesh->implied     = (PetscReal)MeshPlanImplied(change, Spread(&mesh->error) / Spread(&before->error),
                                              r->even ? figures->factor / figures[-1].factor : 0, r->order);
   figures->error    = (double)MeshError(mesh);
   figures[-1].error = fmax(figures[-1].error, (double)mesh->implied + fabs(change));
@@ -395,8 +403,10 @@ static void Conclude(Refinement *r, BurnishStatus *status)
   } else
     Say(r, "done: %s %.6g with an estimated error of %.3g %%%s, %d meshes, %.1f s of CPU; results in %s/mesh-%d\n",
         r->probe, (double)Last(r)->value, 100 * (double)Error(Last(r)),
-        isnan((double)Last(r)->error.part[ERROR_GEOMETRY]) ? " besides that of the contact surfaces" : "", r->n,
-        r->cpu_s, r->directory, r->n);
+        isnan((double)Last(r)->error.part[ERROR_GEOMETRY])
+          ? ", that of the contact surfaces by the change of the answer alone"
+          : "",
+        r->n, r->cpu_s, r->directory, r->n);
 }
 
 /* Solves meshes until the last one is accurate enough. */

@@ -182,12 +182,6 @@ static PetscErrorCode SagittaShape(FitSupport *fit, const OffsetFace *face, int 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static int CandidateCompare(const void *a, const void *b)
-{
-  const Candidate *p = a, *q = b;
-  return p->facet.tag < q->facet.tag ? -1 : p->facet.tag > q->facet.tag;
-}
-
 /* Handles a face while fits about it can be made. */
 typedef PetscErrorCode (*OffsetFaceFn)(Offsets, FitSupport *, const OffsetFace *, PetscInt f, void *context);
 
@@ -208,9 +202,8 @@ static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, c
   PetscCall(SearchFieldCreate(s, u, t, box, SearchFitReach(s), lists, &field));
   PetscCall(FitSupportCreate(s, lists, &field, &fit));
   for (PetscInt f = 0; f < o->surface->n_faces; f++) {
-    const Facet    *facet  = &o->surface->faces[f];
-    const Candidate wanted = {.facet = {.tag = facet->tag * SURFACE_MAX_IMAGES}},
-                    *own = bsearch(&wanted, field.candidates, field.n_candidates, sizeof(Candidate), CandidateCompare);
+    const Facet     *facet = &o->surface->faces[f];
+    const Candidate *own   = SearchFieldOwn(&field, facet);
     OffsetFace face = {.candidate = own - field.candidates, .facet = facet, .rule = FaceRuleGet(facet->type, o->finer)};
     double     area[FACE_RULE_POINTS];
 

@@ -49,4 +49,5 @@ PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, Petsc
 PetscErrorCode SearchNearFaces(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *slave,
                                PetscBool *master);
 PetscErrorCode SearchLeastDistance(ContactSearch, const PetscReal *u, PetscReal t, PetscReal *distance);
+PetscErrorCode SearchMasterMiss(ContactSearch, const PetscReal *u, PetscReal t, PetscReal *miss);
 PetscErrorCode SearchDistance(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap);

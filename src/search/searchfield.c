@@ -184,3 +184,26 @@ PetscReal SearchListsDistance(ContactSearch s, PetscReal motion)
 {
   return s->reach + PetscMax(s->margin, SearchFitReach(s)) + 2 * motion;
 }
+
+static int CompareTags(const void *a, const void *b)
+{
+  const Candidate *p = a, *q = b;
+
+  return p->facet.tag < q->facet.tag ? -1 : p->facet.tag > q->facet.tag;
+}
+
+/*@
+  SearchFieldOwn - returns the candidate of a face of this rank, not of its images.
+
+  Not collective
+
+  Input Parameters:
++ field - the candidates
+- face  - a face of the master
+@*/
+const Candidate *SearchFieldOwn(const SearchField *field, const Facet *face)
+{
+  const Candidate wanted = {.facet = {.tag = face->tag * SURFACE_MAX_IMAGES}};
+
+  return bsearch(&wanted, field->candidates, field->n_candidates, sizeof(Candidate), CompareTags);
+}

@@ -64,6 +64,27 @@ static PetscErrorCode PenaltyPart(Model model, const Functional *functional, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The error that masters leave which miss their own nodes. */
+static PetscErrorCode ShapePart(Model model, const Functional *functional, const PetscReal *y, PetscReal *error)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+
+  PetscFunctionBeginUser;
+  *error = 0;
+  for (int p = 0; p < ContactPairs(model->contact) && !PetscIsNanReal(*error); p++) {
+    PetscReal *f, work, own = 0;
+    PetscBool  known;
+
+    PetscCall(PetscCalloc1(n, &f));
+    PetscCall(ContactPairShapeForces(model->contact, p, model->problem->trial, f, &known));
+    PetscCall(Work(model->mesh, y, f, &work));
+    if (functional->pressed && functional->pair == p) PetscCall(Work(model->mesh, functional->pressed, f, &own));
+    *error = known ? *error + work + own : NAN;
+    PetscCall(PetscFree(f));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Solves for y and weighs what penalties and solver leave with it. F: residual of the free dofs. */
 static PetscErrorCode Solve(Model model, const Functional *functional, Vec F, Adjoint *adjoint)
 {
@@ -73,7 +94,7 @@ static PetscErrorCode Solve(Model model, const Functional *functional, Vec F, Ad
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &b));
   PetscCall(VecDuplicate(model->x, &x));
-  adjoint->penetration = adjoint->slip = adjoint->residual = 0;
+  adjoint->penetration = adjoint->slip = adjoint->shape = adjoint->residual = 0;
   PetscCall(RightHandSide(model, functional, b));
   PetscCall(LinearSolverTransposed(model->work->solver, model->problem->A, b, x, &adjoint->known));
   if (adjoint->known) {
@@ -81,7 +102,10 @@ static PetscErrorCode Solve(Model model, const Functional *functional, Vec F, Ad
     if (functional->held) PetscCall(PetscArraycpy(adjoint->y, functional->held, n));
     PetscCall(MeshGlobalToLocal(model->mesh, x, adjoint->y));
     PetscCall(VecDot(x, F, &adjoint->residual));
-    if (model->contact) PetscCall(PenaltyPart(model, functional, adjoint->y, BY_PENETRATION, &adjoint->penetration));
+    if (model->contact) {
+      PetscCall(PenaltyPart(model, functional, adjoint->y, BY_PENETRATION, &adjoint->penetration));
+      PetscCall(ShapePart(model, functional, adjoint->y, &adjoint->shape));
+    }
     if (ContactHasFriction(model->contact))
       PetscCall(PenaltyPart(model, functional, adjoint->y, BY_SLIP, &adjoint->slip));
   }

@@ -33,6 +33,7 @@ typedef struct {
   PetscReal *y;           /* [n_nodes*dim], ghosts included; of the caller */
   PetscReal  penetration; /* error of J by penetration: true less computed value */
   PetscReal  slip;        /* by elastic slip */
+  PetscReal  shape;       /* by masters that miss their nodes; NaN: not known */
   PetscReal  residual;    /* by the residual that the solver left */
 } Adjoint;
 

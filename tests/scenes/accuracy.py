@@ -32,7 +32,8 @@ check.near("so is the error", meshes[-1]["value"], 6.925, 0.015 * 6.925)
 check.holds("each mesh has its results", (finished.directory / f"mesh-{len(meshes)}" / "summary.json").exists())
 check.holds("the last line says it", "done: tip_uy" in finished.text)
 ring = ("mesh.order=2", "bodies.0.formulation=full", "mesh.parameters={r_in: 99, r_out: 101, n_arc: 8, n_wall: 1}")
-for probe, per_cent, true in ("force", 0.2, 3.18421), ("width", 5, 28.6682):  # 200 x 24 elements, second order, extrapolated
+# References: 200 x 24 elements of second order, extrapolated
+for probe, per_cent, true in ("force", 0.2, 3.18421), ("width", 5, 28.6682):
     finished, meshes = wish(RUNS / "ring_pinch.yaml", probe, per_cent, f"ring_{probe}", *ring)
     check.holds(f"{probe}: more than one mesh, whatever is estimated", len(meshes) > 1, f"{len(meshes)}")
     check.near(f"{probe}: the error is below the wish", meshes[-1]["value"], true, per_cent / 100 * true)

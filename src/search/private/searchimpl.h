@@ -158,9 +158,10 @@ PetscErrorCode FitSupportDestroy(FitSupport *);
 PetscErrorCode FitSupportSlave(FitSupport *, const Nearest *, PetscInt q, PetscInt first, ListBuffer *);
 PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, int first, FitProblem *, FitResult *, int *rung);
 /* searchfield.c */
-PetscReal      SearchListsDistance(ContactSearch, PetscReal motion);
-PetscErrorCode SearchSetDirections(int dim, const SearchField *, BoxTree);
-PetscErrorCode SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6],
-                                 PetscReal distance, NeighbourLists, SearchField *);
-PetscErrorCode SearchFieldDestroy(SearchField *);
-PetscErrorCode SearchFieldWay(ContactSearch, const SearchField *, PetscSF *faces);
+PetscReal        SearchListsDistance(ContactSearch, PetscReal motion);
+PetscErrorCode   SearchSetDirections(int dim, const SearchField *, BoxTree);
+PetscErrorCode   SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6],
+                                   PetscReal distance, NeighbourLists, SearchField *);
+PetscErrorCode   SearchFieldDestroy(SearchField *);
+const Candidate *SearchFieldOwn(const SearchField *, const Facet *);
+PetscErrorCode   SearchFieldWay(ContactSearch, const SearchField *, PetscSF *faces);
