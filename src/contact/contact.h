@@ -232,6 +232,7 @@ PetscErrorCode ContactNearestPair(Contact, MPI_Comm, const PetscReal X[3], int *
 PetscReal      ContactNodeGap(Contact, PetscInt node);
 PetscErrorCode ContactTakeOverlap(Contact);
 PetscErrorCode ContactPairFits(Contact, int pair, ContactFits *);
+PetscErrorCode ContactPairGeometry(Contact, int pair, PetscReal *ratio);
 PetscErrorCode ContactPairGaps(Contact, int pair, ContactGaps *);
 PetscErrorCode ContactPairQuality(Contact, int pair, ContactQuality *);
 PetscErrorCode ContactPairScatter(Contact, int pair, const PetscReal *u, PetscReal *scatter);

@@ -12,6 +12,11 @@
    leaves rounding. */
 #define END_RAISED 1.001
 
+/* What the shape of the surfaces leaves open is told above this part of the forces: that much the run lets penetration
+   leave. Beyond the second part it is no longer in proportion to the gaps. */
+#define END_GEOMETRY       0.004
+#define END_GEOMETRY_KNOWN 0.2
+
 /* Names of the purposes that time is spent on */
 static const char *const purposes[TIMING_KINDS] = {[TIMING_SETUP]            = "set-up",
                                                    [TIMING_SEARCH]           = "search",
@@ -111,6 +116,24 @@ static void PrintFriction(const PairFigures *pair, FILE *stream)
             (long long)friction->footless);
 }
 
+/* Prints what facets in the place of the smooth surface would change, where that is more than penetration leaves. The
+   error of the elements is in neither. */
+static void PrintGeometryError(const PairFigures *pair, FILE *stream)
+{
+  const double change = (double)(pair->geometry * pair->penalty_error.force);
+
+  if (!(pair->geometry > 1) || !(change > END_GEOMETRY)) return;
+  if (change < END_GEOMETRY_KNOWN)
+    fprintf(stream,
+            "         not in it: the shape of the surfaces; facets in their place change forces by about %.2g %%\n",
+            100 * change);
+  else
+    fprintf(stream,
+            "         not in it: the shape of the surfaces; facets in their place change forces by more than %g "
+            "%%\n",
+            100 * END_GEOMETRY_KNOWN);
+}
+
 /* Prints what penetration and elastic slip leave of error, as estimated at the end of the load. */
 static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
 {
@@ -127,6 +150,7 @@ static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
     fprintf(stream, "; penalty raised %.3g times for it%s", (double)pair->stiffened,
             pair->penalty_stays ? ", which lowered it by less than forecast: it was raised no more" : "");
   fprintf(stream, "\n");
+  PrintGeometryError(pair, stream);
   if (!pair->scene->friction) return;
   fprintf(stream, "         elastic slip leaves about %.2g %% in forces, %.2g %% in displacements",
           100 * (double)error->slip_force, 100 * (double)error->slip_displacement);

@@ -53,9 +53,10 @@ static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
   pair->penalty_error = ModelPenaltyError(model, p);
   pair->penalty_stays = ModelPenaltyStays(model, p);
   PetscCall(ContactPairFits(contact, p, &pair->fits));
+  PetscCall(ContactPairGeometry(contact, p, &pair->geometry));
   PetscCall(ContactPairQuality(contact, p, &pair->quality));
   PetscCall(ContactPairPenalty(contact, p, &pair->penalty_min, &pair->penalty_max));
-  pair->stiffened = pair->penalty_max > 0 ? pair->penalty_max / ContactPairInitialPenalty(contact, p) : 1;
+  pair->stiffened       = pair->penalty_max > 0 ? pair->penalty_max / ContactPairInitialPenalty(contact, p) : 1;
   pair->stick_stiffened = ContactPairStick(contact, p);
   PetscCall(ContactPairWindow(contact, p, &pair->window));
   PetscCall(ContactPairFriction(contact, p, &pair->friction));

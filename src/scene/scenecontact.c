@@ -232,8 +232,8 @@ static PetscErrorCode SceneReadPresence(Scene scene, SceneContact *contact)
 /* Reads one pair's keys other than its name and sides.
 
    Surfaces of meshes are met on the slave's faces, and so is a surface that meets itself. Scenes of self contact, node
-   to surface and then surface to surface (iterations; failed steps; force, and in brackets its limit of finer meshes where
-   that is known):
+   to surface and then surface to surface (iterations; failed steps; force, and in brackets its limit of finer meshes
+   where that is known):
    - tube flattened, quad4 of size 1 and 1/2: 37, 58; 0, 1; 12.66, 12.65 (12.55), and 71, 93; 1, 3; 12.54, 12.53; quad8
      with mixed elements: stops at t = 0.92, 39; 19, 0; -, 12.41
    - the same tube, flattened further, size 1/2: 370, 129; 5, 3; 98.3 with 5 % of error left, 103.5 with 0.3 %
@@ -242,11 +242,11 @@ static PetscErrorCode SceneReadPresence(Scene scene, SceneContact *contact)
    - bumper of three folds, quad4 of size 1, 1/2, 1/4: 28, 30; 0, 0, then 109, 46; 2, 2, then 167, 94; 4, 2; the forces
      0.4, 0.3, 0.2 % apart; quad8 of size 2: stops at t = 0.97, 29; 21, 0
    - ring that is crumpled in a channel: 183, 262; 3, 4; 21.49, 21.55; quad8: 273, 282; 4, 5; 20.10, 20.04
-   - bellows with V-shaped folds whose sharp corners meet held rings, quad4 of size 1, 1/2, 1/4: 27, 21; 0, 0; 9.59, 9.37,
-     then 30, 27; 0, 0; 5.118, 5.113, then 29, 32; 0, 0; 4.144, 4.143
-   At sharp corners the nodes' gaps say too little of what lies between them. CPU time of small scenes is 0.7 to 3 times as
-   long. Where a surface meets itself at no more than a few nodes there is no difference (comb of springs, C-shaped strip:
-   11, 11 and 3, 3 iterations; the same force). */
+   - bellows with V-shaped folds whose sharp corners meet held rings, quad4 of size 1, 1/2, 1/4: 27, 21; 0,
+   0; 9.59, 9.37, then 30, 27; 0, 0; 5.118, 5.113, then 29, 32; 0, 0; 4.144, 4.143 At sharp corners the nodes' gaps say
+   too little of what lies between them. CPU time of small scenes is 0.7 to 3 times as long. Where a surface meets
+   itself at no more than a few nodes there is no difference (comb of springs, C-shaped strip: 11, 11 and 3, 3
+   iterations; the same force). */
 static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
 {
   Node symmetry = SceneNode(scene, contact->path, "symmetry");

@@ -19,9 +19,10 @@ typedef struct {
   NodeDepth           master;         /* the master's nodes in the slave */
   PetscReal           master_deepest; /* their largest depth in all written states (length) */
   PenaltyError        penalty_error;
+  PetscReal           geometry; /* distance of facets and smooth surface where it presses, over the penetration */
   PetscReal           stick_stiffened; /* factor on the automatic penalty of what sticks */
-  PetscBool           penalty_stays; /* stiffer penalties have not lowered that error */
-  PetscReal           stiffened;     /* factor by which the run raised the penalty, where it may choose it */
+  PetscBool           penalty_stays;   /* stiffer penalties have not lowered that error */
+  PetscReal           stiffened;       /* factor by which the run raised the penalty, where it may choose it */
 } PairFigures;
 
 typedef struct {
