@@ -10,6 +10,7 @@ if [ -z "${OPENBLAS_CORETYPE+set}" ] &&
   kernels=$("$build/burnish" -version 2>/dev/null | grep -o 'OPENBLAS_CORETYPE=.*'); then
   export "$kernels"
 fi
+unset MAKEFLAGS MFLAGS MAKELEVEL # tests that call make are no part of the make that called this
 mkdir -p "$build/ctest"
 cmake -S tests -B "$build/ctest" -DBURNISH_BUILD="$(realpath "$build")" >"$build/ctest/configure.log" 2>&1 ||
   { cat "$build/ctest/configure.log" >&2; exit 1; }

@@ -5,8 +5,8 @@
 Formats: .inp (Abaqus, CalculiX), .msh of other versions, .med, .unv, .cgns, .bdf, .nas by gmsh, .vtk and .vtu by
 meshio; geometry of CAD programs, which gmsh meshes: .step, .stp, .brep, .igs, .iges. --bodies: the groups (with commas)
 that are bodies, where groups overlap. --cad: how geometry is meshed, a map in JSON with size, order and surfaces, as
-under `mesh` in a scene. --list prints the groups, that is, what a scene can name; geometry is not meshed for that. Lines that
-start with `note:` say what was changed."""
+under `mesh` in a scene. --list prints the groups, that is, what a scene can name; geometry is not meshed for that.
+Lines that start with `note:` say what was changed."""
 import argparse
 import json
 import pathlib

@@ -72,7 +72,7 @@ def read_cards(file, depth=0, cards=None):
         elif cards:
             cards[-1].lines.append([part.strip() for part in line.split(",")])
         elif depth:  # what stands before the first card of a deck itself is no part of it
-            raise MeshError(f"{file}:{number}: data stand before any card; allowed: a deck begins with a card, as *NODE")
+            raise MeshError(f"{file}:{number}: data stand before any card; allowed: a card before them, such as *NODE")
     return cards
 
 
@@ -177,9 +177,10 @@ def _read_elements(part, card):
 
 def _generated(card, values):
     """The numbers of a line of GENERATE: first, last and step."""
-    if len(values) not in (2, 3) or values[-1] < 1 or len(numbers := range(values[0], values[1] + 1, *values[2:])) > MOST:
-        raise MeshError(f"{card.where}, GENERATE: {', '.join(map(str, values))}; allowed: a first and a last number, and a "
-                        f"step of 1 or more, for at most {MOST} numbers")
+    numbers = range(values[0], values[1] + 1, *values[2:]) if len(values) in (2, 3) and values[-1] > 0 else None
+    if numbers is None or len(numbers) > MOST:
+        raise MeshError(f"{card.where}, GENERATE: {', '.join(map(str, values))}; allowed: a first and a last number, "
+                        f"and a step of 1 or more, for at most {MOST} numbers")
     return numbers
 
 

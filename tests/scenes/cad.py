@@ -98,6 +98,17 @@ def names(file):
 found, text = names(ROOT / "meshes/saddle.step")
 check.holds("parts and labels of a STEP file", ["volume_1", "saddle"] in found and
             ["surface_8", "saddle.groove", "groove"] in found and ["surface_9", "shaft.mantle", "mantle"] in found, text)
+# Files of other people's making that come with gmsh: how many bodies and surfaces, and a name
+for file, bodies, surfaces, name in (("examples/boolean/as1-tu-203.stp", 18, 160, "nut & & 256.8"),
+                                     ("examples/boolean/component8.step", 1, 21, "Rhino Product"),
+                                     ("examples/api/step_boundary_colors.stp", 1, 6, "volume_1"),
+                                     ("examples/api/step_header_data.stp", 1, 1, "volume_1")):
+    file = ROOT / "build/venv/share/doc/gmsh" / file
+    if file.exists():
+        found, text = names(file)
+        counts = [sum(words[0].startswith(kind) for words in found) for kind in ("volume_", "surface_")]
+        check.holds(f"{file.name}: bodies and surfaces", counts == [bodies, surfaces] and
+                    any(name in words for words in found), f"{counts}\n{text[:300]}")
 moved = (ROOT / "meshes/saddle.step").read_text()
 swapped = place / "swapped.step"
 swapped.write_text(moved.replace("'groove'", "''").replace("'mantle'", "'skin'"))

@@ -1,6 +1,7 @@
-"""Scenes of strangers: geometry that runs programs or writes files is refused with its file and line, does nothing, and
-leaves no mesh. Decks that would read devices, take all memory or never end are refused by name. So is a scene that names a library, which is not loaded. With -trust they are taken. A file that the
-geometry reads makes a new mesh when it changes."""
+"""Scenes of strangers: geometry that runs programs or writes files is refused with its file and line, does nothing,
+and leaves no mesh. Decks that would read devices, take all memory or never end are refused by name. So is a scene that
+names a library, which is not loaded. With -trust they are taken. A file that the geometry reads makes a new mesh when
+it changes."""
 import os
 import pathlib
 import re

@@ -147,7 +147,8 @@ STEPS = dict.fromkeys(("turning rigid cylinder, surface to surface, sticks",
                        "turning rigid cylinder, facets, surface to surface, sticks"), 2e-9)
 
 # Many steps of a kind that other cases have as well: sticking and slipping friction, facets
-LONG = ("turning rigid cylinder, surface to surface, sticks", "turning rigid cylinder, facets, surface to surface, sticks",
+LONG = ("turning rigid cylinder, surface to surface, sticks",
+        "turning rigid cylinder, facets, surface to surface, sticks",
         "turning rigid cylinder, facets, surface to surface, slips")
 
 args = arguments(("cases", "which", ["few", "all"]))

@@ -17,7 +17,7 @@ def printed(script, record, options=""):
     return f"{PYTHON} scripts/{script}.py --print --record runs/records/{record}.csv {options}"
 
 
-# The pages' commands install into the user's folders; here into one of the test's, and what is tested is not built anew.
+# The pages' commands install into the user's folders; here into one of the test's. What is tested is not built anew.
 INSTALL = "test -x prefix/bin/burnish || make -o build/burnish -o build/libburnish.a install PREFIX=$WORK/prefix"
 
 # Run in both sets, with other settings than the page shows

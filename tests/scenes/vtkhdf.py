@@ -97,7 +97,8 @@ def by_pyvista(what, path):
         good = grid.n_points == file["VTKHDF/NumberOfPoints"][0] and grid["stress"].shape == (grid.n_points, 6)
         good &= set(file["VTKHDF/PointData"]) <= set(grid.point_data)
     parts = [grid.extract_cells(grid["body"] == body).n_cells for body in (0, 1)]
-    check.holds(f"{what}: PyVista reads it, tools apart", good and min(parts) > 0 and sum(parts) == grid.n_cells, f"{parts}")
+    check.holds(f"{what}: PyVista reads it, tools apart",
+                good and min(parts) > 0 and sum(parts) == grid.n_cells, f"{parts}")
 
 
 readers = [by_format]
