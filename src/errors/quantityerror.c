@@ -14,8 +14,8 @@ static PetscBool DependsOnPath(Model model)
                      SceneSupportsChange(model->scene));
 }
 
-/* Joins the parts of one quantity. bodies: NULL where no adjoint solution is known. */
-static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint, QuantityError *error)
+/* Joins the parts of one quantity. shape: that of the masters. */
+static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint, PetscReal shape, QuantityError *error)
 {
   BodyErrorSums sums;
 
@@ -30,7 +30,7 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
   error->part[ERROR_BODIES] = sums.error;
   error->spread             = sums.spread;
   if (!sums.holds) error->why = "enhanced elements (bodies.*.formulation) turn too much within themselves";
-  error->part[ERROR_GEOMETRY]    = adjoint->shape;
+  error->part[ERROR_GEOMETRY]    = shape;
   error->part[ERROR_PENETRATION] = adjoint->penetration;
   error->part[ERROR_SLIP]        = adjoint->slip;
   error->part[ERROR_STEPS]       = DependsOnPath(model) ? NAN : 0;
@@ -64,18 +64,20 @@ PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional funct
   const PetscInt dofs = model->mesh->n_nodes * model->mesh->dim;
   BodyError      bodies;
   Adjoint       *adjoint;
+  PetscReal     *shape;
 
   PetscFunctionBeginUser;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(n, &adjoint));
+  PetscCall(PetscMalloc2(n, &adjoint, n, &shape));
   for (int i = 0; i < n; i++) PetscCall(PetscCalloc1(dofs, &adjoint[i].y));
   PetscCall(ModelAdjoint(model, n, functional, adjoint));
+  PetscCall(ModelShapeErrors(model, n, functional, adjoint, shape));
   PetscCall(
     BodyErrorCreate(model->mesh, model->problem->elasticity, model->scene->kinematics, model->problem->trial, &bodies));
-  for (int i = 0; i < n; i++) PetscCall(Join(model, bodies, &adjoint[i], &error[i]));
+  for (int i = 0; i < n; i++) PetscCall(Join(model, bodies, &adjoint[i], shape[i], &error[i]));
   PetscCall(BodyErrorDestroy(&bodies));
   for (int i = 0; i < n; i++) PetscCall(PetscFree(adjoint[i].y));
-  PetscCall(PetscFree(adjoint));
+  PetscCall(PetscFree2(adjoint, shape));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -64,27 +64,6 @@ static PetscErrorCode PenaltyPart(Model model, const Functional *functional, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The error that masters leave which miss their own nodes. */
-static PetscErrorCode ShapePart(Model model, const Functional *functional, const PetscReal *y, PetscReal *error)
-{
-  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
-
-  PetscFunctionBeginUser;
-  *error = 0;
-  for (int p = 0; p < ContactPairs(model->contact) && !PetscIsNanReal(*error); p++) {
-    PetscReal *f, work, own = 0;
-    PetscBool  known;
-
-    PetscCall(PetscCalloc1(n, &f));
-    PetscCall(ContactPairShapeForces(model->contact, p, model->problem->trial, f, &known));
-    PetscCall(Work(model->mesh, y, f, &work));
-    if (functional->pressed && functional->pair == p) PetscCall(Work(model->mesh, functional->pressed, f, &own));
-    *error = known ? *error + work + own : NAN;
-    PetscCall(PetscFree(f));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Solves for y and weighs what penalties and solver leave with it. F: residual of the free dofs. */
 static PetscErrorCode Solve(Model model, const Functional *functional, Vec F, Adjoint *adjoint)
 {
@@ -94,7 +73,7 @@ static PetscErrorCode Solve(Model model, const Functional *functional, Vec F, Ad
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &b));
   PetscCall(VecDuplicate(model->x, &x));
-  adjoint->penetration = adjoint->slip = adjoint->shape = adjoint->residual = 0;
+  adjoint->penetration = adjoint->slip = adjoint->residual = 0;
   PetscCall(RightHandSide(model, functional, b));
   PetscCall(LinearSolverTransposed(model->work->solver, model->problem->A, b, x, &adjoint->known));
   if (adjoint->known) {
@@ -102,10 +81,7 @@ static PetscErrorCode Solve(Model model, const Functional *functional, Vec F, Ad
     if (functional->held) PetscCall(PetscArraycpy(adjoint->y, functional->held, n));
     PetscCall(MeshGlobalToLocal(model->mesh, x, adjoint->y));
     PetscCall(VecDot(x, F, &adjoint->residual));
-    if (model->contact) {
-      PetscCall(PenaltyPart(model, functional, adjoint->y, BY_PENETRATION, &adjoint->penetration));
-      PetscCall(ShapePart(model, functional, adjoint->y, &adjoint->shape));
-    }
+    if (model->contact) PetscCall(PenaltyPart(model, functional, adjoint->y, BY_PENETRATION, &adjoint->penetration));
     if (ContactHasFriction(model->contact))
       PetscCall(PenaltyPart(model, functional, adjoint->y, BY_SLIP, &adjoint->slip));
   }
@@ -144,6 +120,53 @@ PetscErrorCode ModelAdjoint(Model model, int n, const Functional functional[], A
   PetscCall(ModelLinearise(model, &ksp));
   for (int i = 0; i < n; i++) PetscCall(Solve(model, &functional[i], F, &adjoint[i]));
   PetscCall(VecDestroy(&F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds what one pair's master leaves to the errors of all functionals. */
+static PetscErrorCode AddShapeErrors(Model model, int p, int n, const Functional functional[], const Adjoint adjoint[],
+                                     PetscReal error[])
+{
+  PetscReal *f;
+  PetscBool  known;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(model->mesh->n_nodes * model->mesh->dim, &f));
+  PetscCall(ContactPairShapeForces(model->contact, p, model->problem->trial, f, &known));
+  for (int i = 0; i < n; i++) {
+    PetscReal work = 0, own = 0;
+
+    if (!adjoint[i].known) continue;
+    if (known) PetscCall(Work(model->mesh, adjoint[i].y, f, &work));
+    if (known && functional[i].pressed && functional[i].pair == p)
+      PetscCall(Work(model->mesh, functional[i].pressed, f, &own));
+    error[i] = known ? error[i] + work + own : NAN;
+  }
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelShapeErrors - computes what masters leave of error that miss their own nodes.
+
+  Collective
+
+  Input Parameters:
++ model      - after ModelAdjoint()
+. n          - number of functionals
+. functional - of ModelAdjoint()
+- adjoint    - likewise; those that are not known are left out
+
+  Output Parameter:
+. error - of each functional: true less computed value; NaN where it is not known of a pair
+@*/
+PetscErrorCode ModelShapeErrors(Model model, int n, const Functional functional[], const Adjoint adjoint[],
+                                PetscReal error[])
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < n; i++) error[i] = 0;
+  for (int p = 0; p < ContactPairs(model->contact); p++)
+    PetscCall(AddShapeErrors(model, p, n, functional, adjoint, error));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

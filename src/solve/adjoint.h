@@ -16,7 +16,8 @@
    leaves, what the solver leaves of the residual.
 
    ModelAdjoint() computes y for any number of functionals with one tangent and one factor. What is in
-   contact at the solution stays so. ModelRespond() goes the other way: one change of the residual, and how all
+   contact at the solution stays so. ModelShapeErrors() weighs with them what masters leave that miss their own nodes.
+   ModelRespond() goes the other way: one change of the residual, and how all
    displacements follow it. Source: Becker and Rannacher, Acta Numerica 10 (2001). */
 #pragma once
 #include "solve/model.h"
@@ -33,9 +34,9 @@ typedef struct {
   PetscReal *y;           /* [n_nodes*dim], ghosts included; of the caller */
   PetscReal  penetration; /* error of J by penetration: true less computed value */
   PetscReal  slip;        /* by elastic slip */
-  PetscReal  shape;       /* by masters that miss their nodes; NaN: not known */
   PetscReal  residual;    /* by the residual that the solver left */
 } Adjoint;
 
 PetscErrorCode ModelAdjoint(Model, int n, const Functional[], Adjoint[]);
+PetscErrorCode ModelShapeErrors(Model, int n, const Functional[], const Adjoint[], PetscReal error[]);
 PetscErrorCode ModelRespond(Model, Vec change, Vec response, PetscBool *known);
