@@ -19,8 +19,8 @@ CASES = {
     "second order without friction": ["contact.0.friction.mu=0", "mesh.order=2"],
     "facets without friction": ["contact.0.friction.mu=0", "contact.0.smoother=facet"],
 }
-# Steps end where forces of smooth surfaces are compared. Between steps the peak would be missed by 0.4 %, differently in
-# each case.
+# Steps end where forces of smooth surfaces are compared. Between steps the peak would be missed by 0.4 %, differently
+# in each case.
 STEPS = f"stepping.at={[float(at) for at in AT / TRAVEL]}"
 args = arguments()
 check = Check()

@@ -38,8 +38,8 @@ if args.cases == "all":
     CASES += [(element, "one", nu) for element in ("quad9", "tri6") for nu in (0.45, 0.49, 0.499, 0.4999)]
     CASES += [("tri3 mixed", "steps", nu) for nu in (0.49, 0.4999)]
     CASES += [("tri6 mixed", "rolling", nu) for nu in (0.499, 0.4999)]
-# Force by nu, squeezed as it is and deeper: quad9 with mixed elements, n = 16. quad4 is up to 0.98 % below it, the others
-# are up to 0.44 % above.
+# Force by nu, squeezed as it is and deeper: quad9 with mixed elements, n = 16. quad4 is up to 0.98 % below it, the
+# others are up to 0.44 % above.
 FINE = {
     False: {0.45: 424.758, 0.49: 463.652, 0.499: 474.742, 0.4999: 475.913, 0.49999: 476.031},
     True: {0.45: 893.077, 0.49: 1021.326, 0.499: 1061.198, 0.4999: 1065.514}
