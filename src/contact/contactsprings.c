@@ -118,6 +118,24 @@ PetscErrorCode ContactSpringsRelease(ContactSprings s, int n, const int *kept, P
 }
 
 /*@
+  ContactSpringsMark - notes whether the motion of a tie is unstable.
+
+  Not collective, the same on all ranks
+
+  Input Parameters:
++ s        - the springs
+. motion   - number of the motion, which is tied
+- unstable - without its tie the motion would go on by itself
+@*/
+PetscErrorCode ContactSpringsMark(ContactSprings s, int motion, PetscBool unstable)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n_ties; i++)
+    if (s->ties[i].motion == motion) s->ties[i].unstable = unstable;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactSpringsRetie - ties what was released.
 
   Not collective, the same on all ranks

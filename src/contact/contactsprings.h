@@ -11,6 +11,7 @@
 typedef struct {
   int       motion;                        /* which one it holds: a number of the owner */
   PetscBool released;                      /* it has no force for the time being */
+  PetscBool unstable;                      /* without it the motion would go on by itself */
   PetscReal stiffness;                     /* force per length */
   PetscInt  n, dof[ELEMENT_MAX_NODES * 3]; /* global free dofs */
   PetscReal value[ELEMENT_MAX_NODES * 3];
@@ -22,6 +23,7 @@ PetscErrorCode ContactSpringsCreate(Mesh, const PetscReal *stiffness, Vec like, 
 PetscErrorCode ContactSpringsDestroy(ContactSprings *);
 PetscErrorCode ContactSpringsSetTies(ContactSprings, PetscInt n, const SpringTie *);
 PetscErrorCode ContactSpringsRelease(ContactSprings, int n, const int *kept, PetscBool *any);
+PetscErrorCode ContactSpringsMark(ContactSprings, int motion, PetscBool unstable);
 PetscErrorCode ContactSpringsRetie(ContactSprings, PetscBool *any);
 void           ContactSpringsGetTie(ContactSprings, int motion, const SpringTie **, PetscReal *force);
 PetscBool      ContactSpringsHaveTie(ContactSprings, int motion);

@@ -158,6 +158,7 @@ static void AddSprings(cJSON *json, const RunFigures *figures)
   cJSON_AddStringToObject(map, "held_by_springs", figures->loose);
   AddReal(map, "force_share", way->share);
   AddReal(map, "held_force_share", way->tied);
+  AddReal(map, "held_instability", way->unstable);
   cJSON_AddNumberToObject(map, "relaxed", (double)way->relaxed);
   AddReal(map, "energy_taken", way->taken * figures->scene->thickness);
   AddReal(map, "largest_energy_share", way->left);

@@ -13,6 +13,9 @@
 /* Ties that hold more than this part of the forces are told with what lowers that. It is a tenth of the error that a
    run without any settings may have. */
 #define TERMINAL_TIED 1e-3
+/* Motions that ties hold are unstable where their stiffness is below 0 by more than this part of their body's. The
+   unevenness of meshes gives neutral ones, such as the rolling of a ball, far less. */
+#define TERMINAL_UNSTABLE 1e-2
 
 enum {
   EFFECTS_SIZE  = 2 * PETSC_MAX_PATH_LEN, /* characters of the list of a run's effects */
@@ -499,6 +502,10 @@ static void PrintFreeBodies(const RunFigures *figures)
            report->tied > TERMINAL_TIED ? ", which finer faces where they touch lower, unless a load acts a little "
                                           "that way"
                                         : "");
+  if (figures->loose[0] && report->unstable > TERMINAL_UNSTABLE)
+    printf(
+      "         it does not stand there by itself: bodies that lie on each other would roll off. If nothing real holds "
+      "them, such as friction on a flat or a guide, the answer is not theirs\n");
   if (figures->free_bodies)
     printf("weak springs of free bodies: relaxed %lld times, hold %.2g of the forces at the end\n",
            (long long)report->relaxed, (double)report->share);

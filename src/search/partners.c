@@ -258,10 +258,11 @@ static PetscErrorCode TestAll(ContactSearch s, const PetscReal *u, PetscReal t, 
 @*/
 PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion)
 {
-  Partners       *at = &s->partners;
-  const PetscInt  n = s->slaves->n, faces = s->master->n_faces;
-  const int       dim   = s->mesh->dim;
-  const PetscBool first = (PetscBool)!at->possible;
+  Partners      *at = &s->partners;
+  const PetscInt n = s->slaves->n, faces = s->master->n_faces;
+  const int      dim = s->mesh->dim;
+  /* Of all ranks: at->possible is NULL on one without slave points. */
+  const PetscBool first = (PetscBool)(at->thin == 0);
   PetscReal      *x, *normal, *face_normal, moved = 0, turned = 0;
 
   PetscFunctionBeginUser;
@@ -345,6 +346,6 @@ PetscErrorCode SearchPartnersFree(ContactSearch s)
   Partners *at = &s->partners;
 
   PetscFunctionBeginUser;
-  if (at->possible) PetscCall(PetscFree5(at->possible, at->x, at->normal, at->face_normal, at->u));
+  if (at->thin > 0) PetscCall(PetscFree5(at->possible, at->x, at->normal, at->face_normal, at->u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

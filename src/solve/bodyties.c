@@ -8,6 +8,11 @@
 /* A tie is this part of the stiffness of the elements below one slave node. It holds motions that no load drives
    against the unevenness of meshes, and bodies that roll on it at their place. */
 #define FREE_BODIES_TIE 1e-2
+/* The tie of a motion that has turned out to be unstable is this part of it. Round bodies that lie on each other roll
+   off with a stiffness of their force over their radius, which stays below the stiffness of elements times what they
+   are flattened by over that radius: such a tie is to hold them until that is a tenth. With the other one a stack of
+   three rings between two plates tips over when it is pressed by a seventh of its height, and ends there. */
+#define FREE_BODIES_FIRM 1e-1
 
 /* The nodes by which a piece is tied, on the rank that ties it: those of the cell at its middle, or a tool's own.
    Returns their number, 0 on other ranks. */
@@ -40,7 +45,9 @@ static PetscErrorCode MakeTie(FreeBodies b, const PetscReal *u, int k, SpringTie
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &owner));
   n    = TieNodes(b, p, owner, nodes);
-  *tie = (SpringTie){.motion = k, .stiffness = FREE_BODIES_TIE * b->stiffness[p]};
+  *tie = (SpringTie){.motion    = k,
+                     .unstable  = (PetscBool)(b->state[k] == MOTION_FIRM),
+                     .stiffness = (b->state[k] == MOTION_FIRM ? FREE_BODIES_FIRM : FREE_BODIES_TIE) * b->stiffness[p]};
   PetscCall(MeshGetGlobalDofs(mesh, &dofs));
   while (first > 0 && b->owner[first - 1] == p) first--;
   if (n) {
@@ -152,7 +159,7 @@ PetscErrorCode FreeBodiesTie(FreeBodies b, const PetscReal *u, PetscReal t, Pets
   PetscCall(FreeBodiesCentre(b, u));
   PetscCall(PetscMalloc2(b->n, &ties, b->n, &tied));
   for (int k = 0; k < b->n; k++)
-    tied[k] = begins ? (PetscBool)(b->state[k] == MOTION_TIED) : ContactSpringsHaveTie(springs, k);
+    tied[k] = begins ? (PetscBool)(b->state[k] >= MOTION_TIED) : ContactSpringsHaveTie(springs, k);
   PetscCall(FindTied(b, u, t, t_loads, touching, tied));
   for (int k = 0; k < b->n; k++) {
     *changed = (PetscBool)(*changed || tied[k] != ContactSpringsHaveTie(springs, k));
@@ -214,6 +221,13 @@ static PetscErrorCode FindMotionStiffness(FreeBodies b, const PetscReal *u, KSP 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether a tied motion of this stiffness goes on by itself, whose body's largest one is given. One that did so
+   before stays so until it is held a little. */
+static PetscBool IsUnstable(FreeBodies b, int k, PetscReal stiffness, PetscReal largest)
+{
+  return (PetscBool)(stiffness < (b->state[k] == MOTION_FIRM ? 0 : -FREE_BODIES_STIFF * largest));
+}
+
 /*@
   FreeBodiesRelease - releases the ties of motions that contact has come to hold, or along which a load acts.
 
@@ -228,16 +242,19 @@ static PetscErrorCode FindMotionStiffness(FreeBodies b, const PetscReal *u, KSP 
   Input/Output Parameter:
 . springs - their ties
 
-  Output Parameter:
-. any - one was released
+  Output Parameters:
++ any      - one was released
+- unstable - least stiffness of a motion that stays tied, as a part of that of its body, with its sign turned; 0 where
+             none is below 0
 
   Note:
   Contact holds a motion if the body resists a force along it. The shape of the contact does not tell: under a round
   body the faces have a slope, but the body rolls over them, as its shape gives way everywhere alike. What is left is
-  the unevenness of meshes, of either sign.
+  the unevenness of meshes, of either sign. A motion that is more unstable than that has a firm tie from the next step
+on.
 @*/
 PetscErrorCode FreeBodiesRelease(FreeBodies b, const PetscReal *u, PetscReal scale, KSP ksp, ContactSprings springs,
-                                 PetscBool *any)
+                                 PetscBool *any, PetscReal *unstable)
 {
   int        kept = 0, *motion;
   PetscReal *stiffness, *largest;
@@ -245,6 +262,7 @@ PetscErrorCode FreeBodiesRelease(FreeBodies b, const PetscReal *u, PetscReal sca
   PetscFunctionBeginUser;
   PetscCall(FreeBodiesCentre(b, u));
   PetscCall(PetscMalloc3(b->n, &motion, b->n, &stiffness, b->n_pieces, &largest));
+  *unstable = 0;
   PetscCall(FindMotionStiffness(b, u, ksp, springs, stiffness, largest));
   for (int k = 0; k < b->n; k++) {
     const SpringTie *tie;
@@ -255,8 +273,11 @@ PetscErrorCode FreeBodiesRelease(FreeBodies b, const PetscReal *u, PetscReal sca
     PetscCall(PetscInfo(NULL, "tie of motion %d: stiffness %g, of the body %g, force %g of %g\n", k,
                         (double)stiffness[k], (double)largest[b->owner[k]], (double)force, (double)scale));
     if (!(stiffness[k] > FREE_BODIES_STIFF * largest[b->owner[k]]) &&
-        !(PetscAbsReal(force) > FREE_BODIES_UNEVEN * scale))
+        !(PetscAbsReal(force) > FREE_BODIES_UNEVEN * scale)) {
+      *unstable = PetscMax(*unstable, -stiffness[k] / largest[b->owner[k]]);
+      PetscCall(ContactSpringsMark(springs, k, IsUnstable(b, k, stiffness[k], largest[b->owner[k]])));
       motion[kept++] = k;
+    }
   }
   PetscCall(ContactSpringsRelease(springs, kept, motion, any));
   PetscCall(PetscFree3(motion, stiffness, largest));

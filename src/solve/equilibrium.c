@@ -463,8 +463,8 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
     if (more && times == EQUILIBRIUM_MAX_RELAX) PetscCall(ModelJudgeDrift(model, report));
     if (again || times == EQUILIBRIUM_MAX_RELAX) break;
     if (tied)
-      PetscCall(
-        FreeBodiesRelease(problem->bodies, problem->trial, ProblemForceScale(problem), ksp, problem->springs, &tied));
+      PetscCall(FreeBodiesRelease(problem->bodies, problem->trial, ProblemForceScale(problem), ksp, problem->springs,
+                                  &tied, &report->unstable));
     if (!more && !tied) break;
     report->relaxed++;
     problem->tied = (PetscBool)(problem->tied || tied);

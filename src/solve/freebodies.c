@@ -259,8 +259,8 @@ PetscErrorCode FreeBodiesAccept(FreeBodies b, ContactSprings springs)
 
     ContactSpringsGetTie(springs, k, &tie, NULL);
     if (tie)
-      b->state[k] = tie->released ? MOTION_CONTACT : MOTION_TIED;
-    else if (b->state[k] == MOTION_TIED)
+      b->state[k] = tie->released ? MOTION_CONTACT : tie->unstable ? MOTION_FIRM : MOTION_TIED;
+    else if (b->state[k] >= MOTION_TIED)
       b->state[k] = MOTION_PLAIN;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -23,7 +23,8 @@ PetscErrorCode FreeBodiesSettle(FreeBodies, PetscReal t, PetscReal t_loads, Pets
                                 SettleResult *);
 PetscErrorCode FreeBodiesTie(FreeBodies, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool begins,
                              PetscBool touching, ContactSprings, PetscBool *changed);
-PetscErrorCode FreeBodiesRelease(FreeBodies, const PetscReal *u, PetscReal scale, KSP, ContactSprings, PetscBool *any);
+PetscErrorCode FreeBodiesRelease(FreeBodies, const PetscReal *u, PetscReal scale, KSP, ContactSprings, PetscBool *any,
+                                 PetscReal *unstable);
 PetscErrorCode FreeBodiesAccept(FreeBodies, ContactSprings);
 PetscErrorCode FreeBodiesArchive(FreeBodies, Archive);
 PetscErrorCode FreeBodiesLoose(FreeBodies, const PetscReal *u, PetscReal t, PetscBool driven, size_t size, char *text);

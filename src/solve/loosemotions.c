@@ -262,15 +262,15 @@ static void ScaleTied(FreeBodies b, PetscReal part, double gram[])
 {
   for (int k = 0; k < b->n; k++)
     for (int l = 0; l < b->n; l++)
-      gram[k * b->n + l] *= (b->state[k] == MOTION_TIED ? part : 1) * (b->state[l] == MOTION_TIED ? part : 1);
+      gram[k * b->n + l] *= (b->state[k] >= MOTION_TIED ? part : 1) * (b->state[l] >= MOTION_TIED ? part : 1);
 }
 
 /* Brings a motion a[n] that ScaleTied() has made loose back to the units of the others, with 1 for coordinate k. */
 static void UnscaleMotion(FreeBodies b, PetscReal part, int k, double a[])
 {
-  const double one = b->state[k] == MOTION_TIED ? part : 1;
+  const double one = b->state[k] >= MOTION_TIED ? part : 1;
 
-  for (int l = 0; l < b->n; l++) a[l] *= (b->state[l] == MOTION_TIED ? part : 1) / one;
+  for (int l = 0; l < b->n; l++) a[l] *= (b->state[l] >= MOTION_TIED ? part : 1) / one;
 }
 
 /*@

@@ -71,14 +71,15 @@ typedef struct {
   PetscReal   left;             /* energy left in the contact springs, over that in elements and contact */
   PetscReal   share;            /* norm of the forces left in the contact springs, over F_ref */
   PetscReal   tied;             /* largest force in a tie, over F_ref */
-  PetscInt    cycles;           /* times that the contact set repeated itself and Newton's steps were shortened */
-  char        cycle[256];       /* the last repetition: its period and nodes, in gmsh's tags */
-  PetscInt    damped;           /* pseudo-time steps with a viscous restraint; 0: a static solve */
-  PetscReal   damping;          /* energy that the restraint took */
-  char        jump[256];        /* the node that jumped to another equilibrium, and how far; empty: none did */
-  PetscReal   excess;           /* SOLVE_UNCERTIFIED: depth over what is allowed; INFINITY: it is no depth */
-  char        detail[256];      /* where a failed solve failed, in gmsh's tags */
-  Failure     failure;          /* more about a failed solve */
+  PetscReal   unstable;    /* least stiffness of a tied motion, over that of its body, turned; 0: none is below 0 */
+  PetscInt    cycles;      /* times that the contact set repeated itself and Newton's steps were shortened */
+  char        cycle[256];  /* the last repetition: its period and nodes, in gmsh's tags */
+  PetscInt    damped;      /* pseudo-time steps with a viscous restraint; 0: a static solve */
+  PetscReal   damping;     /* energy that the restraint took */
+  char        jump[256];   /* the node that jumped to another equilibrium, and how far; empty: none did */
+  PetscReal   excess;      /* SOLVE_UNCERTIFIED: depth over what is allowed; INFINITY: it is no depth */
+  char        detail[256]; /* where a failed solve failed, in gmsh's tags */
+  Failure     failure;     /* more about a failed solve */
 } SolveReport;
 
 /* What penetration leaves of error in the present state, estimated: parts of the present values. */

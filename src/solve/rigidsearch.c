@@ -207,7 +207,7 @@ static PetscErrorCode ComesToFall(FreeBodies b, const PetscReal *u, PetscReal t,
 {
   PetscFunctionBeginUser;
   *falls = PETSC_FALSE;
-  for (int k = 0; k < b->n; k++) *falls = (PetscBool)(*falls || b->state[k] == MOTION_TIED);
+  for (int k = 0; k < b->n; k++) *falls = (PetscBool)(*falls || b->state[k] >= MOTION_TIED);
   if (!*falls) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactGather(b->contact, u, t, t, b->face));
   PetscCall(FreeBodiesFall(b, u, t, t_loads, SEARCH_FALL, falls));

@@ -422,9 +422,10 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   report->steps++;
   report->newton_accepted += solve->newton;
   report->taken += solve->taken;
-  report->left  = PetscMax(report->left, solve->left);
-  report->share = solve->share;
-  report->tied  = solve->tied;
+  report->left     = PetscMax(report->left, solve->left);
+  report->share    = solve->share;
+  report->tied     = solve->tied;
+  report->unstable = PetscMax(report->unstable, solve->unstable);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -723,7 +724,8 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                               &report->taken,   &report->left,
                               &report->share,   &report->tied,
                               &size.last_dt,    &size.last_iterations,
-                              &report->damping, &size.failed_dt};
+                              &report->damping, &size.failed_dt,
+                              &report->unstable};
   PetscInt      *integer[] = {&report->steps,
                               &report->steps_failed,
                               &report->steps_repeated,

@@ -28,18 +28,19 @@ typedef struct {
   PetscBool stopped;                             /* LoadStepperStop() ended it before */
   PetscInt  steps, steps_failed, steps_repeated; /* repeated: taken back, to touch less or to find a leak */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;
-  PetscInt  relaxed;                      /* times that the contact springs were relaxed */
-  PetscReal taken;                        /* energy that the contact springs took out of the bodies */
-  PetscReal left;                         /* largest part of an accepted state's energy that was left in them */
-  PetscReal share;                        /* their forces in the last accepted state, over F_ref */
-  PetscReal tied;                         /* largest force of a tie there, over F_ref */
-  PetscInt  cycles;                       /* times that a contact set repeated itself */
-  PetscInt  cycles_cut;                   /* steps that failed because of that */
-  char      cycle[512];                   /* the last repetition: load parameter, period, nodes */
-  PetscInt  jumps;                        /* accepted steps that ended in another equilibrium */
-  char      jump[512];                    /* the last of them: load parameters, node, distance */
-  PetscInt  damped;                       /* accepted steps that needed a viscous restraint */
-  PetscReal damping;                      /* energy that it took in them */
+  PetscInt  relaxed;    /* times that the contact springs were relaxed */
+  PetscReal taken;      /* energy that the contact springs took out of the bodies */
+  PetscReal left;       /* largest part of an accepted state's energy that was left in them */
+  PetscReal share;      /* their forces in the last accepted state, over F_ref */
+  PetscReal tied;       /* largest force of a tie there, over F_ref */
+  PetscReal unstable;   /* how unstable a tied motion was, as a part of its body's stiffness, in the worst step */
+  PetscInt  cycles;     /* times that a contact set repeated itself */
+  PetscInt  cycles_cut; /* steps that failed because of that */
+  char      cycle[512]; /* the last repetition: load parameter, period, nodes */
+  PetscInt  jumps;      /* accepted steps that ended in another equilibrium */
+  char      jump[512];  /* the last of them: load parameters, node, distance */
+  PetscInt  damped;     /* accepted steps that needed a viscous restraint */
+  PetscReal damping;    /* energy that it took in them */
   PetscInt  regathered, adjusted, turned; /* of SolveReport, for all solves */
   PetscInt  wetted;                       /* likewise */
   PetscInt  cuts[CUT_CAUSES];             /* likewise */

@@ -69,6 +69,10 @@ JOBS = [
     Job("tube_flattened", "rubber tube flattened until it touches itself", [
         Answer("force", 12.545, 0.13, "limit"),
     ], steps=12, pairs=3, picture=["--mirror", "x"], stiff=["contact.2.formulation=node_to_surface"]),
+    Job("stacked_rings", "three loose rings pressed on each other", [
+        Answer("push", 0.51247, 0.1, "limit"),
+        Answer("foot", 0.51247, 0.1, "limit"),
+    ], steps=12, pairs=11),
     Job("ball_squashed", "rubber ball squashed by 30 %", [
         Answer("force", 83.935, 0.05, "limit"),
     ], steps=12, picture=["--mirror", "x"]),

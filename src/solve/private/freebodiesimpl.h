@@ -17,8 +17,9 @@
 /* Characters of what FreeBodiesMoved() says. */
 enum { FREE_BODIES_TEXT = 1000 };
 
-/* A motion that was never tied or is loose again, one that is tied, one that contact has come to hold. */
-typedef enum { MOTION_CONTACT = -1, MOTION_PLAIN, MOTION_TIED } MotionState;
+/* A motion that contact has come to hold, one that was never tied or is loose again, one that is tied, one that is tied
+   firmly because it is unstable. */
+typedef enum { MOTION_CONTACT = -1, MOTION_PLAIN, MOTION_TIED, MOTION_FIRM } MotionState;
 
 typedef double RigidMotion[RIGID_MODES];
 
