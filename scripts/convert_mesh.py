@@ -37,6 +37,7 @@ def convert(file, dim, bodies, cad):
     mesh.complete()
     mesh.merge_faces()
     mesh.choose_bodies(bodies)
+    mesh.turn_bodies()
     mesh.check()
     return mesh
 

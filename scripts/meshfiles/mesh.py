@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy
 
-from meshfiles.shapes import BY_NUMBER, COMPLETE, SHAPES, face_nodes
+from meshfiles.shapes import BY_NUMBER, COMPLETE, SHAPES, face_nodes, mirrored
 
 
 class MeshError(Exception):
@@ -165,6 +165,30 @@ class Mesh:
         for shape, mask in taken.items():
             if not mask.all():
                 self.group("rest", self.dim).add(shape, numpy.flatnonzero(~mask))
+
+    def _volumes(self, shape, indices):
+        """Determinants of the axes of cells, from centre to centre of opposite faces: below 0 where the nodes turn the
+        wrong way round."""
+        x = self.nodes[self.elements[shape][indices], :self.dim]
+        if SHAPES[shape].corners == self.dim + 1:
+            axes = [x[:, k + 1] - x[:, 0] for k in range(self.dim)]
+        else:
+            ends = (((1, 2, 5, 6), (0, 3, 4, 7)), ((2, 3, 6, 7), (0, 1, 4, 5)), ((4, 5, 6, 7), (0, 1, 2, 3)))
+            axes = [x[:, [a for a in up if a < 2**self.dim]].mean(axis=1) -
+                    x[:, [a for a in down if a < 2**self.dim]].mean(axis=1) for up, down in ends[:self.dim]]
+        return numpy.linalg.det(numpy.stack(axes, axis=1))
+
+    def turn_bodies(self):
+        """Turns the cells of a body round whose nodes all turn the wrong way, as on a grid with left-handed axes. Where
+        only some do, the mesh is folded, and the solver says so."""
+        for group in self.groups:
+            parts = {shape: indices for shape, indices in group.members.items() if group.dim == self.dim and len(indices)}
+            if not parts or any((self._volumes(*part) >= 0).any() for part in parts.items()):
+                continue
+            for shape, indices in parts.items():
+                self.elements[shape][indices] = self.elements[shape][indices][:, mirrored(shape)]
+            self.notes.append(f"all elements of '{group.name}' have left-handed axes; their nodes were put in the other "
+                              "order")
 
     def check(self):
         """Refuses what the solver cannot take."""

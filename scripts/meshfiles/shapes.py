@@ -62,3 +62,19 @@ def face_nodes(name, f):
     if shape.face == "quad9":
         nodes.append(shape.corners + len(shape.edges) + f)
     return nodes
+
+
+MIRRORED_CORNERS = {3: (0, 2, 1), 4: (0, 3, 2, 1), 8: (4, 5, 6, 7, 0, 1, 2, 3)}
+
+
+def mirrored(name):
+    """For each node of a shape, its place in the same element with the other sense of turning."""
+    shape = SHAPES[name]
+    corners = (0, 2, 1, 3) if name in ("tet4", "tet10") else MIRRORED_CORNERS[shape.corners]
+    nodes = list(corners)
+    if shape.order == 2:
+        nodes += [middle(shape, corners[a], corners[b]) for a, b in shape.edges]
+    if name == "hex27":
+        sides = [set(face) for face in shape.faces]
+        nodes += [20 + sides.index({corners[a] for a in face}) for face in shape.faces]
+    return nodes + list(range(len(nodes), shape.nodes))  # the centre stays

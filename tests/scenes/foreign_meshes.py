@@ -4,8 +4,11 @@ what cannot be taken is refused by name; a file is converted once, and again whe
 import pathlib
 import re
 import shutil
+import sys
 
 import gmsh
+import meshio
+import numpy
 from harness import SCENES, Check, arguments, run
 
 SCENE = SCENES / "foreign_meshes.yaml"
@@ -69,6 +72,29 @@ for order in (1, 2):
         check.near(f".{ending} of order {order}", value / reference, 1, 1e-11)
         if order == 2:
             check.holds(f".{ending}: completion is said", ("completed" in text) == (ending in SERENDIPITY))
+
+# A mesh whose elements all have left-handed axes, as on structured grids of other programs.
+sys.path.insert(0, str(SCENES.parent.parent / "scripts"))
+from meshfiles.shapes import SHAPES, mirrored  # noqa: E402
+
+gmsh.initialize(readConfigFiles=False)
+for name, shape in SHAPES.items():
+    if shape.dim < 2:
+        continue
+    _, _, _, n, places, _ = gmsh.model.mesh.getElementProperties(shape.number)
+    places = numpy.column_stack([numpy.asarray(places).reshape(n, -1), numpy.ones(n)])
+    image = numpy.linalg.lstsq(places, places[mirrored(name)], rcond=None)
+    check.holds(f"{name}: its nodes in the other order are those of its mirror image",
+                image[1].max(initial=0) < 1e-24 and abs(numpy.linalg.det(image[0]) + 1) < 1e-12)
+gmsh.finalize()
+for order in (1, 2):
+    other = meshio.read(place / f"order{order}.vtk")
+    other.points[:, 0] = other.points[:, 0].max() + other.points[:, 0].min() - other.points[:, 0]
+    meshio.write(place / f"left{order}.vtk", other)
+    reference = force("vtk", order)[0]
+    finished = run(args, SCENE, overrides=[f"mesh.file={place}/left{order}.vtk", *renamed("vtk")], out="left")
+    check.near(f"left-handed axes, order {order}", finished.summary()["probes"]["force"] / reference, 1, 1e-11)
+    check.holds("that the nodes were put in the other order is said", "left-handed" in finished.text)
 
 
 def deck(text=None, **overrides):
