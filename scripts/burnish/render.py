@@ -361,7 +361,8 @@ def plane(text):
 def parser():
     parser = argparse.ArgumentParser(prog="render.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", help="results of a run")
-    parser.add_argument("--field", choices=FIELDS, help="default: von_mises, and pressure where there is contact")
+    parser.add_argument("--field", choices=FIELDS,
+                        help="default: von_mises, and pressure where there is contact; with -o the former alone")
     parser.add_argument("--step", type=int, help="written step, from 0; negative: from the end; default: the last one")
     parser.add_argument("--view", type=lambda text: tuple(float(word) for word in text.split(",")),
                         metavar="AZIMUTH,ELEVATION", help="degrees; write --view=-35,20 if the first is negative")
@@ -405,6 +406,8 @@ def pictures(chosen):
     run = Run(chosen.directory)
     chosen.units = chosen.units or read_units(chosen.directory)
     fields = [chosen.field] if chosen.field else [field for field in ("von_mises", "pressure") if run.has(field)]
+    if chosen.file:  # holds one picture
+        fields = fields[:1]
     for field in fields or ["displacement"]:
         if not run.has(field):
             sys.exit(
