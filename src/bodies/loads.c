@@ -234,9 +234,7 @@ static void LoadsSetShifts(Loads loads)
 /* The part of its shift that a rule still has. */
 static PetscReal ShiftPart(Loads loads, const Prescribed *p, PetscReal t)
 {
-  const SceneStep *first = p->during && p->load >= 0 ? &loads->scene->stepping.steps[p->during->first] : NULL;
-
-  return first ? PetscMax(0, PetscMin(1, (first->until - t) / (first->until - first->begin))) : 1;
+  return p->during && p->load >= 0 ? SceneStepLeft(&loads->scene->stepping.steps[p->during->first], t) : 1;
 }
 
 /* Lists the rules of the phase that is built, which is the last one here. Those of the others are looked at for

@@ -124,14 +124,6 @@ PetscErrorCode SupportPhaseTake(SupportPhase s, PetscInt phase, const PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Part of the forces of supports that left that acts at t: from 1 where the phase begins to 0 where it ends. */
-static PetscReal Fade(SupportPhase s, PetscReal t)
-{
-  const SceneStep *step = &s->scene->stepping.steps[s->phase];
-
-  return PetscMax(0, PetscMin(1, (step->until - t) / (step->until - step->begin)));
-}
-
 /*@
   SupportPhaseForces - subtracts the fading forces of supports that left from the residual.
 
@@ -153,7 +145,7 @@ static PetscReal Fade(SupportPhase s, PetscReal t)
 void SupportPhaseForces(SupportPhase s, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy,
                         PetscReal *force2)
 {
-  if (s) s->fade = Fade(s, t);
+  if (s) s->fade = SceneStepLeft(&s->scene->stepping.steps[s->phase], t);
   if (!s || s->fade == 0) return;
   for (PetscInt i = 0; i < s->mesh->n_nodes * s->mesh->dim; i++) {
     const PetscReal force = s->fade * s->released[i];

@@ -43,7 +43,7 @@ static PetscErrorCode AddTerm(const ContactPair *pair, PetscInt c, PetscReal sum
 
   Output Parameter:
 . ratio - the mean distance over the mean penetration, both weighted by the contact forces; NaN where nothing presses,
-or where the master is not fitted
+          or where the master is not fitted
 
   Note:
   A change of all gaps by their penetration changes forces by what penetration leaves of error in them. So facets in the

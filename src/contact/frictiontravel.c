@@ -4,16 +4,6 @@
    at one end and leave at the other. */
 #include "contactimpl.h"
 
-/* The normal force of a term in the state of the last projection. */
-static PetscReal TermForce(const ContactPair *pair, PetscInt c, PetscReal t)
-{
-  LawValue  value;
-  PetscReal area;
-
-  ContactTermLaw(pair, c, t, &value, NULL, &area);
-  return value.stiffness > 0 && value.pressure > 0 ? value.pressure * area : 0;
-}
-
 /* The normal force of a term in the accepted state. Its gap then counts: new lists and offsets give another one. */
 static PetscReal AcceptedForce(const ContactPair *pair, PetscInt c, PetscReal t)
 {
@@ -36,13 +26,13 @@ void FrictionTravelBegin(ContactPair *pair, PetscReal t)
 
 /* The part of the force of a pair at nodes that came into contact in the step and stick now, or at nodes that left it
    where that is less. Where contact only grows, or only shrinks, it does not travel. */
-static PetscErrorCode PairTravel(const ContactPair *pair, PetscReal t, PetscReal *travel)
+static PetscErrorCode PairTravel(const ContactPair *pair, PetscReal *travel)
 {
   PetscReal sum[4] = {0, 0, 0, 0}; /* before, of it left; now, of it come in */
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n; c++) {
-    const PetscReal before = pair->friction->pressed[c], now = TermForce(pair, c, t);
+    const PetscReal before = pair->friction->pressed[c], now = ContactTermForce(pair, c);
 
     sum[0] += before;
     sum[1] += now > 0 ? 0 : before;
@@ -60,7 +50,7 @@ static PetscErrorCode PairTravel(const ContactPair *pair, PetscReal t, PetscReal
   Collective
 
   Input Parameter:
-. contact - in the state of the last residual
+. contact - after ContactResidual() with forces
 
   Output Parameter:
 . travel - the largest one of the pairs, a part of the force of contact; 0 without friction
@@ -77,7 +67,7 @@ PetscErrorCode ContactTravel(Contact contact, PetscReal *travel)
     PetscReal    own;
 
     if (!pair->friction) continue;
-    PetscCall(PairTravel(pair, pair->t, &own));
+    PetscCall(PairTravel(pair, &own));
     pair->now.travel = PetscMax(pair->accepted.travel, own);
     *travel          = PetscMax(*travel, own);
   }

@@ -67,12 +67,16 @@ static void Say(const Refinement *r, const char *format, ...)
   fflush(stdout);
 }
 
+/* The part of the contact surfaces, 0 where it is not known. */
+static PetscReal SurfacesPart(const QuantityError *error)
+{
+  return isnan((double)error->part[ERROR_GEOMETRY]) ? 0 : error->part[ERROR_GEOMETRY];
+}
+
 /* What the elements and the contact surfaces leave of error, as estimated. */
 static PetscReal MeshEstimate(const QuantityError *error)
 {
-  const PetscReal geometry = error->part[ERROR_GEOMETRY];
-
-  return PetscAbsReal(error->part[ERROR_BODIES]) + (isnan((double)geometry) ? 0 : PetscAbsReal(geometry));
+  return PetscAbsReal(error->part[ERROR_BODIES]) + PetscAbsReal(SurfacesPart(error));
 }
 
 /* What they leave: the estimate, and no less than what the change from the mesh before implies. */
@@ -154,17 +158,13 @@ static PetscErrorCode End(Refinement *r)
 /* The answer of a mesh without the errors of other causes than the mesh, as far as they are known. */
 static PetscReal MeshAnswer(const SolvedMesh *mesh)
 {
-  const PetscReal geometry = mesh->error.part[ERROR_GEOMETRY];
-
-  return mesh->value + mesh->error.sum - mesh->error.part[ERROR_BODIES] - (isnan((double)geometry) ? 0 : geometry);
+  return mesh->value + mesh->error.sum - mesh->error.part[ERROR_BODIES] - SurfacesPart(&mesh->error);
 }
 
 /* Sum of the magnitudes of what single places leave, by which the fall of the error shows. */
 static double Spread(const QuantityError *error)
 {
-  const double geometry = (double)error->part[ERROR_GEOMETRY];
-
-  return (double)error->spread + (isnan(geometry) ? 0 : fabs(geometry));
+  return (double)error->spread + fabs((double)SurfacesPart(error));
 }
 
 /* Takes what the change from the mesh before implies. Where it is more than was estimated, so was it on that mesh. */

@@ -166,6 +166,7 @@ static PetscErrorCode SceneReadBounds(Scene scene)
 static PetscErrorCode SceneReadStepping(Scene scene)
 {
   Document *document = SceneDocument(scene);
+
   PetscFunctionBeginUser;
   if (SchemaHas(document, "stepping.N_c") && SchemaHas(document, "stepping.N_c_fraction"))
     PetscCall(SceneRefuse(scene, "stepping", "N_c_fraction", "stands beside N_c; allowed: one of them", NULL));

@@ -317,6 +317,7 @@ const char    *SceneStepAt(Scene, PetscReal t);
 int            SceneStepFrom(Scene, PetscReal t);
 PetscBool      SceneSupportsChange(Scene);
 PetscBool      SceneHolds(const SceneSpan *, PetscInt step);
+PetscReal      SceneStepLeft(const SceneStep *, PetscReal t);
 PetscBool      SceneLoadVaries(const SceneLoad *, int component);
 PetscReal      SceneLoadValue(const SceneLoad *, int component, const PetscReal X[3], PetscReal t);
 PetscErrorCode SceneReference(FILE *);

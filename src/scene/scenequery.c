@@ -140,3 +140,17 @@ PetscBool SceneHolds(const SceneSpan *span, PetscInt step)
 {
   return (PetscBool)(!span->some || (span->first <= step && step <= span->last));
 }
+
+/*@
+  SceneStepLeft - returns the part of a step that is still to come: from 1 where it begins to 0 where it ends.
+
+  Not collective
+
+  Input Parameters:
++ step - the step
+- t    - load parameter
+@*/
+PetscReal SceneStepLeft(const SceneStep *step, PetscReal t)
+{
+  return PetscMax(0, PetscMin(1, (step->until - t) / (step->until - step->begin)));
+}

@@ -189,33 +189,26 @@ typedef PetscErrorCode (*OffsetFaceFn)(Offsets, FitSupport *, const OffsetFace *
 static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, const PetscBool *some,
                                    OffsetFaceFn visit, void *context)
 {
-  ContactSearch  s   = o->search;
-  const int      dim = s->mesh->dim;
-  NeighbourLists lists;
-  SearchField    field;
-  FitSupport     fit;
-  PetscReal      box[6];
+  const int  dim = o->search->mesh->dim;
+  MasterFits fits;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&lists));
-  SearchMasterBox(s, u, t, some, box);
-  PetscCall(SearchFieldCreate(s, u, t, box, SearchFitReach(s), lists, &field));
-  PetscCall(FitSupportCreate(s, lists, &field, &fit));
+  PetscCall(MasterFitsCreate(o->search, u, t, some, &fits));
   for (PetscInt f = 0; f < o->surface->n_faces; f++) {
     const Facet     *facet = &o->surface->faces[f];
-    const Candidate *own   = SearchFieldOwn(&field, facet);
-    OffsetFace face = {.candidate = own - field.candidates, .facet = facet, .rule = FaceRuleGet(facet->type, o->finer)};
-    double     area[FACE_RULE_POINTS];
+    const Candidate *own   = SearchFieldOwn(&fits.field, facet);
+    OffsetFace       face  = {.candidate = own - fits.field.candidates,
+                              .facet     = facet,
+                              .rule      = FaceRuleGet(facet->type, o->finer)};
+    double           area[FACE_RULE_POINTS];
 
     if (some && !some[f]) continue;
     for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
-      for (int d = 0; d < dim; d++) face.x[a * dim + d] = fit.view.x[own->facet.nodes[a] * dim + d];
+      for (int d = 0; d < dim; d++) face.x[a * dim + d] = fits.fit.view.x[own->facet.nodes[a] * dim + d];
     FaceRuleAreas(face.rule, facet->type, dim, GEOMETRY_SOLID, face.x, area, face.normal);
-    PetscCall(visit(o, &fit, &face, f, context));
+    PetscCall(visit(o, &fits.fit, &face, f, context));
   }
-  PetscCall(FitSupportDestroy(&fit));
-  PetscCall(SearchFieldDestroy(&field));
-  PetscCall(NeighbourListsDestroy(&lists));
+  PetscCall(MasterFitsDestroy(&fits));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -29,23 +29,16 @@ static PetscErrorCode AddFace(FitSupport *fit, PetscInt candidate, const Facet *
 /* Visits this rank's own faces. */
 static PetscErrorCode AddFaces(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal *sums)
 {
-  NeighbourLists lists;
-  SearchField    field;
-  FitSupport     fit;
-  PetscReal      box[6];
+  MasterFits fits;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&lists));
-  SearchMasterBox(s, u, t, NULL, box);
-  PetscCall(SearchFieldCreate(s, u, t, box, SearchFitReach(s), lists, &field));
-  PetscCall(FitSupportCreate(s, lists, &field, &fit));
+  PetscCall(MasterFitsCreate(s, u, t, NULL, &fits));
   for (PetscInt f = 0; f < s->master->n_faces; f++) {
-    PetscCall(
-      AddFace(&fit, SearchFieldOwn(&field, &s->master->faces[f]) - field.candidates, &s->master->faces[f], sums));
+    const Facet *face = &s->master->faces[f];
+
+    PetscCall(AddFace(&fits.fit, SearchFieldOwn(&fits.field, face) - fits.field.candidates, face, sums));
   }
-  PetscCall(FitSupportDestroy(&fit));
-  PetscCall(SearchFieldDestroy(&field));
-  PetscCall(NeighbourListsDestroy(&lists));
+  PetscCall(MasterFitsDestroy(&fits));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

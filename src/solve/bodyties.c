@@ -251,7 +251,7 @@ static PetscBool IsUnstable(FreeBodies b, int k, PetscReal stiffness, PetscReal 
   Contact holds a motion if the body resists a force along it. The shape of the contact does not tell: under a round
   body the faces have a slope, but the body rolls over them, as its shape gives way everywhere alike. What is left is
   the unevenness of meshes, of either sign. A motion that is more unstable than that has a firm tie from the next step
-on.
+  on.
 @*/
 PetscErrorCode FreeBodiesRelease(FreeBodies b, const PetscReal *u, PetscReal scale, KSP ksp, ContactSprings springs,
                                  PetscBool *any, PetscReal *unstable)

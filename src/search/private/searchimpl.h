@@ -3,8 +3,8 @@
 
    SearchFieldCreate() (searchfield.c) collects faces with faceexchange.c, makes candidates with candidate.c and numbers
    nodes and points with neighbourlists.c. FitSupportCreate() (fitsupport.c) then prepares the fits, and
-   FitSupportSlave() makes one for each slave point. Offsets use the field and FitSupportClimb() for fits of the
-   surface itself. */
+   FitSupportSlave() makes one for each slave point. Offsets and the misses of a master's nodes use
+   MasterFitsCreate() and FitSupportClimb() for fits of the surface itself. */
 #pragma once
 #include "base/boxtree.h"
 #include "facerows.h"
@@ -120,6 +120,13 @@ typedef struct {
   PetscReal residual; /* of the last fit: largest distance to it of a point in the inner half of the support */
 } FitSupport;
 
+/* Fits that are made at this rank's own faces of the master. The lists have no slave points. */
+typedef struct {
+  NeighbourLists lists;
+  SearchField    field;
+  FitSupport     fit;
+} MasterFits;
+
 /* candidate.c */
 void           CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *);
 PetscReal      CandidateBulge(const Candidate *, PetscReal size);
@@ -165,3 +172,6 @@ PetscErrorCode   SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal 
 PetscErrorCode   SearchFieldDestroy(SearchField *);
 const Candidate *SearchFieldOwn(const SearchField *, const Facet *);
 PetscErrorCode   SearchFieldWay(ContactSearch, const SearchField *, PetscSF *faces);
+/* masterfits.c */
+PetscErrorCode MasterFitsCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscBool *some, MasterFits *);
+PetscErrorCode MasterFitsDestroy(MasterFits *);
