@@ -4,6 +4,7 @@
 #include "linear/directsolver.h"
 #include "gaussseidel.h"
 #include "matrix/matrixrows.h"
+#include "matrix/widematrix.h"
 
 /* Prefixes of the parts' options: -bodies_... for multigrid, -interface_... for the direct solve. */
 #define MULTIGRID_BODIES    "bodies_"
@@ -177,151 +178,73 @@ static PetscErrorCode NumberGhosts(Multigrid m, Mat A, PetscInt **ghost)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Counts the entries of one block of the operator in each row of all dofs. */
-static PetscErrorCode CountRows(Multigrid m, Mat A, int block, PetscInt *count)
-{
-  MatrixRows rows;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatrixRowsGet(A, block, &rows));
-  for (PetscInt i = 0; i < rows.n; i++) count[m->row[i]] = rows.ptr[i + 1] - rows.ptr[i];
-  PetscCall(MatrixRowsRestore(&rows));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Sets the values of one block of the operator, times a factor, in m->nodes, or adds them. */
-static PetscErrorCode CopyBlock(Multigrid m, Mat A, int block, const PetscInt *ghost, PetscReal factor, InsertMode mode)
-{
-  MatrixRows   rows;
-  PetscInt     room = 0, *column = NULL;
-  PetscScalar *scaled = NULL;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatrixRowsGet(A, block, &rows));
-  if (!rows.mat) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < rows.n; i++) room = PetscMax(room, rows.ptr[i + 1] - rows.ptr[i]);
-  PetscCall(PetscMalloc2(room, &column, room, &scaled));
-  for (PetscInt i = 0; i < rows.n; i++) {
-    const PetscInt row = m->first + m->row[i], first = rows.ptr[i], entries = rows.ptr[i + 1] - first;
-
-    for (PetscInt k = 0; k < entries; k++) {
-      column[k] = block == MATRIX_OWN ? m->first + m->row[rows.column[first + k]] : ghost[rows.column[first + k]];
-      scaled[k] = factor * rows.value[first + k];
-    }
-    if (entries) PetscCall(MatSetValues(m->nodes, 1, &row, entries, column, scaled, mode));
-  }
-  PetscCall(PetscFree2(column, scaled));
-  PetscCall(MatrixRowsRestore(&rows));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CopyRows(Multigrid m, Mat A, PetscReal factor, InsertMode mode)
-{
-  PetscInt *ghost;
-
-  PetscFunctionBeginUser;
-  PetscCall(NumberGhosts(m, A, &ghost));
-  for (int block = 0; block < MATRIX_BLOCKS; block++) PetscCall(CopyBlock(m, A, block, ghost, factor, mode));
-  PetscCall(PetscFree(ghost));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Finds how stiff contact may be for multigrid, in parts of its full stiffness: at most as stiff as the bodies are
    where contact is. *mean: mean diagonal entry of the operator with contact of that stiffness. With stiffer contact
-   smoothers diverge whose largest eigenvalue is estimated. The interface's solve makes up for the rest; a hundredth of
-   the stiffness costs no iteration. */
-static PetscErrorCode SoftenContact(Multigrid m, Mat A, PetscReal *softness, PetscScalar *mean)
+   smoothers diverge whose largest eigenvalue is estimated. The interface's solve
+   makes up for the rest; a hundredth of the stiffness costs no iteration. */
+static PetscErrorCode SoftenContact(Multigrid m, Mat A, PetscReal *softness, PetscReal *mean)
 {
-  PetscScalar sum[2] = {0, 0}, *contact;
-  Vec         diagonal, of_contact;
-  PetscInt    n;
+  PetscReal          sum[3] = {0, 0, 0}; /* of diagonals: bodies where contact is; contact; whole operator */
+  const PetscScalar *whole, *contact = NULL;
+  Vec                diagonal, of_contact;
+  PetscInt           n;
 
   PetscFunctionBeginUser;
-  *softness = 1;
   PetscCall(VecDuplicate(m->number, &diagonal));
   PetscCall(VecDuplicate(m->number, &of_contact));
   PetscCall(MatGetDiagonal(A, diagonal));
-  if (m->interface) {
-    const PetscScalar *whole;
-
-    PetscCall(MatGetDiagonal(m->contact, of_contact));
-    PetscCall(VecGetArray(of_contact, &contact));
-    PetscCall(VecGetArrayRead(diagonal, &whole));
-    for (PetscInt i = 0; i < m->n_free; i++) {
-      sum[0] += contact[i] != 0 ? whole[i] - contact[i] : 0;
-      sum[1] += contact[i];
-    }
-    PetscCall(VecRestoreArrayRead(diagonal, &whole));
-    PetscCall(VecRestoreArray(of_contact, &contact));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_SCALAR, MPIU_SUM, m->mesh->comm));
-    if (PetscRealPart(sum[0]) > 0 && PetscRealPart(sum[1]) > PetscRealPart(sum[0]))
-      *softness = PetscRealPart(sum[0]) / PetscRealPart(sum[1]);
-    PetscCall(VecAXPY(diagonal, *softness - 1, of_contact));
+  if (m->interface) PetscCall(MatGetDiagonal(m->contact, of_contact));
+  PetscCall(VecGetArrayRead(of_contact, &contact));
+  PetscCall(VecGetArrayRead(diagonal, &whole));
+  for (PetscInt i = 0; i < m->n_free; i++) {
+    sum[0] += contact[i] != 0 ? PetscRealPart(whole[i] - contact[i]) : 0;
+    sum[1] += PetscRealPart(contact[i]);
+    sum[2] += PetscRealPart(whole[i]);
   }
-  PetscCall(VecSum(diagonal, mean));
+  PetscCall(VecRestoreArrayRead(diagonal, &whole));
+  PetscCall(VecRestoreArrayRead(of_contact, &contact));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, m->mesh->comm));
   PetscCall(VecGetSize(diagonal, &n));
-  *mean /= n;
+  *softness = sum[0] > 0 && sum[1] > sum[0] ? sum[0] / sum[1] : 1;
+  *mean     = (sum[2] + (*softness - 1) * sum[1]) / n;
   PetscCall(VecDestroy(&diagonal));
   PetscCall(VecDestroy(&of_contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Creates an empty matrix over all dofs with memory for entries of each row, NULL: none. */
-static PetscErrorCode CreateSquare(Multigrid m, const PetscInt *own, const PetscInt *others, Mat *out)
+/* Puts another matrix in the place of the operator over all dofs. All that refers to the old one refers to it then. */
+static PetscErrorCode ReplaceNodes(Multigrid m, Mat nodes)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatCreate(m->mesh->comm, out));
-  PetscCall(MatSetSizes(*out, m->n_all, m->n_all, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetBlockSize(*out, m->mesh->dim));
-  PetscCall(MatSetType(*out, MATAIJ));
-  PetscCall(MatSeqAIJSetPreallocation(*out, 0, own));
-  PetscCall(MatMPIAIJSetPreallocation(*out, 0, own, 0, others));
-  PetscCall(MatSetOption(*out, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  if (m->changed) PetscCall(MatDestroy(&m->nodes));
+  if (m->nodes)
+    PetscCall(MatHeaderReplace(m->nodes, &nodes));
+  else
+    m->nodes = nodes;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Creates an empty matrix over all dofs with memory for the operator's entries and the diagonal of constrained dofs.
-   Where the entries were only released, it takes the place of the former one in all that refers to it. */
-static PetscErrorCode CreateNodesMatrix(Multigrid m, Mat A)
+/* Makes the operator over all dofs from the arrays of the operator, with softer contact. The diagonal of constrained
+   dofs is the mean of the others, so that no coarse row mixes scales. */
+static PetscErrorCode BorrowNodes(Multigrid m, Mat A, WideMatrix *loan)
 {
-  PetscInt    *own, *others;
+  PetscInt    *ghost;
+  PetscReal    softness = 1, mean = 1;
   Mat          nodes;
   MatNullSpace modes;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(m->n_all, &own, m->n_all, &others));
-  PetscCall(CountRows(m, A, MATRIX_OWN, own));
-  PetscCall(CountRows(m, A, MATRIX_OTHERS, others));
-  for (PetscInt i = 0; i < m->n_all; i++) own[i] = PetscMax(own[i], 1);
-  PetscCall(CreateSquare(m, own, others, &nodes));
-  PetscCall(PetscFree2(own, others));
-  if (m->changed) PetscCall(MatDestroy(&m->nodes));
-  if (m->changed)
-    m->nodes = nodes;
-  else
-    PetscCall(MatHeaderReplace(m->nodes, &nodes));
-  m->released = PETSC_FALSE;
+  PetscCall(SoftenContact(m, A, &softness, &mean));
+  PetscCall(NumberGhosts(m, A, &ghost));
+  PetscCall(WideMatrixBorrow(A, &(WideRows){m->n_all, m->row, ghost, mean}, m->mesh->dim, &nodes, loan));
+  PetscCall(PetscFree(ghost));
+  if (softness < 1) PetscCall(WideMatrixAdd(*loan, softness - 1, m->contact));
+  PetscCall(ReplaceNodes(m, nodes));
   if (!m->nodes_right) PetscCall(MatCreateVecs(m->nodes, &m->nodes_right, &m->nodes_left));
   PetscCall(ModesCreate(m, &modes));
   PetscCall(MatSetNearNullSpace(m->nodes, modes));
   PetscCall(MatNullSpaceDestroy(&modes));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Sets the diagonal of constrained dofs to the mean of the others, so that no coarse row mixes scales. */
-static PetscErrorCode SetConstrainedRows(Multigrid m, PetscScalar mean)
-{
-  PetscBool *free;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(m->n_all, &free));
-  for (PetscInt i = 0; i < m->n_free; i++) free[m->row[i]] = PETSC_TRUE;
-  for (PetscInt i = 0; i < m->n_all; i++) {
-    const PetscInt row = m->first + i;
-
-    if (!free[i]) PetscCall(MatSetValues(m->nodes, 1, &row, 1, &row, &mean, INSERT_VALUES));
-  }
-  PetscCall(PetscFree(free));
+  PetscCall(MatSetOption(m->nodes, MAT_SYMMETRIC, m->symmetric));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -374,28 +297,42 @@ static PetscErrorCode HoldBodies(Multigrid m, PetscBool hold)
   PetscCall(KSPGetPC(finest, &sweeps));
   if (hold)
     PetscCall(KSPSetUp(finest)); /* copies the operator */
-  else
+  else if (m->swept)
     PetscCall(GaussSeidelForget(sweeps));
   PetscCall(KSPSetReusePreconditioner(finest, hold));
   PetscCall(PCSetReusePreconditioner(m->bodies, hold));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Frees the entries of the operator over all dofs once multigrid is made. The finest level's smoother and its residual
-   have a copy of their own, in single precision, and the coarse matrices need the operator again only when they are
-   made anew. Of 5.5 kB of memory for each unknown this is 1.1 kB. */
-static PetscErrorCode ReleaseNodes(Multigrid m)
+static PetscErrorCode CreateEmpty(Multigrid m, Mat *empty)
 {
-  Mat empty;
+  PetscFunctionBeginUser;
+  PetscCall(MatCreate(m->mesh->comm, empty));
+  PetscCall(MatSetSizes(*empty, m->n_all, m->n_all, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetBlockSize(*empty, m->mesh->dim));
+  PetscCall(MatSetType(*empty, MATAIJ));
+  PetscCall(MatSeqAIJSetPreallocation(*empty, 0, NULL));
+  PetscCall(MatMPIAIJSetPreallocation(*empty, 0, NULL, 0, NULL));
+  PetscCall(MatAssemblyBegin(*empty, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*empty, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives the arrays back to the operator once multigrid is made. The finest level's smoother and its residual have a
+   copy of their own, in single precision, and the coarse matrices need the operator again only when they are made anew.
+   A smoother that options have set needs all of it: it gets a copy. */
+static PetscErrorCode ReturnNodes(Multigrid m, WideMatrix *loan)
+{
+  Mat left;
 
   PetscFunctionBeginUser;
-  if (!m->swept) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(HoldBodies(m, PETSC_TRUE));
-  PetscCall(CreateSquare(m, NULL, NULL, &empty));
-  PetscCall(MatAssemblyBegin(empty, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(empty, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatHeaderReplace(m->nodes, &empty)); /* multigrid and its products keep the object */
-  m->released = PETSC_TRUE;
+  if (m->swept)
+    PetscCall(CreateEmpty(m, &left));
+  else
+    PetscCall(MatDuplicate(m->nodes, MAT_COPY_VALUES, &left));
+  PetscCall(ReplaceNodes(m, left));
+  PetscCall(WideMatrixReturn(loan));
   FreeMemoryReturn();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -404,30 +341,20 @@ static PetscErrorCode ReleaseNodes(Multigrid m)
 static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
 {
   const PetscBool fresh = m->changed;
-  PetscReal       softness;
-  PetscScalar     mean;
+  WideMatrix      loan;
 
   PetscFunctionBeginUser;
   if (fresh)
     PetscCall(CreateBodies(m));
-  else if (m->released)
+  else
     PetscCall(HoldBodies(m, PETSC_FALSE));
   FreeMemoryReturn();
-  if (fresh || m->released) PetscCall(CreateNodesMatrix(m, A));
+  PetscCall(BorrowNodes(m, A, &loan));
   m->changed = PETSC_FALSE;
-  PetscCall(SoftenContact(m, A, &softness, &mean));
-  PetscCall(CopyRows(m, A, 1, INSERT_VALUES));
-  PetscCall(SetConstrainedRows(m, mean));
-  PetscCall(MatAssemblyBegin(m->nodes, MAT_FLUSH_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(m->nodes, MAT_FLUSH_ASSEMBLY));
-  if (softness < 1) PetscCall(CopyRows(m, m->contact, softness - 1, ADD_VALUES));
-  PetscCall(MatAssemblyBegin(m->nodes, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(m->nodes, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatSetOption(m->nodes, MAT_SYMMETRIC, m->symmetric));
   PetscCall(PCSetOperators(m->bodies, m->nodes, m->nodes));
   PetscCall(PCSetUp(m->bodies));
   if (fresh) PetscCall(SmoothFinest(m));
-  PetscCall(ReleaseNodes(m));
+  PetscCall(ReturnNodes(m, &loan));
   m->renew  = PETSC_FALSE;
   m->usual  = 0;
   m->solves = m->coupled = 0;

@@ -7,6 +7,8 @@
 #define NODE_MATRIX_ROOM 1.25
 /* Place of a dof that is left out. */
 #define NODE_MATRIX_NONE PETSC_MIN_INT
+/* Under this name the matrix has its node matrix with it. */
+#define NODE_MATRIX_NAME "NodeMatrix"
 /* Matrices that the pattern is joined with: TERM_FOREIGN has the blocks of other ranks, TERM_OTHER is the argument of
    NodeMatrixJoin(). */
 enum { TERM_FOREIGN, TERM_OTHER, TERMS };
@@ -51,6 +53,7 @@ struct _n_NodeMatrix {
   PetscBool *inner;       /* for each node: all columns of its pairs belong to this rank and ascend */
   PetscBool *placed;      /* for each node: the places of its pairs are those of a row without other terms */
   PetscInt   longest;     /* entries of the longest row without other terms */
+  PetscInt   left_out;    /* dofs without a row, of nodes that have one */
   /* For each pair and each dof of its column, the place in the row: k in the rank's own block, -1 - k in the block of
      others. */
   PetscInt *place;
@@ -58,9 +61,10 @@ struct _n_NodeMatrix {
   NodeTerm  term[TERMS];
   PetscInt *diagonal; /* for each row, the place of its diagonal in the rank's own block; -1: it has none */
   /* foreign: sum of what ranks have for rows of other ranks; NULL on one rank. */
-  Mat          matrix, foreign;
-  PetscInt     n_foreign, *foreign_node, foreign_pairs;
-  PetscScalar *foreign_value;
+  Mat            matrix, foreign;
+  PetscContainer container; /* of this object */
+  PetscInt       n_foreign, *foreign_node, foreign_pairs;
+  PetscScalar   *foreign_value;
 };
 
 static PetscBool IsMine(NodeMatrix m, PetscInt dof)
@@ -196,6 +200,8 @@ static void LookAtRows(NodeMatrix m)
 
     if (node < 0) continue;
     if (!r || node != m->node[r - 1]) m->inner[node] = LookAtNode(m, node, count);
+    for (int d = 0; d < m->pairs.size && (!r || node != m->node[r - 1]); d++)
+      m->left_out += m->pairs.dof[node * m->pairs.size + d] < 0;
     for (int b = 0; b < MATRIX_BLOCKS; b++) m->block[b].alone += count[b];
     m->longest = PetscMax(m->longest, count[MATRIX_OWN] + count[MATRIX_OTHERS]);
   }
@@ -232,6 +238,8 @@ PetscErrorCode NodeMatrixCreate(MPI_Comm comm, PetscInt rows, const NodePairs *p
   PetscCall(PetscMalloc2(pairs->ptr[pairs->n] * pairs->size, &m->place, rows, &m->diagonal));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (size > 1) PetscCall(CreateForeign(m));
+  PetscCall(PetscContainerCreate(comm, &m->container));
+  PetscCall(PetscContainerSetPointer(m->container, m));
   *out = m;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -252,6 +260,7 @@ PetscErrorCode NodeMatrixDestroy(NodeMatrix *matrix)
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatDestroy(&m->matrix));
   PetscCall(MatDestroy(&m->foreign));
+  PetscCall(PetscContainerDestroy(&m->container));
   for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(PetscFree(m->block[b].ptr));
   for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(PetscFree2(m->block[b].column, m->block[b].value));
   for (int t = 0; t < TERMS; t++)
@@ -267,7 +276,7 @@ PetscErrorCode NodeMatrixDestroy(NodeMatrix *matrix)
 /* Allocates the pattern. longest returns the number of columns that one row may have while it is gathered. */
 static PetscErrorCode TakeRoom(NodeMatrix m, MatrixRows terms[TERMS][MATRIX_BLOCKS], PetscInt *longest)
 {
-  PetscInt need[MATRIX_BLOCKS] = {m->block[MATRIX_OWN].alone, m->block[MATRIX_OTHERS].alone}, most = 0;
+  PetscInt need[MATRIX_BLOCKS] = {m->block[MATRIX_OWN].alone + m->left_out, m->block[MATRIX_OTHERS].alone}, most = 0;
 
   PetscFunctionBeginUser;
   for (int t = 0; t < TERMS; t++) {
@@ -522,6 +531,7 @@ static PetscErrorCode MakeMatrix(NodeMatrix m)
     PetscCall(MatHeaderReplace(m->matrix, &made));
   else
     m->matrix = made;
+  PetscCall(PetscObjectCompose((PetscObject)m->matrix, NODE_MATRIX_NAME, (PetscObject)m->container));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -739,4 +749,28 @@ PetscErrorCode NodeMatrixSetUpper(NodeMatrix m, const NodeUpper *upper)
 Mat NodeMatrixGet(NodeMatrix m)
 {
   return m->matrix;
+}
+
+/*@
+  NodeMatrixRoom - returns for how many entries the arrays of the rank's own block have room.
+
+  Not collective
+
+  Input Parameter:
+. matrix - from NodeMatrixGet()
+
+  Output Parameter:
+. room - at least one for each entry, and one for each dof that has no row though its node has one; 0: the matrix is
+  not that of a node matrix
+@*/
+PetscErrorCode NodeMatrixRoom(Mat matrix, PetscInt *room)
+{
+  PetscContainer container;
+  NodeMatrix     m = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscObjectQuery((PetscObject)matrix, NODE_MATRIX_NAME, (PetscObject *)&container));
+  if (container) PetscCall(PetscContainerGetPointer(container, (void **)&m));
+  *room = m ? m->block[MATRIX_OWN].room : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,3 +38,4 @@ PetscErrorCode NodeMatrixJoin(NodeMatrix, Mat other);
 PetscErrorCode NodeMatrixSet(NodeMatrix, const PetscReal *value, Mat other, Vec diagonal);
 PetscErrorCode NodeMatrixSetUpper(NodeMatrix, const NodeUpper *);
 Mat            NodeMatrixGet(NodeMatrix);
+PetscErrorCode NodeMatrixRoom(Mat, PetscInt *room);

@@ -5,7 +5,9 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include "matrix/matrixrows.h"
 #include "matrix/nodematrix.h"
+#include "matrix/widematrix.h"
 
 /* ROWS: rows of each rank, whose first node lacks one dof */
 enum { SIZE = 2, NODES = 4, ROWS = SIZE * NODES - 1 };
@@ -151,9 +153,95 @@ static void test_pattern_stays(void **state)
   assert_int_equal(NodeMatrixDestroy(&matrix), 0);
 }
 
+/* The matrix over all dofs of the nodes, with the diagonal of the one that each rank leaves out, plus a multiple of a
+   matrix. */
+static Mat Widened(Mat a, PetscReal diagonal, PetscReal factor, Mat b)
+{
+  const Mat from[2] = {a, b};
+  Mat       wide;
+  PetscInt  begin, end, row;
+
+  assert_int_equal(MatCreateAIJ(PETSC_COMM_WORLD, ROWS + 1, ROWS + 1, PETSC_DETERMINE, PETSC_DETERMINE, 4 * NODES, NULL,
+                                4 * NODES, NULL, &wide),
+                   0);
+  assert_int_equal(MatGetOwnershipRange(a, &begin, &end), 0);
+  for (int m = 0; m < 2; m++) {
+    for (PetscInt r = begin; r < end; r++) {
+      const PetscInt    *column, to = r + r / ROWS + 1;
+      const PetscScalar *value;
+      PetscInt           n;
+
+      assert_int_equal(MatGetRow(from[m], r, &n, &column, &value), 0);
+      for (PetscInt k = 0; k < n; k++)
+        assert_int_equal(
+          MatSetValue(wide, to, column[k] + column[k] / ROWS + 1, m ? factor * value[k] : value[k], ADD_VALUES), 0);
+      assert_int_equal(MatRestoreRow(from[m], r, &n, &column, &value), 0);
+    }
+  }
+  row = begin + begin / ROWS;
+  assert_int_equal(MatSetValue(wide, row, row, diagonal, ADD_VALUES), 0);
+  assert_int_equal(MatAssemblyBegin(wide, MAT_FINAL_ASSEMBLY), 0);
+  assert_int_equal(MatAssemblyEnd(wide, MAT_FINAL_ASSEMBLY), 0);
+  return wide;
+}
+
+/* Numbers of a matrix's columns of other ranks among all dofs; each rank leaves out its first dof. */
+static PetscInt *Ghosts(Mat mat)
+{
+  MatrixRows others;
+  PetscInt   n, *ghost;
+
+  assert_int_equal(MatrixRowsGet(mat, MATRIX_OTHERS, &others), 0);
+  if (!others.mat) return NULL;
+  assert_int_equal(MatGetSize(others.mat, NULL, &n), 0);
+  assert_int_equal(PetscMalloc1(n, &ghost), 0);
+  for (PetscInt k = 0; k < n; k++) ghost[k] = others.global[k] + others.global[k] / ROWS + 1;
+  assert_int_equal(MatrixRowsRestore(&others), 0);
+  return ghost;
+}
+
+/* A wide matrix has the lender's entries; afterwards the lender is what it was, to the last bit. */
+static void test_wide(void **state)
+{
+  const PetscReal diagonal = 7, factor = -0.3;
+  PetscInt        row[ROWS], *ghost;
+  List            list;
+  NodeMatrix      matrix, other;
+  WideMatrix      loan;
+  Mat             a, mat, wide, expected;
+
+  (void)state;
+  MakeList(&list);
+  for (PetscInt r = 0; r < ROWS; r++) row[r] = r + 1;
+  assert_int_equal(NodeMatrixCreate(PETSC_COMM_WORLD, ROWS, &list.pairs, &matrix), 0);
+  assert_int_equal(NodeMatrixCreate(PETSC_COMM_WORLD, ROWS, &list.pairs, &other), 0);
+  assert_int_equal(NodeMatrixJoin(other, NULL), 0);
+  assert_int_equal(NodeMatrixSet(other, list.value, NULL, NULL), 0);
+  assert_int_equal(NodeMatrixJoin(matrix, NodeMatrixGet(other)), 0);
+  assert_int_equal(NodeMatrixSet(matrix, list.value, NodeMatrixGet(other), NULL), 0);
+  mat      = NodeMatrixGet(matrix);
+  ghost    = Ghosts(mat);
+  expected = Widened(mat, diagonal, factor, NodeMatrixGet(other));
+  assert_int_equal(MatDuplicate(mat, MAT_COPY_VALUES, &a), 0);
+  for (int again = 0; again < 2; again++) {
+    assert_int_equal(WideMatrixBorrow(mat, &(WideRows){ROWS + 1, row, ghost, diagonal}, SIZE, &wide, &loan), 0);
+    assert_int_equal(WideMatrixAdd(loan, factor, NodeMatrixGet(other)), 0);
+    AssertSum(wide, expected, NULL);
+    assert_int_equal(MatDestroy(&wide), 0);
+    assert_int_equal(WideMatrixReturn(&loan), 0);
+    AssertSum(mat, a, NULL);
+  }
+  assert_int_equal(PetscFree(ghost), 0);
+  assert_int_equal(MatDestroy(&a), 0);
+  assert_int_equal(MatDestroy(&expected), 0);
+  assert_int_equal(NodeMatrixDestroy(&matrix), 0);
+  assert_int_equal(NodeMatrixDestroy(&other), 0);
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_sum), cmocka_unit_test(test_pattern_stays)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_sum), cmocka_unit_test(test_pattern_stays),
+                                     cmocka_unit_test(test_wide)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
