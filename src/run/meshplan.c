@@ -14,12 +14,21 @@
 /* What the change implies is taken so many times: where several causes leave errors, the one that falls slowest shows
    least in a change. It is the factor of Roache's grid convergence index for a measured power. */
 #define MESHPLAN_SAFETY 1.25
-/* Power of CPU seconds over unknowns before two meshes show it, and its bounds. */
-#define MESHPLAN_CPU_POWER 1.3
-#define MESHPLAN_LEAST_CPU 0.8
-#define MESHPLAN_MOST_CPU  2.0
+/* Power with which a quantity without an estimate is taken to converge: peaks and ends of contact zones follow the size
+   of the elements. */
+#define MESHPLAN_ROUGH_RATE 1
+/* Power of CPU seconds over unknowns before two meshes show it, and its bounds. A coarse mesh takes hardly more than
+   what starts a run, so that the power shows too small; the least one is that of a sparse factor in the plane, and in
+   space. */
+#define MESHPLAN_CPU_POWER   1.3
+#define MESHPLAN_LEAST_PLANE 1.0
+#define MESHPLAN_LEAST_SOLID 1.6
+#define MESHPLAN_MOST_CPU    2.0
 /* Memory (MB) for each unknown more: a factor of a plane model of some thousands takes less, one in space more. */
 #define MESHPLAN_MEMORY 0.01
+
+/* Halvings of the bracket of a factor between MESHPLAN_FINER and MESHPLAN_FINEST */
+enum { MESHPLAN_HALVINGS = 20 };
 
 static double Within(double value, double least, double most)
 {
@@ -59,8 +68,8 @@ MeshFigures MeshPlanForecast(int n, const MeshFigures m[], int dim, int order, d
   MeshFigures        next = {.factor = factor, .unknowns = last->unknowns * pow(finer, dim)};
 
   if (n > 1) {
-    power  = Within(log(last->cpu_s / m[n - 2].cpu_s) / log(last->unknowns / m[n - 2].unknowns), MESHPLAN_LEAST_CPU,
-                    MESHPLAN_MOST_CPU);
+    power  = Within(log(last->cpu_s / m[n - 2].cpu_s) / log(last->unknowns / m[n - 2].unknowns),
+                   dim == 3 ? MESHPLAN_LEAST_SOLID : MESHPLAN_LEAST_PLANE, MESHPLAN_MOST_CPU);
     memory = fmax((last->rss_mb - m[n - 2].rss_mb) / (last->unknowns - m[n - 2].unknowns), 0);
   }
   next.error  = last->error * pow(finer, -Rate(n, m, order));
@@ -69,13 +78,46 @@ MeshFigures MeshPlanForecast(int n, const MeshFigures m[], int dim, int order, d
   return next;
 }
 
-/* MeshPlanImplied - gives the error of the last of two meshes that the change of the answer implies. change: of the
-   answer; fall: estimated error of the last mesh over that of the one before; finer: all elements became smaller by
-   this factor, or 0; order: of the elements. */
-double MeshPlanImplied(double change, double fall, double finer, int order)
+/* Is a mesh within limits? */
+static int Fits(MeshFigures mesh, MeshFigures limit)
 {
-  const double most = finer > 1 ? pow(finer, -FirstRate(order)) : 0,
-               left = isfinite(fall) ? fmin(fmax(fall, most), MESHPLAN_SLOWEST) : MESHPLAN_SLOWEST;
+  return !(limit.cpu_s > 0 && mesh.cpu_s > limit.cpu_s) && !(limit.rss_mb > 0 && mesh.rss_mb > limit.rss_mb);
+}
 
-  return MESHPLAN_SAFETY * fabs(change) * left / (1 - left);
+/* MeshPlanLargest - gives the factor of the largest mesh that may be made. n: meshes so far, at least 1; limit: CPU
+   seconds and memory of a mesh, 0: none. It is 0 where none is within the limits that is finer by a step. */
+double MeshPlanLargest(int n, const MeshFigures m[], int dim, int order, MeshFigures limit)
+{
+  double low = MESHPLAN_FINER, high = MESHPLAN_FINEST;
+
+  if (!Fits(MeshPlanForecast(n, m, dim, order, low * m[n - 1].factor), limit)) return 0;
+  if (Fits(MeshPlanForecast(n, m, dim, order, high * m[n - 1].factor), limit)) return high * m[n - 1].factor;
+  for (int k = 0; k < MESHPLAN_HALVINGS; k++) {
+    const double middle = sqrt(low * high);
+
+    if (Fits(MeshPlanForecast(n, m, dim, order, middle * m[n - 1].factor), limit))
+      low = middle;
+    else
+      high = middle;
+  }
+  return low * m[n - 1].factor;
+}
+
+/* The part of the error that is left from one mesh to the next. */
+static double PartLeft(const MeshChange *c, int order)
+{
+  const double most = c->finer > 1 ? pow(c->finer, isnan(c->estimate) ? -MESHPLAN_ROUGH_RATE : -FirstRate(order)) : 0;
+
+  if (isnan(c->estimate)) return Within(most, 0, MESHPLAN_SLOWEST);
+  return isfinite(c->fall) ? fmin(fmax(c->fall, c->even ? most : 0), MESHPLAN_SLOWEST) : MESHPLAN_SLOWEST;
+}
+
+/* MeshPlanImplied - gives the error of the last of two meshes that the change of the answer implies. order: of the
+   elements. */
+double MeshPlanImplied(const MeshChange *c, int order)
+{
+  const double left = PartLeft(c, order), times = MESHPLAN_SAFETY * left / (1 - left), whole = times * fabs(c->change);
+
+  if (isnan(c->estimate)) return whole;
+  return fmin(whole, fabs(c->estimate) + times * fabs(c->change - (c->before - c->estimate)));
 }

@@ -18,6 +18,8 @@
 #define REFINEMENT_MOST_ELEMENTS 8
 /* It is made for at most this part of the present error, or the change of the answer would hardly tell anything. */
 #define REFINEMENT_PART 0.5
+/* CPU seconds that are left where there are none: no mesh takes so few (s). */
+#define REFINEMENT_NO_TIME 1e-9
 /* A mesh that only is to confirm the estimate has elements so many times smaller, all of them: an estimate that misses
    a place is not to choose where. */
 #define REFINEMENT_WITNESS 1.5
@@ -155,10 +157,16 @@ static PetscErrorCode End(Refinement *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the elements and the contact surfaces leave of error, with its sign. */
+static PetscReal MeshPart(const QuantityError *error)
+{
+  return error->part[ERROR_BODIES] + SurfacesPart(error);
+}
+
 /* The answer of a mesh without the errors of other causes than the mesh, as far as they are known. */
 static PetscReal MeshAnswer(const SolvedMesh *mesh)
 {
-  return mesh->value + mesh->error.sum - mesh->error.part[ERROR_BODIES] - SurfacesPart(&mesh->error);
+  return mesh->value + mesh->error.sum - MeshPart(&mesh->error);
 }
 
 /* Sum of the magnitudes of what single places leave, by which the fall of the error shows. */
@@ -173,15 +181,19 @@ static void Compare(Refinement *r)
   SolvedMesh       *mesh    = &r->mesh[r->n];
   const SolvedMesh *before  = mesh - 1;
   MeshFigures      *figures = &r->figures[r->n];
-  double            change;
+  MeshChange        change;
 
   mesh->implied = NAN;
   if (!r->n) return;
-  change            = (double)(MeshAnswer(mesh) - MeshAnswer(before));
-  mesh->implied     = (PetscReal)MeshPlanImplied(change, Spread(&mesh->error) / Spread(&before->error),
-                                             r->even ? figures->factor / figures[-1].factor : 0, r->order);
+  change            = (MeshChange){.change   = (double)(MeshAnswer(mesh) - MeshAnswer(before)),
+                                   .before   = (double)MeshPart(&before->error),
+                                   .estimate = (double)MeshPart(&mesh->error),
+                                   .fall     = Spread(&mesh->error) / Spread(&before->error),
+                                   .finer    = figures->factor / figures[-1].factor,
+                                   .even     = r->even};
+  mesh->implied     = (PetscReal)MeshPlanImplied(&change, r->order);
   figures->error    = (double)MeshError(mesh);
-  figures[-1].error = fmax(figures[-1].error, (double)mesh->implied + fabs(change));
+  figures[-1].error = fmax(figures[-1].error, (double)mesh->implied + fabs(change.change));
 }
 
 /* Takes the figures of the mesh that was solved last. */
@@ -262,8 +274,9 @@ static PetscErrorCode Write(const Refinement *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Chooses the sizes of the next mesh's elements and forecasts it. */
-static PetscErrorCode PlanSizes(Refinement *r, MeshFigures *next)
+/* Chooses the sizes of the next mesh's elements and forecasts it. finer: it may have so many times the elements, to the
+   power of 1 / dim. */
+static PetscErrorCode PlanSizes(Refinement *r, PetscReal finer, MeshFigures *next)
 {
   const Mesh           mesh   = r->run->mesh;
   const MeshFigures   *last   = &r->figures[r->n - 1];
@@ -277,55 +290,71 @@ static PetscErrorCode PlanSizes(Refinement *r, MeshFigures *next)
   PetscCall(ResultsGetError(r->run->results, r->wish.probe, &value, &why, &error));
   PetscCall(PetscFree(r->size));
   PetscCall(PetscMalloc1(mesh->n_cells, &r->size));
-  PetscCall(ElementSizesFind(r->run->model, error->cells, PetscMin(wanted, REFINEMENT_PART), REFINEMENT_MOST_ELEMENTS,
-                             r->size, &forecast));
+  r->even = PETSC_FALSE;
+  PetscCall(ElementSizesFind(r->run->model, error->cells, PetscMin(wanted, REFINEMENT_PART),
+                             PetscMin(PetscPowRealInt(finer, r->dim), REFINEMENT_MOST_ELEMENTS), r->size, &forecast));
   *next =
     MeshPlanForecast(r->n, r->figures, r->dim, r->order, last->factor * pow((double)forecast.elements, 1.0 / r->dim));
   next->error = last->error * (double)forecast.error;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Plans a mesh whose elements are all smaller, as a witness of the estimate. */
-static PetscErrorCode PlanWitness(Refinement *r, MeshFigures *next)
+/* Plans a mesh whose elements are all smaller by the same factor. */
+static PetscErrorCode PlanEven(Refinement *r, double factor, MeshFigures *next)
 {
-  const Mesh mesh = r->run->mesh;
-  PetscReal *measure;
+  const Mesh      mesh    = r->run->mesh;
+  const PetscReal smaller = (PetscReal)(factor / r->figures[r->n - 1].factor);
+  PetscReal      *measure;
 
   PetscFunctionBeginUser;
-  *next = MeshPlanForecast(r->n, r->figures, r->dim, r->order, REFINEMENT_WITNESS * r->figures[r->n - 1].factor);
+  r->even = PETSC_TRUE;
+  *next   = MeshPlanForecast(r->n, r->figures, r->dim, r->order, factor);
   if (r->structured) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree(r->size));
   PetscCall(PetscMalloc1(mesh->n_cells, &r->size));
   PetscCall(PetscMalloc1(mesh->n_cells, &measure));
   MeshCellSizes(mesh, r->size, measure);
-  for (PetscInt c = 0; c < mesh->n_cells; c++) r->size[c] /= REFINEMENT_WITNESS;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) r->size[c] /= smaller;
   PetscCall(PetscFree(measure));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The largest factor of a next mesh that the limits allow, 0 where there is none. */
+static double LargestFactor(Refinement *r)
+{
+  const MeshFigures left    = {.cpu_s  = r->wish.cpu_s > 0 ? fmax(r->wish.cpu_s - r->cpu_s, REFINEMENT_NO_TIME) : 0,
+                               .rss_mb = r->wish.rss_mb},
+                    in_time = {.cpu_s = left.cpu_s};
+  const double largest      = MeshPlanLargest(r->n, r->figures, r->dim, r->order, left);
+
+  if (largest == 0)
+    r->why = MeshPlanLargest(r->n, r->figures, r->dim, r->order, in_time) == 0
+               ? "the next mesh would take more than accuracy.limit.time"
+               : "the next mesh would take more than accuracy.limit.memory";
+  return largest;
 }
 
 /* Chooses the next mesh and forecasts it. r->why: there is none. */
 static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
 {
-  const PetscBool met = (PetscBool)(Error(Last(r)) <= r->wish.to);
+  const SolvedMesh *last    = Last(r);
+  const double      largest = LargestFactor(r), present = r->figures[r->n - 1].factor;
+  const PetscBool   doubted =
+    (PetscBool)(OtherError(last) + MeshEstimate(&last->error) <= r->wish.to * PetscAbsReal(last->value));
 
   PetscFunctionBeginUser;
-  r->even = (PetscBool)(r->structured || met);
-  if (met)
-    PetscCall(PlanWitness(r, next));
-  else if (r->structured)
-    *next = MeshPlanForecast(r->n, r->figures, r->dim, r->order,
-                             MeshPlanFactor(r->n, r->figures, r->order, (double)WantedMeshError(r)));
-  else
-    PetscCall(PlanSizes(r, next));
   if (r->n == r->wish.meshes)
     r->why = "accuracy.meshes are solved";
-  else if (r->wish.cpu_s > 0 && r->cpu_s + next->cpu_s > r->wish.cpu_s)
-    r->why = "the next mesh would take more than accuracy.limit.time";
-  else if (r->wish.rss_mb > 0 && next->rss_mb > r->wish.rss_mb)
-    r->why = "the next mesh would take more than accuracy.limit.memory";
-  else if (!met && MeshError(Last(r)) < REFINEMENT_LEAST_SHARE * (MeshError(Last(r)) + OtherError(Last(r))) &&
-           MeshError(Last(r)) < WantedMeshError(r))
+  else if (!doubted && MeshError(last) < REFINEMENT_LEAST_SHARE * (MeshError(last) + OtherError(last)) &&
+           MeshError(last) < WantedMeshError(r))
     r->why = "what is left of error does not come from the mesh";
+  if (r->why) PetscFunctionReturn(PETSC_SUCCESS);
+  if (doubted)
+    PetscCall(PlanEven(r, fmin(largest, REFINEMENT_WITNESS * present), next));
+  else if (r->structured)
+    PetscCall(PlanEven(r, fmin(largest, MeshPlanFactor(r->n, r->figures, r->order, (double)WantedMeshError(r))), next));
+  else
+    PetscCall(PlanSizes(r, (PetscReal)(largest / present), next));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,8 +3,7 @@
 #include "sceneread.h"
 #include <string.h>
 
-const char *const DensityKinds[] =
-  {[DENSITY_COUNT] = "count", [DENSITY_SIZE] = "size", [DENSITY_DIVISOR] = "divisor"};
+const char *const DensityKinds[] = {[DENSITY_COUNT] = "count", [DENSITY_SIZE] = "size", [DENSITY_DIVISOR] = "divisor"};
 
 /* Finds the probe. */
 static PetscErrorCode FindProbe(Scene scene)
@@ -38,6 +37,19 @@ static PetscErrorCode ReadDensities(Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Penalties that are no quantities of the model may be made stiffer by the run: their share of the error is part of
+   what is asked for. A scale that the scene gives is the one with which the run begins. */
+static void ReleasePenalties(Scene scene)
+{
+  for (int i = 0; i < scene->n_contacts; i++) {
+    SceneContact *contact = &scene->contacts[i];
+
+    if (!contact->penalty_auto || contact->adjust || contact->augment || contact->presence.n) continue;
+    contact->penalty_may_stiffen = 1;
+    contact->stick_may_stiffen   = contact->friction && !(contact->stick_penalty > 0) && !(contact->stick_slip > 0);
+  }
+}
+
 /*@
   SceneReadAccuracy - reads the accuracy that is asked for.
 
@@ -67,5 +79,6 @@ PetscErrorCode SceneReadAccuracy(Scene scene)
   if (SchemaHas(document, "accuracy.limit.memory"))
     scene->accuracy.rss_mb = SchemaReal(document, "accuracy.limit.memory");
   scene->output.error = 1;
+  ReleasePenalties(scene);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

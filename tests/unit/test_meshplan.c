@@ -43,24 +43,58 @@ static void test_no_fall(void **state)
   assert_true(MeshPlanForecast(2, meshes, 2, 1, 4).error < 9);
 }
 
+/* Implied error of a change, by estimates that say nothing: they cancel. */
+static double implied(double change, double fall, double finer, int even)
+{
+  const MeshChange c = {.change = change, .before = 1e3, .estimate = 1e3, .fall = fall, .finer = finer, .even = even};
+
+  return MeshPlanImplied(&c, 2);
+}
+
 /* With an answer 1 + C f^q the change of two meshes gives the error of the last one, times the factor of safety. */
 static void test_change_implies_error(void **state)
 {
   const double coarse = 1 + 0.4, fine = 1 + 0.4 / 4;
 
   (void)state;
-  assert_float_equal(MeshPlanImplied(fine - coarse, 0.25, 0, 2), 1.25 * 0.1, 1e-12);
-  assert_float_equal(MeshPlanImplied(coarse - fine, 0.25, 0, 2), 1.25 * 0.1, 1e-12);
-  assert_float_equal(MeshPlanImplied(0.3, 2, 0, 2), 1.25 * 0.9, 1e-12); /* no fall: that of the least power */
-  assert_float_equal(MeshPlanImplied(0.3, NAN, 0, 2), 1.25 * 0.9, 1e-12);
-  assert_float_equal(MeshPlanImplied(0.7, 0.01, 2, 2), 1.25 * 0.1, 1e-12); /* even meshes: no faster than order + 1 */
-  assert_float_equal(MeshPlanImplied(0, 0.5, 0, 2), 0, 1e-12);
+  assert_float_equal(implied(fine - coarse, 0.25, 1, 0), 1.25 * 0.1, 1e-12);
+  assert_float_equal(implied(coarse - fine, 0.25, 1, 0), 1.25 * 0.1, 1e-12);
+  assert_float_equal(implied(0.3, 2, 1, 0), 1.25 * 0.9, 1e-12); /* no fall: that of the least power */
+  assert_float_equal(implied(0.3, NAN, 1, 0), 1.25 * 0.9, 1e-12);
+  assert_float_equal(implied(0.7, 0.01, 2, 1), 1.25 * 0.1, 1e-12); /* even meshes: no faster than order + 1 */
+  assert_float_equal(implied(0, 0.5, 1, 0), 0, 1e-12);
+}
+
+/* Estimates that forecast the change are right; of half of the change the rest counts as one that nobody forecast. */
+static void test_forecast_change(void **state)
+{
+  MeshChange c = {.change = -9, .before = -10, .estimate = -1, .fall = 0.1, .finer = 3, .even = 1};
+
+  (void)state;
+  assert_float_equal(MeshPlanImplied(&c, 1), 1, 1e-12);
+  c.change = -18;
+  assert_float_equal(MeshPlanImplied(&c, 1), 1 + 1.25 * 9.0 / 8, 1e-12);
+  c.estimate = NAN; /* no estimate: the power 1 */
+  assert_float_equal(MeshPlanImplied(&c, 1), 1.25 * 18 / 2, 1e-12);
+}
+
+/* The largest mesh is that whose forecast is the limit, and there is none where a small step is too much. */
+static void test_limits(void **state)
+{
+  const MeshFigures meshes[] = {first, second};
+
+  (void)state;
+  assert_float_equal(MeshPlanLargest(2, meshes, 2, 2, (MeshFigures){.cpu_s = 36}), 4, 1e-4);
+  assert_float_equal(MeshPlanLargest(2, meshes, 2, 2, (MeshFigures){.rss_mb = 250, .cpu_s = 99}), 4, 1e-4);
+  assert_float_equal(MeshPlanLargest(2, meshes, 2, 2, (MeshFigures){.cpu_s = 6}), 0, 1e-12);
+  assert_float_equal(MeshPlanLargest(2, meshes, 2, 2, (MeshFigures){.cpu_s = 0}), 6, 1e-12);
 }
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_first_mesh), cmocka_unit_test(test_measured),
-                                     cmocka_unit_test(test_no_fall), cmocka_unit_test(test_change_implies_error)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_first_mesh),           cmocka_unit_test(test_measured),        cmocka_unit_test(test_no_fall),
+    cmocka_unit_test(test_change_implies_error), cmocka_unit_test(test_forecast_change), cmocka_unit_test(test_limits)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

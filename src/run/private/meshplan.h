@@ -5,10 +5,13 @@
    bounds; before there are two they are assumed. MeshPlanFactor() gives the factor that is wanted, MeshPlanForecast()
    the figures of a mesh with a factor, or with a number of unknowns.
 
+   MeshPlanLargest() gives the factor of the largest mesh that limits of time and memory allow.
+
    Two meshes are witnesses of each other: where the error falls by the part q from one to the next, the change of the
    answer is (1 - q) / q times what is left. MeshPlanImplied() gives that from the change and the fall, without any
-   trust in the size of an estimate, and with a factor of safety. Source: Roache, Journal of Fluids Engineering 116
-   (1994), 405. */
+   trust in the size of an estimate, and with a factor of safety. Where the estimates of both meshes forecast the
+   change, they are right as far: then only what they do not forecast counts so, beside the estimate. Source: Roache,
+   Journal of Fluids Engineering 116 (1994), 405. */
 #pragma once
 
 typedef struct {
@@ -16,6 +19,16 @@ typedef struct {
   double unknowns, error, cpu_s, rss_mb;
 } MeshFigures;
 
+/* From one mesh to the next */
+typedef struct {
+  double change;           /* of the answer */
+  double before, estimate; /* estimated error of either mesh, with its sign; NaN: there is no estimate */
+  double fall;             /* sum of the magnitudes of what single places leave: of the last mesh over the one before */
+  double finer;            /* elements are smaller by this factor: all of them, or on average */
+  int    even;             /* all */
+} MeshChange;
+
 double      MeshPlanFactor(int n, const MeshFigures[], int order, double wanted);
 MeshFigures MeshPlanForecast(int n, const MeshFigures[], int dim, int order, double factor);
-double      MeshPlanImplied(double change, double fall, double finer, int order);
+double      MeshPlanLargest(int n, const MeshFigures[], int dim, int order, MeshFigures limit);
+double      MeshPlanImplied(const MeshChange *, int order);
