@@ -110,6 +110,7 @@ typedef struct {
   PetscReal pressure;    /* mean, each node weighted by its force (force per area) */
   PetscReal peak;        /* largest pressure of a node */
   PetscReal friction[3]; /* sum of the forces by friction */
+  PetscReal rubs; /* amount of that sum; of two pairs that treat two surfaces from either side, of both amounts */
 } ContactLoad;
 
 /* What friction does in a pair, over all its slave nodes. */

@@ -80,7 +80,8 @@ PetscErrorCode ContactPairLoad(Contact contact, int p, const PetscReal *u, Conta
   *load = (ContactLoad){.force    = sum[0],
                         .pressure = sum[0] > 0 ? sum[1] / sum[0] : 0,
                         .peak     = most,
-                        .friction = {sum[2], sum[3], sum[4]}};
+                        .friction = {sum[2], sum[3], sum[4]},
+                        .rubs     = PetscSqrtReal(PetscSqr(sum[2]) + PetscSqr(sum[3]) + PetscSqr(sum[4]))};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

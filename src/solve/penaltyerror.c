@@ -35,7 +35,7 @@
 #define PENALTY_DEEP    0.6
 #define PENALTY_SHALLOW 0.2
 /* A pair whose forces are below this part of those of the most loaded pair does not stiffen its penalty, because its
-   own error hardly counts in the model. */
+   own error hardly counts in the model. Its errors are measured by this part of the forces and pressures there. */
 #define PENALTY_LIGHT_PAIR 1e-3
 /* Friction below this part of the pressure's forces is measured by this part of them: its own error hardly counts. */
 #define PENALTY_LIGHT_FRICTION 0.02
@@ -193,7 +193,9 @@ static void JoinLoads(const ContactLoad load[2], const ContactLoad rise[2], Cont
     moment[0] += load[k].force * load[k].pressure;
     moment[1] += rise[k].force * load[k].pressure + load[k].force * rise[k].pressure;
   }
-  *joint      = (ContactLoad){.force = load[0].force + load[1].force, .peak = load[larger].peak};
+  *joint      = (ContactLoad){.force = load[0].force + load[1].force,
+                              .peak  = load[larger].peak,
+                              .rubs  = load[0].rubs + load[1].rubs};
   *joint_rise = (ContactLoad){.force = rise[0].force + rise[1].force, .peak = rise[larger].peak};
   if (joint->force > 0) {
     joint->pressure      = moment[0] / joint->force;
@@ -244,38 +246,52 @@ static PetscErrorCode ModelLargestChange(Model model, const PetscReal *v, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Change of a value as a part of the value. */
-static PetscReal PartChanged(PetscReal now, PetscReal rise)
+/* What errors are measured by at least: small parts of the largest force and pressures of all pairs. */
+static ContactLoad LeastLoad(int pairs, const ContactLoad load[])
 {
-  return now > 0 ? PetscAbsReal(rise) / now : 0;
+  ContactLoad least = {.force = 0};
+
+  for (int p = 0; p < pairs; p++) {
+    least.force    = PetscMax(least.force, PENALTY_LIGHT_PAIR * load[p].force);
+    least.pressure = PetscMax(least.pressure, PENALTY_LIGHT_PAIR * load[p].pressure);
+    least.peak     = PetscMax(least.peak, PENALTY_LIGHT_PAIR * load[p].peak);
+  }
+  return least;
+}
+
+/* Change of a value as a part of the value, or of the least one that counts. */
+static PetscReal PartChanged(PetscReal now, PetscReal least, PetscReal rise)
+{
+  const PetscReal by = PetscMax(now, least);
+
+  return now > 0 && by > 0 ? PetscAbsReal(rise) / by : 0;
 }
 
 /* Change of a pair's friction as a part of the whole of it. Friction that is light beside the pressure, or that cancels
-   out, is measured by the pressure. */
-static PetscReal FrictionChanged(const ContactLoad *now, const ContactLoad *rise)
+   out, is measured by the pressure, and all of it by no less than the least force. */
+static PetscReal FrictionChanged(const ContactLoad *now, const ContactLoad *least, const ContactLoad *rise)
 {
-  PetscReal change = 0, whole = 0;
+  const PetscReal whole  = PetscMax(now->rubs, PetscMax(PENALTY_LIGHT_FRICTION * now->force, least->force));
+  PetscReal       change = 0;
 
-  for (int d = 0; d < 3; d++) {
-    change += PetscSqr(rise->friction[d]);
-    whole += PetscSqr(now->friction[d]);
-  }
-  whole = PetscMax(PetscSqrtReal(whole), PENALTY_LIGHT_FRICTION * now->force);
+  for (int d = 0; d < 3; d++) change += PetscSqr(rise->friction[d]);
   return whole > 0 ? PetscSqrtReal(change) / whole : 0;
 }
 
 /* Fills the estimates of a pair from its loads and their changes by stiffer penalties. */
-static void FillError(PenaltySource source, const ContactLoad *now, const ContactLoad *rise, PetscReal displacement,
-                      PenaltyError *error)
+static void FillError(PenaltySource source, const ContactLoad *now, const ContactLoad *least, const ContactLoad *rise,
+                      PetscReal displacement, PenaltyError *error)
 {
+  const PetscReal force = PartChanged(now->force, least->force, rise->force);
+
   if (source == BY_SLIP) {
-    error->slip_force        = PetscMax(PartChanged(now->force, rise->force), FrictionChanged(now, rise));
+    error->slip_force        = PetscMax(force, FrictionChanged(now, least, rise));
     error->slip_displacement = displacement;
     return;
   }
-  error->force        = PartChanged(now->force, rise->force);
-  error->pressure     = PartChanged(now->pressure, rise->pressure);
-  error->peak         = PartChanged(now->peak, rise->peak);
+  error->force        = force;
+  error->pressure     = PartChanged(now->pressure, least->pressure, rise->pressure);
+  error->peak         = PartChanged(now->peak, least->peak, rise->peak);
   error->displacement = displacement;
 }
 
@@ -283,8 +299,8 @@ static void FillError(PenaltySource source, const ContactLoad *now, const Contac
 static PetscErrorCode ModelFillErrors(Model model, PenaltySource source, Vec slope)
 {
   const int    pairs = ContactPairs(model->contact);
-  ContactLoad *load;
-  PetscReal   *v, displacement;
+  ContactLoad *load, least;
+  PetscReal   *v, displacement = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(model->mesh->n_nodes * model->mesh->dim, &v));
@@ -293,8 +309,9 @@ static PetscErrorCode ModelFillErrors(Model model, PenaltySource source, Vec slo
   PetscCall(ModelLargestChange(model, v, &displacement));
   PetscCall(ContactLoadChanges(model->contact, source, model->problem->trial, v, &load[pairs]));
   PetscCall(ModelLoads(model, load, &load[pairs]));
+  least = LeastLoad(pairs, load);
   for (int p = 0; p < pairs; p++)
-    FillError(source, &load[p], &load[pairs + p], displacement, &model->work->penalty_error[p]);
+    FillError(source, &load[p], &least, &load[pairs + p], displacement, &model->work->penalty_error[p]);
   PetscCall(PetscFree(load));
   PetscCall(PetscFree(v));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -38,5 +38,6 @@ Physical Curve("upper_left") = {104};
 If (floor > 0)
   Physical Surface("floor") = {201};
   Physical Curve("floor_bottom") = {201};
+  Physical Curve("floor_top") = {203};
   Physical Curve("tops") = {3, 203};
 EndIf

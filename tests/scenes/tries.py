@@ -67,4 +67,18 @@ before, after = advises("scatter", RUNS / "hertz_line.yaml", *LINE, "contact.0.p
                         head="nodal pressures scatter", key="contact.0.formulation")
 check.holds("scatter: figures", before["pressure_scatter"] > 3 * after["pressure_scatter"],
             f"{before['pressure_scatter']:.3g}, {after['pressure_scatter']:.3g}")
+
+# A floor touches the lower block from below with less than 1e-5 of what the other pair bears, through a soft penalty: what
+# that leaves of error is large as a part of this force, and next to nothing in the model.
+light = run(args, STACK, out="light", overrides=[
+    "mesh.parameters.floor=0.01", f"bodies.2={{volume: floor, {SVK}}}", "contact.0.penalty.scale=1000",
+    "contact.1={name: touch, slave: floor_top, master: lower_bottom, penalty: {scale: 0.1}}",
+    "loads.1={surface: floor_bottom, ux: 0, uy: 0.010001}",
+    "probes.1={name: touch, contact_force: touch, component: y, absolute: true}"
+])
+forces, error = light.summary()["probes"], light.summary()["contact"][1]["penalty"]["error_force"]
+check.holds("light: a light pair", 1e-8 < forces["touch"] / forces["force"] < 1e-5, str(forces))
+check.holds("light: its error counts by a thousandth of the other pair's force",
+            0 < error < 1e3 * forces["touch"] / forces["force"], str(error))
+check.holds("light: no advice", "advice   touch" not in light.text)
 check.finish()
