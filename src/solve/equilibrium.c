@@ -3,6 +3,7 @@
 #include "base/timing.h"
 #include "bodies/freemodes.h"
 #include "bodies/tools.h"
+#include "contact/contactfacing.h"
 #include "modelimpl.h"
 
 /* Lists are made anew after this many solutions before the solve counts as failed because they do not settle. An area
@@ -633,6 +634,27 @@ static PetscErrorCode ModelSolveOn(Model model, PetscBool slowly, SolveReport *r
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Ends a solve before it begins where its first iterate turns surfaces that lie opposite each other too far for the
+   lists of the step. The iterate remains as the look-ahead of a shorter step. */
+static PetscErrorCode ModelJudgeFacing(Model model, SolveReport *report)
+{
+  ModelWork *work = model->work;
+
+  PetscFunctionBeginUser;
+  if (!model->contact || report->result != SOLVE_CONVERGED || PetscIsInfReal(model->most_facing))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  PetscCall(ContactFacingTurn(model->contact, work->accepted_u, model->problem->trial, &report->facing));
+  if (report->facing <= model->most_facing) PetscFunctionReturn(PETSC_SUCCESS);
+  report->result = SOLVE_FACING;
+  if (work->looked_ahead) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecCopy(model->x, work->look_ahead));
+  work->look_ahead_t            = model->t;
+  work->look_ahead_extrapolated = work->extrapolated;
+  work->looked_ahead            = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Finds the first solution of a load step to t from the accepted state. */
 static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly, SolveReport *report)
 {
@@ -648,6 +670,8 @@ static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly
     PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   } else
     PetscCall(ModelStart(model, report));
+  PetscCall(ModelJudgeFacing(model, report));
+  if (report->result == SOLVE_FACING) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelRampPenalty(model, report));
   if (report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -712,7 +736,7 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
 
   Notes:
   On success model->u, model->x and the contact state are the solution, which is not accepted yet. On failure the caller
-  must call ModelRestore().
+  must call ModelRestore(). With SOLVE_FACING the solve has not begun, and a shorter step takes its first iterate.
 
   Contact lists are made before the first solve and are frozen in each solve by Newton's method. After each solve they
   are checked and made anew, at most EQUILIBRIUM_MAX_LISTS times. Then penalties that are adjusted within the step are

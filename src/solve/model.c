@@ -22,6 +22,7 @@ const char *const SolveResults[] = {
   "a fluid leaks, and the step is too long to say at which pressure",
   "a fluid leaks",
   "a rigid tool turned too far in one step",
+  "surfaces that lie opposite each other turn too far in one step",
   "a routine of the user's (law: umat) failed",
   "the bodies came to no rest in pseudo-time",
   "the tangent was indefinite on the way, and the first step is too long to say whether the bodies jump",
@@ -105,6 +106,8 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   *out         = model; /* ModelDestroy() frees what a refusal leaves */
   model->scene = scene;
   model->mesh  = mesh;
+
+  model->most_facing = INFINITY;
   PetscCall(ModelBuild(model, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

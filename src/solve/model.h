@@ -31,6 +31,7 @@ typedef enum {
   SOLVE_LEAK,
   SOLVE_LEAKED,
   SOLVE_TURNED,
+  SOLVE_FACING,
   SOLVE_ROUTINE,
   SOLVE_RESTLESS,
   SOLVE_JUMP,
@@ -77,6 +78,7 @@ typedef struct {
   PetscInt    damped;      /* pseudo-time steps with a viscous restraint; 0: a static solve */
   PetscReal   damping;     /* energy that the restraint took */
   char        jump[256];   /* the node that jumped to another equilibrium, and how far; empty: none did */
+  PetscReal   facing;      /* SOLVE_FACING: turn of surfaces that lie opposite each other (radians) */
   PetscReal   excess;      /* SOLVE_UNCERTIFIED: depth over what is allowed; INFINITY: it is no depth */
   char        detail[256]; /* where a failed solve failed, in gmsh's tags */
   Failure     failure;     /* more about a failed solve */
@@ -103,8 +105,9 @@ typedef struct _n_Model {
   Vec           x;      /* free displacements (length) */
   PetscReal    *u;      /* local displacements u[n_nodes*dim] (length) at load parameter t, prescribed ones included */
   PetscReal     t;
-  EnergyBalance balance;     /* NULL: no body is plastic */
-  Certificate   certificate; /* NULL: there is no contact, or the scene switches it off */
+  EnergyBalance balance;   /* NULL: no body is plastic */
+  PetscReal   most_facing; /* turn (radians) of surfaces opposite each other above which ModelSolve() does not begin */
+  Certificate certificate; /* NULL: there is no contact, or the scene switches it off */
   struct _n_ModelWork *work;
 } *Model;
 

@@ -13,6 +13,11 @@
 /* A step that was shortened for its lag or its travel is to have at most this part of that of the attempt before, which
    was 1.4 times as long or longer. Else its length is not the cause, and shorter steps would not help. */
 #define STEPPER_GAIN 0.9
+/* Faces of a body that lie opposite other faces of it may turn by this angle (radians) in a step. Lists of its start
+   hold what faces a point there, and as two sides turn, half of the 60 degrees that a normal in a fit may be off is
+   what each has. A tube that is flattened until its inner wall touches loses points with 35 degrees, and with more the
+   ends of its fold pass through each other. */
+#define STEPPER_FACING (PETSC_PI / 6)
 /* A failed step is tried again with this part of its dt. */
 #define STEPPER_CUT 0.5
 /* The load at which depths exceed what the certificate allows is sought to this part of load and depth. What is allowed
@@ -29,7 +34,7 @@
 #define STEPPER_HALVE 2.0
 
 /* What bounds a step and may have another cause than its length */
-typedef enum { BOUND_LAG, BOUND_TRAVEL, BOUNDS } Bound;
+typedef enum { BOUND_LAG, BOUND_TRAVEL, BOUND_FACING, BOUNDS } Bound;
 
 struct _n_LoadStepper {
   MPI_Comm             comm;
@@ -46,6 +51,7 @@ struct _n_LoadStepper {
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
   PetscReal            used[BOUNDS]; /* by the last attempt of this step, of what is allowed; 0: none */
+  PetscReal            most_facing;  /* turn (radians) of surfaces that lie opposite each other in this step */
   PetscInt             damped;       /* 1: the last accepted step was damped */
   PetscBool            view;
 };
@@ -585,6 +591,16 @@ static PetscErrorCode LoadStepperJudge(LoadStepper stepper, PetscReal dt, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Shortens a step of dt in which surfaces that lie opposite each other would turn too far. Where a shorter one did not
+   make that less, its length is not the cause, and they may. */
+static void LoadStepperFace(LoadStepper stepper, PetscReal dt, PetscReal turn)
+{
+  if (StepStays(stepper, BOUND_FACING, turn / STEPPER_FACING))
+    stepper->most_facing = INFINITY;
+  else
+    stepper->size.dt = PetscMax(STEPPER_CUT, STEPPER_STRAIN * STEPPER_FACING / turn) * dt;
+}
+
 /* Tries one step, and repeats it with smaller dt until it converges and the control accepts it, or dt falls below
    dt_min. A step whose first linear solve is singular is not repeated, because the tangent at its start is singular for
    any dt. A fluid that leaks ends the steps. */
@@ -602,13 +618,15 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   PetscFunctionBeginUser;
   *advanced = PETSC_FALSE;
   PetscCall(PetscArrayzero(stepper->used, BOUNDS));
-  *record = (StepRecord){.step = report->steps + 1};
+  stepper->most_facing = STEPPER_FACING;
+  *record              = (StepRecord){.step = report->steps + 1};
   PetscCall(LoadStepperPredict(stepper, record));
   while (PETSC_TRUE) {
     const PetscReal end = StepEnd(stepper, t, stepper->size.dt, &clipped), dt = end - t;
 
+    model->most_facing = STEPPER_CUT * dt < stepper->size.dt_min ? INFINITY : stepper->most_facing;
     PetscCall(LoadStepperTry(stepper, end, dt, &failures, &solve));
-    record->attempts++;
+    record->attempts += solve.result != SOLVE_FACING;
     CountSolve(end, &solve, record, &stepper->report);
     if (solve.result == SOLVE_CONVERGED) {
       PetscCall(LoadStepperJudge(stepper, dt, &most, advanced));
@@ -618,6 +636,11 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
         continue;
       }
       PetscCall(ModelCertify(model, &solve));
+    }
+    if (solve.result == SOLVE_FACING) {
+      PetscCall(ModelRestore(model));
+      LoadStepperFace(stepper, dt, solve.facing);
+      continue;
     }
     *advanced = (PetscBool)(solve.result == SOLVE_CONVERGED);
     if (*advanced) {

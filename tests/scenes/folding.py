@@ -14,6 +14,9 @@ check.holds("certified", "certified: nothing passed through anything unseen" in 
 if TOUCH[args.case]:
     nodes = next(pair for pair in finished.summary()["contact"] if pair["name"].startswith("fold"))
     check.holds("it touches itself", finished.steps()[-1]["contact_nodes"] > 0 and nodes, str(nodes)[:200])
+if args.case == "flattened_tube":
+    # a step in which the ends of the fold would turn past each other is shortened before it is tried
+    check.holds("no step fails", finished.summary()["steps_failed"] == 0, str(finished.summary()["steps_failed"]))
 if args.case == "bellows":
     check.holds("few faces between sharp corners: the error line says what it leaves out",
                 "not in it: the shape of the surfaces" in finished.text)
