@@ -300,7 +300,6 @@ static PetscErrorCode CreateBlocks(Elasticity e)
   }
   PetscCall(PetscIntCast(total, &e->row[mesh->n_nodes]));
   PetscCall(PetscMalloc1(total, &e->column));
-  PetscCall(PetscCalloc1(total * e->dim * e->dim, &e->value));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) mark[n] = -1;
   for (PetscInt n = 0; n < mesh->n_nodes; n++)
     PetscCall(NodeNeighbours(e, n, ptr, cells, mark, &e->column[e->row[n]], &count));
@@ -466,9 +465,9 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   }
   PetscCall(PetscFree(e->groups));
   PetscCall(PetscFree3(e->cell_group, e->cell_slot, e->cell_modulus));
+  PetscCall(ElasticityReleaseTangent(e));
   PetscCall(PetscFree(e->row));
   PetscCall(PetscFree(e->column));
-  PetscCall(PetscFree(e->value));
   PetscCall(PetscFree(e->buffer));
   PetscCall(PetscFree2(e->state.multiplier, e->accepted.multiplier));
   for (int k = 0; k < VOLUMES_KEPT; k++) PetscCall(PetscFree(e->kept[k].multiplier));
@@ -749,11 +748,13 @@ static PetscErrorCode AddBolts(Elasticity e, const CellGroup *g, PetscInt batch)
 PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const StressReference *reference)
 {
   const StressReference gathered = {e->u_0, reference ? reference->rate : 0, reference ? reference->held : 0};
+  const size_t          entries  = (size_t)e->row[e->mesh->n_nodes] * e->dim * e->dim;
   PetscReal             J[KERNEL_LANES];
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(event_tangent, 0, 0, 0, 0));
-  PetscCall(PetscArrayzero(e->value, (size_t)e->row[e->mesh->n_nodes] * e->dim * e->dim));
+  if (!e->value) PetscCall(PetscMalloc1(entries, &e->value));
+  PetscCall(PetscArrayzero(e->value, entries));
   for (int k = 0; k < e->n_groups; k++) {
     CellGroup      *g            = &e->groups[k];
     const size_t    dofs         = (size_t)g->nodes * e->dim;
@@ -778,6 +779,24 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const StressR
     }
   }
   PetscCall(PetscLogEventEnd(event_tangent, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElasticityReleaseTangent - frees the local block CSR until the next ElasticityTangent().
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity, after ElasticityMatrix()
+
+  Note:
+  The parallel matrix stays. ElasticityAddBlock() and the products with the local block CSR need the next tangent.
+@*/
+PetscErrorCode ElasticityReleaseTangent(Elasticity e)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(e->value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -821,6 +840,7 @@ PetscErrorCode ElasticityAddBlock(Elasticity e, PetscInt n, const PetscInt nodes
   const int dim = e->dim;
 
   PetscFunctionBeginUser;
+  PetscCheck(e->value || !e->row[e->mesh->n_nodes], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "there is no tangent");
   for (PetscInt a = 0; a < n; a++) {
     const PetscInt row = e->row[nodes[a]];
 
@@ -857,6 +877,7 @@ PetscErrorCode ElasticityMultiplyLocal(Elasticity e, const PetscReal *x, PetscRe
   const int dim = e->dim;
 
   PetscFunctionBeginUser;
+  PetscCheck(e->value || !e->row[e->mesh->n_nodes], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "there is no tangent");
   for (PetscInt n = 0; n < e->mesh->n_nodes; n++) {
     for (PetscInt k = e->row[n]; k < e->row[n + 1]; k++) {
       const PetscReal *value = &e->value[(size_t)k * dim * dim], *xk = &x[e->column[k] * dim];
@@ -887,6 +908,7 @@ PetscErrorCode ElasticityMultiplyTransposed(Elasticity e, const PetscReal *x, Pe
   const int dim = e->dim;
 
   PetscFunctionBeginUser;
+  PetscCheck(e->value || !e->row[e->mesh->n_nodes], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "there is no tangent");
   for (PetscInt n = 0; n < e->mesh->n_nodes; n++) {
     for (PetscInt k = e->row[n]; k < e->row[n + 1]; k++) {
       const PetscReal *value = &e->value[(size_t)k * dim * dim];

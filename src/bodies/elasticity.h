@@ -3,7 +3,8 @@
    ElasticityResidual() and ElasticityTangent() evaluate this rank's cells. The tangent is summed into one rank-local
    block CSR over local nodes, with ghost rows and every dof, supported ones too. It may extrapolate stresses from an
    earlier state (stressreference.h). ElasticityMatrix() passes it on to a
-   parallel AIJ matrix over the free dofs, ElasticityMultiplyLocal() multiplies it by local vectors for the prescribed
+   parallel AIJ matrix over the free dofs, after which ElasticityReleaseTangent() may free the local one.
+   ElasticityMultiplyLocal() multiplies it by local vectors for the prescribed
    dofs. ElasticityNodalStress() gives stresses for output. ElasticityPlacePoints(), ElasticityPointStates() and
    ElasticityPointRates() show the quadrature points of one cell.
 
@@ -31,6 +32,7 @@ PetscErrorCode ElasticityResidual(Elasticity, const PetscReal *u, PetscReal *f, 
                                   PetscBool *ok);
 PetscErrorCode ElasticityVolumeEnergy(Elasticity, const PetscReal *u, PetscReal *energy);
 PetscErrorCode ElasticityTangent(Elasticity, const PetscReal *u, const StressReference *);
+PetscErrorCode ElasticityReleaseTangent(Elasticity);
 PetscErrorCode ElasticityExtrapolates(Elasticity, PetscBool *any);
 PetscErrorCode ElasticityAddBlock(Elasticity, PetscInt n, const PetscInt nodes[], const PetscReal k[]);
 PetscErrorCode ElasticityMultiplyLocal(Elasticity, const PetscReal *x, PetscReal *y);

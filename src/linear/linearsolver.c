@@ -1,5 +1,6 @@
 /* The choice between the direct and the iterative solver, and its tolerances. */
 #include "linear/linearsolver.h"
+#include "base/freememory.h"
 #include "linear/directsolver.h"
 #include "linear/reusedfactor.h"
 #include "multigrid.h"
@@ -42,6 +43,7 @@ struct _n_LinearSolver {
 static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, PetscBool axisymmetric, PetscBool symmetric)
 {
   PetscFunctionBeginUser;
+  FreeMemoryAtOnce();
   PetscCall(KSPSetType(solver->ksp, KSPFGMRES));
   PetscCall(KSPSetPCSide(solver->ksp, PC_RIGHT));
   PetscCall(KSPGMRESSetRestart(solver->ksp, LINEAR_RESTART));
@@ -80,9 +82,8 @@ PetscErrorCode LinearSolverCreate(KSP ksp, Mesh mesh, Scene scene, PetscBool sym
   (*solver)->ksp       = ksp;
   (*solver)->symmetric = symmetric;
   if (type == SOLVER_AUTO)
-    type = mesh->dim == 3 && !mesh->saddle && mesh->dim * mesh->n_global > SOLVER_DIRECT_DOFS
-             ? SOLVER_ITERATIVE
-             : SOLVER_DIRECT;
+    type = mesh->dim == 3 && !mesh->saddle && mesh->dim * mesh->n_global > SOLVER_DIRECT_DOFS ? SOLVER_ITERATIVE
+                                                                                              : SOLVER_DIRECT;
   if (type == SOLVER_DIRECT) {
     PetscCall(DirectSolverSet(ksp, symmetric));
     if (mesh->dim * mesh->n_global >= LINEAR_KEPT_DOFS) PetscCall(ReusedFactorCreate(ksp, &(*solver)->kept));
@@ -143,6 +144,19 @@ PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K, PetscBool couples)
 }
 
 /*@
+  LinearSolverIterates - tells whether the solver is the iterative one, which is for many unknowns and little memory.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. solver - the linear solver
+@*/
+PetscBool LinearSolverIterates(LinearSolver solver)
+{
+  return solver->multigrid ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/*@
   LinearSolverBorders - tells whether LinearSolverSetBorder() must be called for each operator.
 
   Not collective, the same on all ranks
@@ -174,6 +188,21 @@ PetscErrorCode LinearSolverSetBorder(LinearSolver solver, const Border *border)
   PetscFunctionBeginUser;
   PetscCall(DirectSolverFactor(solver->ksp, &factor));
   PetscCall(FactorSetBorder(factor, border));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  LinearSolverRelease - frees what serves the last operator alone, before the next one is computed.
+
+  Collective
+
+  Input Parameter:
+. solver - the linear solver; nothing is solved with it until LinearSolverNext()
+@*/
+PetscErrorCode LinearSolverRelease(LinearSolver solver)
+{
+  PetscFunctionBeginUser;
+  if (solver->multigrid) PetscCall(MultigridRelease(solver->multigrid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,8 +15,10 @@ typedef struct _n_LinearSolver *LinearSolver;
 PetscErrorCode LinearSolverCreate(KSP, Mesh, Scene, PetscBool symmetric, LinearSolver *);
 PetscErrorCode LinearSolverDestroy(LinearSolver *);
 PetscErrorCode LinearSolverOrder(LinearSolver, Mat K, PetscBool couples);
+PetscBool      LinearSolverIterates(LinearSolver);
 PetscBool      LinearSolverBorders(LinearSolver);
 PetscErrorCode LinearSolverSetBorder(LinearSolver, const Border *);
+PetscErrorCode LinearSolverRelease(LinearSolver);
 PetscErrorCode LinearSolverNext(LinearSolver, const PetscReal *u, Mat C, PetscBool pattern, PetscInt changes,
                                 PetscBool *older);
 PetscErrorCode LinearSolverRenew(LinearSolver);

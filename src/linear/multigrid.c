@@ -459,6 +459,22 @@ PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
 }
 
 /*@
+  MultigridRelease - frees the factor of the interface, which serves one operator only.
+
+  Collective
+
+  Input Parameter:
+. m - the preconditioner, before the next MultigridSetContact()
+@*/
+PetscErrorCode MultigridRelease(Multigrid m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ForgetInterface(m));
+  FreeMemoryReturn();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   MultigridRenew - has multigrid made for the next operator, so that nothing depends on what was solved before.
 
   Not collective

@@ -254,6 +254,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscBool       ok;
 
   PetscFunctionBeginUser;
+  PetscCall(LinearSolverRelease(work->solver));
   ToolsAccept(model->mesh, model->u, model->t);
   PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t, &path));
   if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u, &path));

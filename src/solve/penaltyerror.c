@@ -172,6 +172,7 @@ static PetscErrorCode ModelPenaltySlopes(Model model, int sources, Vec slope[], 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &forces));
   PetscCall(ModelLinearise(model, &ksp));
+  PetscCall(ModelReleaseTangent(model));
   *known = PETSC_TRUE;
   for (int source = 0; source < sources && *known; source++) {
     PetscCall(ModelStifferForces(model, (PenaltySource)source, forces));

@@ -25,6 +25,7 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   PetscCall(ProblemCollectResidual(model->problem, model->x, b));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(KSPSetOperators(ksp, model->problem->A, model->problem->P));
+  PetscCall(ModelReleaseTangent(model));
   if (!model->work->extrapolated) PetscCall(LinearSolverSetPrediction(model->work->solver, PETSC_TRUE));
   PetscCall(KSPSolve(ksp, b, dx));
   if (!model->work->extrapolated) PetscCall(LinearSolverSetPrediction(model->work->solver, PETSC_FALSE));

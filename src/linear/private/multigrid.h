@@ -18,4 +18,5 @@ typedef struct _n_Multigrid *Multigrid;
 PetscErrorCode MultigridCreate(Mesh, PetscBool axisymmetric, PetscBool symmetric, KSP, Multigrid *);
 PetscErrorCode MultigridDestroy(Multigrid *);
 PetscErrorCode MultigridSetContact(Multigrid, Mat C, PetscBool changed);
+PetscErrorCode MultigridRelease(Multigrid);
 PetscErrorCode MultigridRenew(Multigrid);

@@ -132,6 +132,7 @@ PetscErrorCode ModelCreateSNES(Model);
 PetscErrorCode ModelStepFrom(Model, const PetscReal *u);
 PetscErrorCode ModelStepFromSolved(Model, const PetscReal *u);
 PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, PetscReal t);
+PetscErrorCode ModelReleaseTangent(Model);
 PetscErrorCode ModelLinearise(Model, KSP *);
 PetscErrorCode ModelLinearFailure(Model, SolveResult *);
 PetscErrorCode ModelNewton(Model, SolveReport *);
