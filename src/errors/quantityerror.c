@@ -81,6 +81,51 @@ PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional funct
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The largest error that penetration leaves in forces and displacements of a pair, over either. */
+static PetscReal WorstPenetration(Model model)
+{
+  PetscReal worst = 0;
+
+  for (int p = 0; p < ContactPairs(model->contact); p++) {
+    const PenaltyError error = ModelPenaltyError(model, p);
+    const PetscReal    most  = PetscMax(error.force, error.displacement);
+
+    if (most > worst) worst = most;
+  }
+  return worst;
+}
+
+/*@
+  QuantityErrorShares - finds where elements leave error, for a quantity that has no first variation.
+
+  Collective
+
+  Input Parameters:
++ model - after ModelSolve() has found a solution, before ModelAccept()
+- value - of the quantity
+
+  Output Parameter:
+. error - its cells and spread are those of the strain energy, what penetration leaves is that of the worst pair,
+without a sign; all other parts are unknown. Free it with QuantityErrorReset()
+@*/
+PetscErrorCode QuantityErrorShares(Model model, PetscReal value, QuantityError *error)
+{
+  BodyError     bodies;
+  BodyErrorSums sums;
+
+  PetscFunctionBeginUser;
+  for (int c = 0; c < ERROR_CAUSES; c++) error->part[c] = NAN;
+  PetscCall(PetscMalloc1(model->mesh->n_cells, &error->cells));
+  PetscCall(
+    BodyErrorCreate(model->mesh, model->problem->elasticity, model->scene->kinematics, model->problem->trial, &bodies));
+  PetscCall(BodyErrorEvaluate(bodies, model->problem->trial, error->cells, &sums));
+  PetscCall(BodyErrorDestroy(&bodies));
+  error->spread                  = sums.spread;
+  error->part[ERROR_PENETRATION] = error->magnitude = PetscAbsReal(value) * WorstPenetration(model);
+  error->sum                                        = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   QuantityErrorReset - frees what an estimate holds.
 

@@ -7,7 +7,10 @@
    known is NaN: that of the load steps where the answer depends on the path, and that of the surfaces in contact
    where one master is rigid, analytic or of facets. Of smooth masters it is how far they miss their own nodes
    (ContactPairShapeForces()). It is 0 where there is no such cause. That straight edges of
-   elements stand for curved boundaries is in no part. */
+   elements stand for curved boundaries is in no part.
+
+   QuantityErrorShares() serves quantities without a first variation, such as a peak or the end of a contact zone: it
+   says where elements are to become smaller, but not how large the error is. */
 #pragma once
 #include "solve/adjoint.h"
 
@@ -32,4 +35,5 @@ typedef struct {
 } QuantityError;
 
 PetscErrorCode QuantityErrorsEstimate(Model, int n, const Functional[], QuantityError[]);
+PetscErrorCode QuantityErrorShares(Model, PetscReal value, QuantityError *);
 PetscErrorCode QuantityErrorReset(QuantityError *);

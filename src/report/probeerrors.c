@@ -102,6 +102,7 @@ static PetscErrorCode Estimate(ProbeErrors errors, Functional *functional)
 @*/
 PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
 {
+  const int   wanted = errors ? errors->scene->accuracy.probe : -1;
   Functional *functional;
   Model       model;
   PetscBool   ok;
@@ -115,6 +116,10 @@ PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
   PetscCall(ProbesEvaluate(errors->probes, errors->value));
   PetscCall(PetscCalloc1(errors->scene->n_probes, &functional));
   PetscCall(Estimate(errors, functional));
+  if (wanted >= 0 && errors->why[wanted] && !PetscIsInfOrNanReal(errors->value[wanted])) {
+    PetscCall(QuantityErrorReset(&errors->error[wanted]));
+    PetscCall(QuantityErrorShares(model, errors->value[wanted], &errors->error[wanted]));
+  }
   PetscCall(PetscFree(functional));
   PetscCall(PetscLogEventEnd(errors->event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -131,7 +136,8 @@ PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
 
   Output Parameters:
 + value - of the probe
-- why   - why there is no estimate; NULL: there is one
+- why   - why there is no estimate; NULL: there is one. The error of the probe whose accuracy the scene asks for then
+          has what QuantityErrorShares() knows
 @*/
 const QuantityError *ProbeErrorsGet(ProbeErrors errors, int probe, PetscReal *value, const char **why)
 {

@@ -119,5 +119,5 @@ double MeshPlanImplied(const MeshChange *c, int order)
   const double left = PartLeft(c, order), times = MESHPLAN_SAFETY * left / (1 - left), whole = times * fabs(c->change);
 
   if (isnan(c->estimate)) return whole;
-  return fmin(whole, fabs(c->estimate) + times * fabs(c->change - (c->before - c->estimate)));
+  return fmin(whole, MESHPLAN_SAFETY * fabs(c->estimate) + times * fabs(c->change - (c->before - c->estimate)));
 }

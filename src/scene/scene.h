@@ -179,13 +179,14 @@ typedef struct {
   char     *target;    /* surface of a reaction, pair of a contact quantity, else NULL */
   char     *body;      /* volume, or NULL */
   int       component; /* 0 to 2 */
-  double point[2][3];  /* of displacement, distance and gap: reference coordinates; of a torque: of its axis (length) */
+  double point[2][3];  /* of displacement, distance, gap and patch: reference coordinates; of a torque: of its axis (length) */
   int    axis;         /* of contact_edge and of a torque: 0 to 2 */
   int    max_side;     /* of contact_edge: 1 for max, 0 for min */
   /* Of contact_edge and pressure_max: 1 if only nodes count whose reference coordinate at_axis equals at_value. */
   int    has_at;
   int    at_axis;
   double at_value; /* length */
+  double within;   /* of pressure_mean: radius of the patch around the point (length); 0: the whole surface */
   int    rms;      /* of pressure_deviation: 1 for rms, 0 for max */
   /* Of pressure_deviation: 0 takes all nodes; 1 (excluding) leaves out the nodes within edge_faces mean face sizes of a
      free edge; 2 (only) takes only those nodes. */

@@ -428,8 +428,11 @@ const SchemaKey SchemaKeys[] = {
   {"probes.*.body", TEXT, .help = "volume of the node, if two bodies have a node at the point"},
   {"probes.*.change", BOOLEAN, .preset = "false", .help = "of distance; true: the reference distance is subtracted"},
   {"probes.*.at", POINT | MAP, .unit = "length",
-   .help = "for gap a point; for friction_torque a point of the axis, by default the origin; for contact_edge and "
-           "pressure_max one reference coordinate, such as {z: 100}"},
+   .help = "for gap a point; for friction_torque a point of the axis, by default the origin; for pressure_mean the middle "
+           "of a patch; for contact_edge and pressure_max one reference coordinate, such as {z: 100}"},
+  {"probes.*.within", REAL, .range = "(0, inf)", .unit = "length",
+   .help = "of pressure_mean: the mean is that of a patch of this radius around the point at; a node at the distance r "
+           "counts (1 - (r/within)^2)^2 times its area"},
   {"probes.*.at.x|y", REAL, .unit = "length", .help = "reference coordinate"},
   {"probes.*.at.z", REAL, SOLID, .unit = "length", .help = "reference coordinate"},
   {"probes.*.axis", CHOICE, .values = "x | y | z",

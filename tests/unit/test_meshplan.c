@@ -71,11 +71,11 @@ static void test_forecast_change(void **state)
   MeshChange c = {.change = -9, .before = -10, .estimate = -1, .fall = 0.1, .finer = 3, .even = 1};
 
   (void)state;
-  assert_float_equal(MeshPlanImplied(&c, 1), 1, 1e-12);
-  c.change = -18;
-  assert_float_equal(MeshPlanImplied(&c, 1), 1 + 1.25 * 9.0 / 8, 1e-12);
+  assert_float_equal(MeshPlanImplied(&c, 1), 1.25, 1e-12);
+  c.change = -27;
+  assert_float_equal(MeshPlanImplied(&c, 1), 1.25 + 1.25 * 18.0 / 8, 1e-12);
   c.estimate = NAN; /* no estimate: the power 1 */
-  assert_float_equal(MeshPlanImplied(&c, 1), 1.25 * 18 / 2, 1e-12);
+  assert_float_equal(MeshPlanImplied(&c, 1), 1.25 * 27 / 2, 1e-12);
 }
 
 /* The largest mesh is that whose forecast is the limit, and there is none where a small step is too much. */
