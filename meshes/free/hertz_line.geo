@@ -1,10 +1,10 @@
 // The bodies of hertz_line.geo, meshed freely by triangles. Lengths in mm.
 SetFactory("OpenCASCADE"); // the built-in kernel would merge the two bodies' coincident points
 DefineConstant[
-  refine = {1, Name "divides all element sizes"}, radius = {50, Name "radius of the cylinder"},
+  refine = {1, Name "divides all element sizes"}, near = {1, Name "divides those at the first touch besides"}, radius = {50, Name "radius of the cylinder"},
   size = {200, Name "width and height of the whole block"}
 ];
-fine = 2 / refine; middle = 10 / refine; coarse = 30 / refine;
+fine = 2 / (refine * near); middle = 10 / refine; coarse = 30 / refine;
 Point(1) = {0, 0, 0, fine}; Point(2) = {radius, radius, 0, middle}; Point(3) = {0, radius, 0, middle};
 Circle(1) = {1, 3, 2}; Line(2) = {2, 3}; Line(3) = {3, 1};
 Curve Loop(1) = {1 : 3}; Plane Surface(1) = {1};

@@ -7,11 +7,44 @@ const char *const ErrorCauses[] = {
   [ERROR_BODIES] = "bodies",     [ERROR_GEOMETRY] = "contact surfaces", [ERROR_PENETRATION] = "penetration",
   [ERROR_SLIP] = "elastic slip", [ERROR_STEPS] = "load steps",          [ERROR_SOLVER] = "solver"};
 
-/* Does the answer depend on the way to it? */
-static PetscBool DependsOnPath(Model model)
+/*@
+  ModelDependsOnPath - says whether the answer depends on the way to it.
+
+  Not collective
+
+  Input Parameter:
+. model - the model
+@*/
+PetscBool ModelDependsOnPath(Model model)
 {
   return (PetscBool)(ProblemIsPlastic(model->problem) || ContactHasFriction(model->contact) ||
                      SceneSupportsChange(model->scene));
+}
+
+/* Adds up the known parts. */
+static void Total(QuantityError *error)
+{
+  error->sum = error->magnitude = 0;
+  for (int c = 0; c < ERROR_CAUSES; c++) {
+    if (isnan((double)error->part[c])) continue;
+    error->sum += error->part[c];
+    error->magnitude += PetscAbsReal(error->part[c]);
+  }
+}
+
+/*@
+  QuantityErrorSetSteps - gives an estimate what the load steps leave of error.
+
+  Not collective
+
+  Input Parameters:
++ error - the estimate
+- steps - true less computed value
+@*/
+void QuantityErrorSetSteps(QuantityError *error, PetscReal steps)
+{
+  error->part[ERROR_STEPS] = steps;
+  Total(error);
 }
 
 /* Joins the parts of one quantity. shape: that of the masters. */
@@ -33,13 +66,9 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
   error->part[ERROR_GEOMETRY]    = shape;
   error->part[ERROR_PENETRATION] = adjoint->penetration;
   error->part[ERROR_SLIP]        = adjoint->slip;
-  error->part[ERROR_STEPS]       = DependsOnPath(model) ? NAN : 0;
+  error->part[ERROR_STEPS]       = ModelDependsOnPath(model) ? NAN : 0;
   error->part[ERROR_SOLVER]      = adjoint->residual;
-  for (int c = 0; c < ERROR_CAUSES; c++) {
-    if (isnan((double)error->part[c])) continue;
-    error->sum += error->part[c];
-    error->magnitude += PetscAbsReal(error->part[c]);
-  }
+  Total(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -9,6 +9,7 @@ struct _n_ProbeErrors {
   PetscReal     *value; /* of each probe */
   const char   **why;   /* why there is no estimate of it; NULL: there is one */
   QuantityError *error;
+  PetscReal      history_s; /* CPU seconds of the run that gave what the load steps leave; NaN: there was none */
   PetscLogEvent  event;
 };
 
@@ -34,9 +35,10 @@ PetscErrorCode ProbeErrorsCreate(Model model, Probes probes, Scene scene, ProbeE
   *result = NULL;
   if (!scene->output.error) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&errors));
-  errors->model  = model;
-  errors->probes = probes;
-  errors->scene  = scene;
+  errors->model     = model;
+  errors->probes    = probes;
+  errors->scene     = scene;
+  errors->history_s = NAN;
   PetscCall(
     PetscCalloc3(scene->n_probes, &errors->value, scene->n_probes, &errors->why, scene->n_probes, &errors->error));
   for (int i = 0; i < scene->n_probes; i++) errors->why[i] = "the run ended before the end of its load";
@@ -146,6 +148,36 @@ const QuantityError *ProbeErrorsGet(ProbeErrors errors, int probe, PetscReal *va
   return &errors->error[probe];
 }
 
+/*@
+  ProbeErrorsSetHistory - gives the estimates what the load steps leave of error.
+
+  Not collective
+
+  Input Parameters:
++ errors - the errors
+. steps  - of each probe: true less computed value
+- cpu_s  - CPU seconds that it took to find them
+@*/
+void ProbeErrorsSetHistory(ProbeErrors errors, const PetscReal *steps, PetscReal cpu_s)
+{
+  errors->history_s = cpu_s;
+  for (int i = 0; i < errors->scene->n_probes; i++)
+    if (!errors->why[i]) QuantityErrorSetSteps(&errors->error[i], steps[i]);
+}
+
+/*@
+  ProbeErrorsHistorySeconds - returns the CPU seconds of the run that gave what the load steps leave; NaN: none did.
+
+  Not collective
+
+  Input Parameter:
+. errors - the errors
+@*/
+PetscReal ProbeErrorsHistorySeconds(ProbeErrors errors)
+{
+  return errors->history_s;
+}
+
 /* Prints one probe: the sum, then its parts. */
 static void PrintError(const char *name, PetscReal value, const QuantityError *error, FILE *stream)
 {
@@ -184,4 +216,6 @@ void ProbeErrorsPrint(ProbeErrors errors, FILE *stream)
     else
       PrintError(name, errors->value[i], &errors->error[i], stream);
   }
+  if (errors && !isnan((double)errors->history_s))
+    fprintf(stream, "error    what the load steps leave: by a second run, CPU %.2f s\n", (double)errors->history_s);
 }

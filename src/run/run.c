@@ -6,6 +6,7 @@
 #include "base/explanation.h"
 #include "base/interruption.h"
 #include "base/refusal.h"
+#include "historyerror.h"
 #include "report/precheck.h"
 #include "report/rundirectory.h"
 #include "sensitivity.h"
@@ -128,6 +129,7 @@ static PetscErrorCode RunMonitor(LoadStepper stepper, const StepRecord *record, 
 
   PetscFunctionBeginUser;
   PetscCall(ResultsStep(run->results, record));
+  if (run->scene->output.error == SCENE_ERROR_HISTORY) PetscCall(HistoryErrorAddStep(run, record->t));
   PetscCall(InterruptionAsked(run->comm, &why));
   if (why || (every && record->step % every == 0)) {
     PetscCall(CheckpointWrite(run->checkpoint));
@@ -198,6 +200,7 @@ static PetscErrorCode RunSolve(Run *run, const RunInput *input, BurnishStatus *s
   PetscFunctionBeginUser;
   PetscCall(RunCreateStepper(run, input));
   PetscCall(RunSolveSteps(run, &report));
+  if (report.done) PetscCall(HistoryErrorFind(run, input));
   if (!report.done && run->kept != report.steps) PetscCall(CheckpointWrite(run->checkpoint));
   *status = report.done ? BURNISH_DONE : report.stopped ? BURNISH_STOPPED : BURNISH_NOT_CONVERGED;
   if (*status == BURNISH_DONE) run->message[0] = '\0';
@@ -263,6 +266,7 @@ PetscErrorCode RunDestroy(Run *run)
     PetscCall(PetscFree(run->options[i]));
   }
   PetscCall(PetscFree(run->options));
+  PetscCall(PetscFree(run->ends));
   PetscCall(SceneDestroy(&run->scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -213,6 +213,9 @@ typedef struct {
   double size; /* of its elements; 0: that of the body */
 } SceneCadSurface;
 
+/* Errors of probes: not estimated; estimated; with what the load steps leave, by a second run */
+typedef enum { SCENE_ERROR_NO, SCENE_ERROR_YES, SCENE_ERROR_HISTORY } SceneErrorWish;
+
 /* The accuracy that a run is to reach on meshes of its own choice */
 typedef struct {
   int        probe;       /* whose error counts; -1: none is asked for */
@@ -288,7 +291,7 @@ typedef struct {
     int every;      /* steps between two outputs, or 0 for the last state only */
     int checkpoint; /* steps between two checkpoints, or 0 for one only when the run ends early */
     int displacement, stress, contact, principal, strain; /* which fields are written */
-    int error;                                            /* 1 if the errors of the probes are estimated */
+    int error; /* are the errors of the probes estimated: SceneErrorWish */
     int certificate;                                      /* 1 if each accepted step is judged */
   } output;
   SceneAccuracy     accuracy;

@@ -457,8 +457,9 @@ const SchemaKey SchemaKeys[] = {
    .help = "steps between two checkpoints; 0: only when the run ends early"},
   {"output.certificate", BOOLEAN, .preset = "true",
    .help = "true: each step is judged before it is accepted: nothing passed through anything unseen"},
-  {"output.error", BOOLEAN, .preset = "false",
-   .help = "true: the error of each probe is estimated at the end, split by cause; one more solve for each"},
+  {"output.error", CHOICE, .values = "false | true | history", .preset = "false",
+   .help = "true: the error of each probe is estimated at the end, split by cause; one more solve for each. history: where "
+           "the answer depends on the way to it, what the load steps leave, too, by a second run with half of them"},
   {"accuracy", MAP,
    .help = "meshes are made and solved on until a probe is accurate; the run ends with status 5 if it does not get there"},
   {"accuracy.probe", TEXT, REQUIRED, .help = "name of the probe; its error must have an estimate (output.error)"},
