@@ -1,6 +1,5 @@
 /* What the load steps leave of error, by a second run, see historyerror.h. */
 #include "historyerror.h"
-#include "base/refusal.h"
 
 enum { HISTORY_NUMBER = 32 /* characters of a load parameter */, HISTORY_FIRST_ROOM = 64 };
 
@@ -48,16 +47,12 @@ static PetscErrorCode WriteEnds(const Run *run, char **edit)
 }
 
 /* Solves the scene with the edits, and gives its probes and its CPU seconds. *known: it came to its end. */
-static PetscErrorCode SolveAgain(Run *run, const RunInput *input, char *ends, PetscReal *values, PetscReal *cpu_s,
-                                 PetscBool *known)
+static PetscErrorCode SolveAgain(Run *run, const RunInput *input, RunAgainFn solve, char *ends, PetscReal *values,
+                                 PetscReal *cpu_s, PetscBool *known)
 {
-  RunInput         again  = *input;
-  Run              second = {.comm = run->comm};
-  const PetscReal *found;
-  BurnishStatus    status;
-  RunUsage         begin, end;
-  char             directory[PETSC_MAX_PATH_LEN];
-  PetscErrorCode   code;
+  RunInput again = *input;
+  RunUsage begin, end;
+  char     directory[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(directory, sizeof(directory), "%s/history", run->directory));
@@ -71,14 +66,7 @@ static PetscErrorCode SolveAgain(Run *run, const RunInput *input, char *ends, Pe
   again.directory          = directory;
   again.overwrite = again.quiet = PETSC_TRUE;
   PetscCall(ResultsGetUsage(run->results, &begin));
-  code = RunScene(&second, &again, &status);
-  if (code && code != REFUSED) PetscCall(code);
-  *known = (PetscBool)(!code && status == BURNISH_DONE);
-  if (*known) {
-    PetscCall(ResultsGetProbes(second.results, &found));
-    PetscCall(PetscArraycpy(values, found, run->scene->n_probes));
-  }
-  PetscCall(RunDestroy(&second));
+  PetscCall(solve(run, &again, values, known));
   PetscCall(ResultsGetUsage(run->results, &end));
   *cpu_s = end.cpu_s - begin.cpu_s;
   PetscCall(PetscFree(again.set));
@@ -92,12 +80,13 @@ static PetscErrorCode SolveAgain(Run *run, const RunInput *input, char *ends, Pe
 
   Input Parameters:
 + run   - at its end, before its results are finished
-- input - what the user asks for
+. input - what the user asks for
+- solve - solves a scene besides, and gives its probes
 
   Note:
   The part stays unknown where the second run does not come to its end, and for a run that was continued.
 @*/
-PetscErrorCode HistoryErrorFind(Run *run, const RunInput *input)
+PetscErrorCode HistoryErrorFind(Run *run, const RunInput *input, RunAgainFn solve)
 {
   const PetscReal *values;
   PetscReal       *again, cpu_s;
@@ -109,7 +98,7 @@ PetscErrorCode HistoryErrorFind(Run *run, const RunInput *input)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(run->scene->n_probes, &again));
   PetscCall(WriteEnds(run, &ends));
-  PetscCall(SolveAgain(run, input, ends, again, &cpu_s, &known));
+  PetscCall(SolveAgain(run, input, solve, ends, again, &cpu_s, &known));
   PetscCall(ResultsGetProbes(run->results, &values));
   for (int i = 0; i < run->scene->n_probes; i++)
     again[i] = run->n_ends == 1 ? 2 * (again[i] - values[i]) : values[i] - again[i];

@@ -9,5 +9,8 @@
 #pragma once
 #include "run.h"
 
+/* Solves a scene with the probes of a run, and gives them. known: it came to its end. */
+typedef PetscErrorCode (*RunAgainFn)(const Run *, const RunInput *, PetscReal *values, PetscBool *known);
+
 PetscErrorCode HistoryErrorAddStep(Run *, PetscReal t);
-PetscErrorCode HistoryErrorFind(Run *, const RunInput *);
+PetscErrorCode HistoryErrorFind(Run *, const RunInput *, RunAgainFn);
