@@ -4,11 +4,11 @@ DefineConstant[
   refine = {1, Name "divides all element sizes"}, near = {1, Name "divides those at the first touch besides"}, radius = {50, Name "radius of the cylinder"},
   size = {200, Name "width and height of the whole block"}
 ];
-fine = 2 / (refine * near); middle = 10 / refine; coarse = 30 / refine;
-Point(1) = {0, 0, 0, fine}; Point(2) = {radius, radius, 0, middle}; Point(3) = {0, radius, 0, middle};
+h = 10 / refine;
+Point(1) = {0, 0, 0, h / near}; Point(2) = {radius, radius, 0, h}; Point(3) = {0, radius, 0, h};
 Circle(1) = {1, 3, 2}; Line(2) = {2, 3}; Line(3) = {3, 1};
 Curve Loop(1) = {1 : 3}; Plane Surface(1) = {1};
-Point(11) = {0, 0, 0, fine}; Point(12) = {0, -size, 0, coarse}; Point(13) = {size / 2, -size, 0, coarse}; Point(14) = {size / 2, 0, 0, coarse};
+Point(11) = {0, 0, 0, h / near}; Point(12) = {0, -size, 0, h}; Point(13) = {size / 2, -size, 0, h}; Point(14) = {size / 2, 0, 0, h};
 Line(11) = {11, 12}; Line(12) = {12, 13}; Line(13) = {13, 14}; Line(14) = {14, 11};
 Curve Loop(11) = {11 : 14}; Plane Surface(11) = {11};
 Physical Surface("cylinder") = {1}; Physical Surface("block") = {11};
