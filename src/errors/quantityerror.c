@@ -7,11 +7,44 @@ const char *const ErrorCauses[] = {
   [ERROR_BODIES] = "bodies",     [ERROR_GEOMETRY] = "contact surfaces", [ERROR_PENETRATION] = "penetration",
   [ERROR_SLIP] = "elastic slip", [ERROR_STEPS] = "load steps",          [ERROR_SOLVER] = "solver"};
 
-/* Does the answer depend on the way to it? */
-static PetscBool DependsOnPath(Model model)
+/*@
+  ModelDependsOnPath - says whether the answer depends on the way to it.
+
+  Not collective
+
+  Input Parameter:
+. model - the model
+@*/
+PetscBool ModelDependsOnPath(Model model)
 {
   return (PetscBool)(ProblemIsPlastic(model->problem) || ContactHasFriction(model->contact) ||
                      SceneSupportsChange(model->scene));
+}
+
+/* Adds up the known parts. */
+static void Total(QuantityError *error)
+{
+  error->sum = error->magnitude = 0;
+  for (int c = 0; c < ERROR_CAUSES; c++) {
+    if (isnan((double)error->part[c])) continue;
+    error->sum += error->part[c];
+    error->magnitude += PetscAbsReal(error->part[c]);
+  }
+}
+
+/*@
+  QuantityErrorSetSteps - gives an estimate what the load steps leave of error.
+
+  Not collective
+
+  Input Parameters:
++ error - the estimate
+- steps - true less computed value
+@*/
+void QuantityErrorSetSteps(QuantityError *error, PetscReal steps)
+{
+  error->part[ERROR_STEPS] = steps;
+  Total(error);
 }
 
 /* Joins the parts of one quantity. shape: that of the masters. */
@@ -33,13 +66,9 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
   error->part[ERROR_GEOMETRY]    = shape;
   error->part[ERROR_PENETRATION] = adjoint->penetration;
   error->part[ERROR_SLIP]        = adjoint->slip;
-  error->part[ERROR_STEPS]       = DependsOnPath(model) ? NAN : 0;
+  error->part[ERROR_STEPS]       = ModelDependsOnPath(model) ? NAN : 0;
   error->part[ERROR_SOLVER]      = adjoint->residual;
-  for (int c = 0; c < ERROR_CAUSES; c++) {
-    if (isnan((double)error->part[c])) continue;
-    error->sum += error->part[c];
-    error->magnitude += PetscAbsReal(error->part[c]);
-  }
+  Total(error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,6 +107,51 @@ PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional funct
   PetscCall(BodyErrorDestroy(&bodies));
   for (int i = 0; i < n; i++) PetscCall(PetscFree(adjoint[i].y));
   PetscCall(PetscFree2(adjoint, shape));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The largest error that penetration leaves in forces and displacements of a pair, over either. */
+static PetscReal WorstPenetration(Model model)
+{
+  PetscReal worst = 0;
+
+  for (int p = 0; p < ContactPairs(model->contact); p++) {
+    const PenaltyError error = ModelPenaltyError(model, p);
+    const PetscReal    most  = PetscMax(error.force, error.displacement);
+
+    if (most > worst) worst = most;
+  }
+  return worst;
+}
+
+/*@
+  QuantityErrorShares - finds where elements leave error, for a quantity that has no first variation.
+
+  Collective
+
+  Input Parameters:
++ model - after ModelSolve() has found a solution, before ModelAccept()
+- value - of the quantity
+
+  Output Parameter:
+. error - its cells and spread are those of the strain energy, what penetration leaves is that of the worst pair,
+without a sign; all other parts are unknown. Free it with QuantityErrorReset()
+@*/
+PetscErrorCode QuantityErrorShares(Model model, PetscReal value, QuantityError *error)
+{
+  BodyError     bodies;
+  BodyErrorSums sums;
+
+  PetscFunctionBeginUser;
+  for (int c = 0; c < ERROR_CAUSES; c++) error->part[c] = NAN;
+  PetscCall(PetscMalloc1(model->mesh->n_cells, &error->cells));
+  PetscCall(
+    BodyErrorCreate(model->mesh, model->problem->elasticity, model->scene->kinematics, model->problem->trial, &bodies));
+  PetscCall(BodyErrorEvaluate(bodies, model->problem->trial, error->cells, &sums));
+  PetscCall(BodyErrorDestroy(&bodies));
+  error->spread                  = sums.spread;
+  error->part[ERROR_PENETRATION] = error->magnitude = PetscAbsReal(value) * WorstPenetration(model);
+  error->sum                                        = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

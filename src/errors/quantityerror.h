@@ -4,10 +4,14 @@
    solutions, and weighs with them what each cause leaves: the elements of the bodies (errors/bodyerror.h),
    penetration and elastic slip (the derivative by the penalty, solve/penaltyerror.c), and the residual at which the
    solver stopped. Every part is the true less the computed value, in the units of the quantity. A part that is not
-   known is NaN: that of the load steps where the answer depends on the path, and that of the surfaces in contact
+   known is NaN: that of the load steps where the answer depends on the path, unless a second run gives it
+   (QuantityErrorSetSteps(), run/historyerror.c), and that of the surfaces in contact
    where one master is rigid, analytic or of facets. Of smooth masters it is how far they miss their own nodes
    (ContactPairShapeForces()). It is 0 where there is no such cause. That straight edges of
-   elements stand for curved boundaries is in no part. */
+   elements stand for curved boundaries is in no part.
+
+   QuantityErrorShares() serves quantities without a first variation, such as a peak or the end of a contact zone: it
+   says where elements are to become smaller, but not how large the error is. */
 #pragma once
 #include "solve/adjoint.h"
 
@@ -32,4 +36,7 @@ typedef struct {
 } QuantityError;
 
 PetscErrorCode QuantityErrorsEstimate(Model, int n, const Functional[], QuantityError[]);
+PetscErrorCode QuantityErrorShares(Model, PetscReal value, QuantityError *);
+PetscBool      ModelDependsOnPath(Model);
+void           QuantityErrorSetSteps(QuantityError *, PetscReal steps);
 PetscErrorCode QuantityErrorReset(QuantityError *);

@@ -461,17 +461,18 @@ static PetscErrorCode EvaluatePressureMax(Probes probes, Probe *probe, PetscReal
 
 /* Returns the area-weighted mean pressure over the slave nodes that the probe counts, and their area. NaN without
    contact or without a node. */
-static PetscReal MeanPressure(const Probe *probe, const GatherTable *slaves, PetscReal *area)
+static PetscReal MeanPressure(const Probe *probe, int dim, const GatherTable *slaves, PetscReal *area)
 {
-  PetscReal force = 0.0;
+  PetscReal force = 0.0, weight;
 
   *area = 0.0;
   for (PetscInt k = 0; k < slaves->n; k++) {
     const PetscReal *slave = &slaves->row[k * SLAVE_COLUMNS];
 
     if (!ProbeKeeps(probe, slave)) continue;
-    *area += slave[SLAVE_AREA];
-    force += slave[SLAVE_AREA] * slave[SLAVE_PRESSURE];
+    weight = ProbePatchWeight(probe->scene, dim, &slave[SLAVE_REFERENCE]) * slave[SLAVE_AREA];
+    *area += weight;
+    force += weight * slave[SLAVE_PRESSURE];
   }
   return force > 0.0 ? force / *area : NAN;
 }
@@ -483,7 +484,7 @@ static PetscErrorCode EvaluatePressureMean(Probes probes, Probe *probe, PetscRea
 
   PetscFunctionBeginUser;
   PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
-  *value = MeanPressure(probe, slaves, &area);
+  *value = MeanPressure(probe, probes->model->mesh->dim, slaves, &area);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -494,7 +495,7 @@ static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, Pet
 
   PetscFunctionBeginUser;
   PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
-  mean = MeanPressure(probe, slaves, &area);
+  mean = MeanPressure(probe, probes->model->mesh->dim, slaves, &area);
   for (PetscInt k = 0; k < slaves->n; k++) {
     const PetscReal *slave = &slaves->row[k * SLAVE_COLUMNS];
     const PetscReal  off   = slave[SLAVE_PRESSURE] - mean;

@@ -9,6 +9,7 @@ struct _n_ProbeErrors {
   PetscReal     *value; /* of each probe */
   const char   **why;   /* why there is no estimate of it; NULL: there is one */
   QuantityError *error;
+  PetscReal      history_s; /* CPU seconds of the run that gave what the load steps leave; NaN: there was none */
   PetscLogEvent  event;
 };
 
@@ -34,9 +35,10 @@ PetscErrorCode ProbeErrorsCreate(Model model, Probes probes, Scene scene, ProbeE
   *result = NULL;
   if (!scene->output.error) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&errors));
-  errors->model  = model;
-  errors->probes = probes;
-  errors->scene  = scene;
+  errors->model     = model;
+  errors->probes    = probes;
+  errors->scene     = scene;
+  errors->history_s = NAN;
   PetscCall(
     PetscCalloc3(scene->n_probes, &errors->value, scene->n_probes, &errors->why, scene->n_probes, &errors->error));
   for (int i = 0; i < scene->n_probes; i++) errors->why[i] = "the run ended before the end of its load";
@@ -102,6 +104,7 @@ static PetscErrorCode Estimate(ProbeErrors errors, Functional *functional)
 @*/
 PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
 {
+  const int   wanted = errors ? errors->scene->accuracy.probe : -1;
   Functional *functional;
   Model       model;
   PetscBool   ok;
@@ -115,6 +118,10 @@ PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
   PetscCall(ProbesEvaluate(errors->probes, errors->value));
   PetscCall(PetscCalloc1(errors->scene->n_probes, &functional));
   PetscCall(Estimate(errors, functional));
+  if (wanted >= 0 && errors->why[wanted] && !PetscIsInfOrNanReal(errors->value[wanted])) {
+    PetscCall(QuantityErrorReset(&errors->error[wanted]));
+    PetscCall(QuantityErrorShares(model, errors->value[wanted], &errors->error[wanted]));
+  }
   PetscCall(PetscFree(functional));
   PetscCall(PetscLogEventEnd(errors->event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -131,13 +138,44 @@ PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
 
   Output Parameters:
 + value - of the probe
-- why   - why there is no estimate; NULL: there is one
+- why   - why there is no estimate; NULL: there is one. The error of the probe whose accuracy the scene asks for then
+          has what QuantityErrorShares() knows
 @*/
 const QuantityError *ProbeErrorsGet(ProbeErrors errors, int probe, PetscReal *value, const char **why)
 {
   *value = errors->value[probe];
   *why   = errors->why[probe];
   return &errors->error[probe];
+}
+
+/*@
+  ProbeErrorsSetHistory - gives the estimates what the load steps leave of error.
+
+  Not collective
+
+  Input Parameters:
++ errors - the errors
+. steps  - of each probe: true less computed value
+- cpu_s  - CPU seconds that it took to find them
+@*/
+void ProbeErrorsSetHistory(ProbeErrors errors, const PetscReal *steps, PetscReal cpu_s)
+{
+  errors->history_s = cpu_s;
+  for (int i = 0; i < errors->scene->n_probes; i++)
+    if (!errors->why[i]) QuantityErrorSetSteps(&errors->error[i], steps[i]);
+}
+
+/*@
+  ProbeErrorsHistorySeconds - returns the CPU seconds of the run that gave what the load steps leave; NaN: none did.
+
+  Not collective
+
+  Input Parameter:
+. errors - the errors
+@*/
+PetscReal ProbeErrorsHistorySeconds(ProbeErrors errors)
+{
+  return errors->history_s;
 }
 
 /* Prints one probe: the sum, then its parts. */
@@ -178,4 +216,6 @@ void ProbeErrorsPrint(ProbeErrors errors, FILE *stream)
     else
       PrintError(name, errors->value[i], &errors->error[i], stream);
   }
+  if (errors && !isnan((double)errors->history_s))
+    fprintf(stream, "error    what the load steps leave: by a second run, CPU %.2f s\n", (double)errors->history_s);
 }

@@ -106,6 +106,15 @@ static PetscErrorCode VaryDistance(Probes probes, const Probe *probe, Functional
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How much a local node counts in a mean pressure. */
+static PetscReal NodePatchWeight(const Probe *probe, Mesh mesh, PetscInt node)
+{
+  PetscReal X[3];
+
+  for (int i = 0; i < mesh->dim; i++) X[i] = mesh->coords[node * mesh->dim + i] + mesh->centre[i];
+  return ProbePatchWeight(probe->scene, mesh->dim, X);
+}
+
 /* The mean pressure is the sum of the nodes' normal forces over their present areas, weighted by their reference areas.
    That areas and normals change besides is left out. */
 static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functional *f, const char **why)
@@ -125,12 +134,13 @@ static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functi
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(ContactGetNodes(probes->model->contact, probe->pair, probes->model->u, &slaves));
-  for (PetscInt k = 0; k < slaves.n; k++) area += slaves.area[k];
+  for (PetscInt k = 0; k < slaves.n; k++) area += NodePatchWeight(probe, mesh, slaves.node[k]) * slaves.area[k];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
   PetscCall(NewVector(mesh, &f->pressed));
   f->pair = probe->pair;
   for (PetscInt k = 0; k < slaves.n; k++) {
-    const PetscReal weight = slaves.force[k] > 0 ? slaves.area[k] * slaves.pressure[k] / slaves.force[k] : 1;
+    const PetscReal weight = NodePatchWeight(probe, mesh, slaves.node[k]) *
+                             (slaves.force[k] > 0 ? slaves.area[k] * slaves.pressure[k] / slaves.force[k] : 1);
 
     for (int i = 0; i < dim; i++) f->pressed[slaves.node[k] * dim + i] = -slaves.normal[3 * k + i] * weight / area;
   }

@@ -135,6 +135,23 @@ PetscErrorCode ResultsGetError(Results results, int probe, PetscReal *value, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ResultsSetHistoryErrors - gives the estimates of a run what its load steps leave of error.
+
+  Not collective
+
+  Input Parameters:
++ results - of a run whose scene has output.error, at its end
+. steps   - of each probe: true less computed value
+- cpu_s   - CPU seconds that it took to find them
+@*/
+PetscErrorCode ResultsSetHistoryErrors(Results results, const PetscReal *steps, PetscReal cpu_s)
+{
+  PetscFunctionBeginUser;
+  ProbeErrorsSetHistory(results->errors, steps, cpu_s);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Takes the directory back to the loaded checkpoint. */
 static PetscErrorCode ResultsResume(Results results)
 {

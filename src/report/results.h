@@ -38,5 +38,6 @@ PetscErrorCode ResultsStep(Results, const StepRecord *);
 PetscErrorCode ResultsFinish(Results, const RunRecord *);
 PetscErrorCode ResultsArchive(Results, Archive);
 PetscErrorCode ResultsGetProbes(Results, const PetscReal **values);
+PetscErrorCode ResultsSetHistoryErrors(Results, const PetscReal *steps, PetscReal cpu_s);
 PetscErrorCode ResultsGetError(Results, int probe, PetscReal *value, const char **why, const QuantityError **);
 PetscErrorCode ResultsGetUsage(Results, RunUsage *);

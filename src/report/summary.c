@@ -222,6 +222,8 @@ static void AddErrors(cJSON *json, const RunFigures *figures)
 {
   cJSON *map = figures->errors ? cJSON_AddObjectToObject(json, "error") : NULL;
 
+  if (map && !isnan((double)ProbeErrorsHistorySeconds(figures->errors)))
+    AddReal(json, "error_history_cpu_s", ProbeErrorsHistorySeconds(figures->errors));
   for (int i = 0; map && i < figures->scene->n_probes; i++) {
     cJSON               *probe = cJSON_AddObjectToObject(map, figures->scene->probes[i].name), *parts;
     const char          *why;

@@ -103,21 +103,24 @@ double MeshPlanLargest(int n, const MeshFigures m[], int dim, int order, MeshFig
   return low * m[n - 1].factor;
 }
 
-/* The part of the error that is left from one mesh to the next. */
+/* The part that is left of an error from one mesh to the next. Where elements became smaller by the shares of the
+   cells, an error that these do not see falls more slowly than they do: its power is taken as half of theirs. */
 static double PartLeft(const MeshChange *c, int order)
 {
-  const double most = c->finer > 1 ? pow(c->finer, isnan(c->estimate) ? -MESHPLAN_ROUGH_RATE : -FirstRate(order)) : 0;
+  const double rate  = isnan(c->estimate) ? MESHPLAN_ROUGH_RATE : FirstRate(order),
+               least = c->finer > 1 ? pow(c->finer, -rate) : 0;
 
-  if (isnan(c->estimate)) return Within(most, 0, MESHPLAN_SLOWEST);
-  return isfinite(c->fall) ? fmin(fmax(c->fall, c->even ? most : 0), MESHPLAN_SLOWEST) : MESHPLAN_SLOWEST;
+  if (isnan(c->estimate)) return Within(least, 0, MESHPLAN_SLOWEST);
+  if (!isfinite(c->fall)) return MESHPLAN_SLOWEST;
+  return fmin(c->even ? fmax(c->fall, least) : sqrt(c->fall), MESHPLAN_SLOWEST);
 }
 
 /* MeshPlanImplied - gives the error of the last of two meshes that the change of the answer implies. order: of the
    elements. */
 double MeshPlanImplied(const MeshChange *c, int order)
 {
-  const double left = PartLeft(c, order), times = MESHPLAN_SAFETY * left / (1 - left), whole = times * fabs(c->change);
+  const double left = PartLeft(c, order), times = MESHPLAN_SAFETY * left / (1 - left);
 
-  if (isnan(c->estimate)) return whole;
-  return fmin(whole, fabs(c->estimate) + times * fabs(c->change - (c->before - c->estimate)));
+  if (isnan(c->estimate)) return times * fabs(c->change);
+  return MESHPLAN_SAFETY * fabs(c->estimate) + times * fabs(c->change - (c->before - c->estimate));
 }

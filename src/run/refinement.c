@@ -32,6 +32,7 @@ typedef struct {
   PetscReal     value, mesh_s;
   PetscReal implied; /* error of the elements and surfaces by the change of the answer; NaN: there is no mesh before */
   PetscInt  dofs;
+  PetscBool rough; /* there is no estimate of the elements and surfaces, only the change of the answer */
 } SolvedMesh;
 
 typedef struct {
@@ -78,7 +79,9 @@ static PetscReal SurfacesPart(const QuantityError *error)
 /* What the elements and the contact surfaces leave of error, as estimated. */
 static PetscReal MeshEstimate(const QuantityError *error)
 {
-  return PetscAbsReal(error->part[ERROR_BODIES]) + PetscAbsReal(SurfacesPart(error));
+  return isnan((double)error->part[ERROR_BODIES])
+           ? 0
+           : PetscAbsReal(error->part[ERROR_BODIES]) + PetscAbsReal(SurfacesPart(error));
 }
 
 /* What they leave: the estimate, and no less than what the change from the mesh before implies. */
@@ -166,7 +169,7 @@ static PetscReal MeshPart(const QuantityError *error)
 /* The answer of a mesh without the errors of other causes than the mesh, as far as they are known. */
 static PetscReal MeshAnswer(const SolvedMesh *mesh)
 {
-  return mesh->value + mesh->error.sum - MeshPart(&mesh->error);
+  return mesh->value + mesh->error.sum - (mesh->rough ? 0 : MeshPart(&mesh->error));
 }
 
 /* Sum of the magnitudes of what single places leave, by which the fall of the error shows. */
@@ -206,7 +209,7 @@ static PetscErrorCode Record(Refinement *r, double factor)
 
   PetscFunctionBeginUser;
   PetscCall(ResultsGetError(r->run->results, r->wish.probe, &mesh->value, &why, &error));
-  if (why)
+  if (!error->cells)
     PetscCall(RefuseInput(r->run->comm, "%s: the error of '%s' has no estimate: %s",
                           SceneWhere(r->run->scene, "accuracy", "probe"), r->probe, why));
   PetscCall(ResultsGetUsage(r->run->results, &usage));
@@ -214,6 +217,7 @@ static PetscErrorCode Record(Refinement *r, double factor)
   mesh->error       = *error;
   mesh->error.cells = NULL; /* they go with the run */
   mesh->mesh_s      = r->run->mesh_s;
+  mesh->rough       = (PetscBool)(why != NULL);
   r->figures[r->n]  = (MeshFigures){.factor   = factor,
                                     .unknowns = (double)mesh->dofs,
                                     .error    = (double)MeshEstimate(error),
@@ -231,10 +235,15 @@ static void Print(const Refinement *r)
   const SolvedMesh *mesh = Last(r);
   const double      part = 100 / fabs((double)mesh->value);
 
-  Say(r, "mesh %-2d  %" PetscInt_FMT " unknowns, %s %.6g, error %.3g %% =", r->n, mesh->dofs, r->probe,
-      (double)mesh->value, 100 * (double)Error(mesh));
+  Say(r, "mesh %-2d  %" PetscInt_FMT " unknowns, %s %.6g, ", r->n, mesh->dofs, r->probe, (double)mesh->value);
+  if (mesh->rough && r->n == 1)
+    Say(r, "error not known before a second mesh");
+  else
+    Say(r, "error %.3g %% =", 100 * (double)Error(mesh));
   for (int c = 0; c < ERROR_CAUSES; c++)
-    if (isnan((double)mesh->error.part[c]))
+    if (mesh->rough && isnan((double)mesh->error.part[c]))
+      continue;
+    else if (isnan((double)mesh->error.part[c]))
       Say(r, " %s not included", ErrorCauses[c]);
     else if (mesh->error.part[c] != 0)
       Say(r, " %s %+.2g", ErrorCauses[c], part * (double)mesh->error.part[c]);
@@ -334,13 +343,21 @@ static double LargestFactor(Refinement *r)
   return largest;
 }
 
+/* Does the estimate of the last mesh meet the wish, but not what other meshes say? */
+static PetscBool IsDoubted(const Refinement *r)
+{
+  const SolvedMesh *last = Last(r);
+
+  if (last->rough) return (PetscBool)(r->n == 1);
+  return (PetscBool)(OtherError(last) + MeshEstimate(&last->error) <= r->wish.to * PetscAbsReal(last->value));
+}
+
 /* Chooses the next mesh and forecasts it. r->why: there is none. */
 static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
 {
   const SolvedMesh *last    = Last(r);
   const double      largest = LargestFactor(r), present = r->figures[r->n - 1].factor;
-  const PetscBool   doubted =
-    (PetscBool)(OtherError(last) + MeshEstimate(&last->error) <= r->wish.to * PetscAbsReal(last->value));
+  const PetscBool   doubted = IsDoubted(r);
 
   PetscFunctionBeginUser;
   if (r->n == r->wish.meshes)
@@ -418,21 +435,34 @@ static PetscErrorCode SolveNext(Refinement *r, const MeshFigures *next, BurnishS
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The mesh with the least error. What has no estimate has no error either on the first one. */
+static const SolvedMesh *Best(const Refinement *r)
+{
+  const SolvedMesh *best = Last(r);
+
+  for (const SolvedMesh *mesh = r->mesh; mesh < Last(r); mesh++)
+    if (!(mesh->rough && mesh == r->mesh) && Error(mesh) < Error(best)) best = mesh;
+  return best;
+}
+
 /* Says how it ended. */
 static void Conclude(Refinement *r, BurnishStatus *status)
 {
+  const SolvedMesh *best = Best(r);
+
   if (r->why) {
     if (*status == BURNISH_DONE || *status == BURNISH_NOT_CONVERGED) *status = BURNISH_INACCURATE;
     snprintf(r->run->message, sizeof(r->run->message),
              "the accuracy of %g %% is not %s: %s; the best is %s %.6g with an error of %.3g %%, in %.600s/mesh-%d",
-             100 * (double)r->wish.to, Error(Last(r)) <= r->wish.to ? "confirmed by a second mesh" : "reached", r->why,
-             r->probe, (double)Last(r)->value, 100 * (double)Error(Last(r)), r->directory, r->n);
+             100 * (double)r->wish.to, Error(best) <= r->wish.to ? "confirmed by a second mesh" : "reached", r->why,
+             r->probe, (double)best->value, 100 * (double)Error(best), r->directory, (int)(best - r->mesh) + 1);
     ExplanationAppend(r->run->message, sizeof(r->run->message), EXPLANATION_UNSOLVED);
     if (!r->rank) fprintf(stderr, "burnish: %s\n", r->run->message);
   } else
     Say(r, "done: %s %.6g with an estimated error of %.3g %%%s, %d meshes, %.1f s of CPU; results in %s/mesh-%d\n",
         r->probe, (double)Last(r)->value, 100 * (double)Error(Last(r)),
-        isnan((double)Last(r)->error.part[ERROR_GEOMETRY])
+        Last(r)->rough ? ", that of the mesh by the change of the answer alone"
+        : isnan((double)Last(r)->error.part[ERROR_GEOMETRY])
           ? ", that of the contact surfaces by the change of the answer alone"
           : "",
         r->n, r->cpu_s, r->directory, r->n);

@@ -6,6 +6,7 @@
 #include "base/explanation.h"
 #include "base/interruption.h"
 #include "base/refusal.h"
+#include "historyerror.h"
 #include "report/precheck.h"
 #include "report/rundirectory.h"
 #include "sensitivity.h"
@@ -128,6 +129,7 @@ static PetscErrorCode RunMonitor(LoadStepper stepper, const StepRecord *record, 
 
   PetscFunctionBeginUser;
   PetscCall(ResultsStep(run->results, record));
+  if (run->scene->output.error == SCENE_ERROR_HISTORY) PetscCall(HistoryErrorAddStep(run, record->t));
   PetscCall(InterruptionAsked(run->comm, &why));
   if (why || (every && record->step % every == 0)) {
     PetscCall(CheckpointWrite(run->checkpoint));
@@ -186,6 +188,26 @@ static PetscErrorCode RunSolveSteps(Run *run, StepperReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Solves a scene besides, and gives its probes. */
+static PetscErrorCode RunAgain(const Run *run, const RunInput *input, PetscReal *values, PetscBool *known)
+{
+  Run              again = {.comm = run->comm};
+  const PetscReal *found;
+  BurnishStatus    status;
+  PetscErrorCode   code;
+
+  PetscFunctionBeginUser;
+  code = RunScene(&again, input, &status);
+  if (code && code != REFUSED) PetscCall(code);
+  *known = (PetscBool)(!code && status == BURNISH_DONE);
+  if (*known) {
+    PetscCall(ResultsGetProbes(again.results, &found));
+    PetscCall(PetscArraycpy(values, found, run->scene->n_probes));
+  }
+  PetscCall(RunDestroy(&again));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Steps the model to t = 1 and writes what is to be written. */
 static PetscErrorCode RunSolve(Run *run, const RunInput *input, BurnishStatus *status)
 {
@@ -198,6 +220,7 @@ static PetscErrorCode RunSolve(Run *run, const RunInput *input, BurnishStatus *s
   PetscFunctionBeginUser;
   PetscCall(RunCreateStepper(run, input));
   PetscCall(RunSolveSteps(run, &report));
+  if (report.done) PetscCall(HistoryErrorFind(run, input, RunAgain));
   if (!report.done && run->kept != report.steps) PetscCall(CheckpointWrite(run->checkpoint));
   *status = report.done ? BURNISH_DONE : report.stopped ? BURNISH_STOPPED : BURNISH_NOT_CONVERGED;
   if (*status == BURNISH_DONE) run->message[0] = '\0';
@@ -263,6 +286,7 @@ PetscErrorCode RunDestroy(Run *run)
     PetscCall(PetscFree(run->options[i]));
   }
   PetscCall(PetscFree(run->options));
+  PetscCall(PetscFree(run->ends));
   PetscCall(SceneDestroy(&run->scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

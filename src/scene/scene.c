@@ -213,7 +213,7 @@ static PetscErrorCode SceneReadOutput(Scene scene)
   PetscFunctionBeginUser;
   scene->output.every            = SchemaInteger(SceneDocument(scene), "output.every");
   scene->output.checkpoint       = SchemaInteger(SceneDocument(scene), "output.checkpoint");
-  scene->output.error            = SchemaBoolean(SceneDocument(scene), "output.error");
+  scene->output.error            = SchemaChoice(SceneDocument(scene), "output.error");
   scene->output.certificate      = SchemaBoolean(SceneDocument(scene), "output.certificate");
   scene->certificate.penetration = SchemaReal(SceneDocument(scene), "certificate.penetration");
   for (int k = 0; k < (int)PETSC_STATIC_ARRAY_LENGTH(names); k++) {

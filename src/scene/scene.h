@@ -179,13 +179,14 @@ typedef struct {
   char     *target;    /* surface of a reaction, pair of a contact quantity, else NULL */
   char     *body;      /* volume, or NULL */
   int       component; /* 0 to 2 */
-  double point[2][3];  /* of displacement, distance and gap: reference coordinates; of a torque: of its axis (length) */
+  double point[2][3];  /* of displacement, distance, gap and patch: reference coordinates; of a torque: of its axis (length) */
   int    axis;         /* of contact_edge and of a torque: 0 to 2 */
   int    max_side;     /* of contact_edge: 1 for max, 0 for min */
   /* Of contact_edge and pressure_max: 1 if only nodes count whose reference coordinate at_axis equals at_value. */
   int    has_at;
   int    at_axis;
   double at_value; /* length */
+  double within;   /* of pressure_mean: radius of the patch around the point (length); 0: the whole surface */
   int    rms;      /* of pressure_deviation: 1 for rms, 0 for max */
   /* Of pressure_deviation: 0 takes all nodes; 1 (excluding) leaves out the nodes within edge_faces mean face sizes of a
      free edge; 2 (only) takes only those nodes. */
@@ -211,6 +212,9 @@ typedef struct {
   double point[3];
   double size; /* of its elements; 0: that of the body */
 } SceneCadSurface;
+
+/* Errors of probes: not estimated; estimated; with what the load steps leave, by a second run */
+typedef enum { SCENE_ERROR_NO, SCENE_ERROR_YES, SCENE_ERROR_HISTORY } SceneErrorWish;
 
 /* The accuracy that a run is to reach on meshes of its own choice */
 typedef struct {
@@ -287,7 +291,7 @@ typedef struct {
     int every;      /* steps between two outputs, or 0 for the last state only */
     int checkpoint; /* steps between two checkpoints, or 0 for one only when the run ends early */
     int displacement, stress, contact, principal, strain; /* which fields are written */
-    int error;                                            /* 1 if the errors of the probes are estimated */
+    int error; /* are the errors of the probes estimated: SceneErrorWish */
     int certificate;                                      /* 1 if each accepted step is judged */
   } output;
   SceneAccuracy     accuracy;

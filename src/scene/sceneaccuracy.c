@@ -78,7 +78,7 @@ PetscErrorCode SceneReadAccuracy(Scene scene)
   if (SchemaHas(document, "accuracy.limit.time")) scene->accuracy.cpu_s = SchemaReal(document, "accuracy.limit.time");
   if (SchemaHas(document, "accuracy.limit.memory"))
     scene->accuracy.rss_mb = SchemaReal(document, "accuracy.limit.memory");
-  scene->output.error = 1;
+  scene->output.error = PetscMax(scene->output.error, SCENE_ERROR_YES);
   ReleasePenalties(scene);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -18,7 +18,7 @@ static const struct {
   [PROBE_GAP]                = {"gap", "at", ""},
   [PROBE_CONTACT_EDGE]       = {"contact_edge", "axis side", "at"},
   [PROBE_PRESSURE_MAX]       = {"pressure_max", "", "at"},
-  [PROBE_PRESSURE_MEAN]      = {"pressure_mean", "", ""},
+  [PROBE_PRESSURE_MEAN]      = {"pressure_mean", "", "at within"},
   [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", "", "measure excluding only"},
   [PROBE_FRICTION_FORCE]     = {"friction_force", "component", ""},
   [PROBE_FRICTION_TORQUE]    = {"friction_torque", "", "axis at"},
@@ -49,8 +49,8 @@ static int ProbeHasWord(const char *words, const char *word)
    that its kind does not take. */
 static PetscErrorCode SceneProbeKind(Scene scene, SceneProbe *probe)
 {
-  static const char *const Optional[] = {"component", "body",    "change",    "at",  "axis",
-                                         "side",      "measure", "excluding", "only"};
+  static const char *const Optional[] = {"component", "body",    "change",    "at",   "axis",
+                                         "side",      "measure", "excluding", "only", "within"};
   Node                     node       = NodeFind(SceneDocument(scene)->root, probe->path);
   int                      kinds      = 0;
   char                     allowed[200];
@@ -168,6 +168,23 @@ static PetscErrorCode SceneRefuseProbeFluid(Scene scene, SceneProbe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads the patch over which a mean is taken. */
+static PetscErrorCode SceneReadProbePatch(Scene scene, SceneProbe *probe)
+{
+  const Node at = SceneNode(scene, probe->path, "at");
+
+  PetscFunctionBeginUser;
+  if (!at && !SceneHas(scene, probe->path, "within")) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!at || !SceneHas(scene, probe->path, "within"))
+    PetscCall(SceneRefuse(scene, probe->path, at ? "within" : "at",
+                          "is missing; allowed: at and within together, the middle and the radius of a patch", NULL));
+  if (at->kind != NODE_LIST)
+    PetscCall(SceneRefuse(scene, probe->path, "at", "has the wrong type; allowed: the middle of the patch", NULL));
+  (void)SceneReals(scene, probe->path, "at", probe->point[0]);
+  probe->within = SchemaReal(SceneDocument(scene), "%s.within", probe->path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Reads the key `at`. It is a point for a probe of the gap, and one reference coordinate for the other kinds. */
 static PetscErrorCode SceneReadProbeAt(Scene scene, SceneProbe *probe)
 {
@@ -176,6 +193,10 @@ static PetscErrorCode SceneReadProbeAt(Scene scene, SceneProbe *probe)
   PetscFunctionBeginUser;
   if (probe->kind == PROBE_FRICTION_TORQUE) {
     PetscCall(SceneReadProbeTorque(scene, probe));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (probe->kind == PROBE_PRESSURE_MEAN) {
+    PetscCall(SceneReadProbePatch(scene, probe));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (probe->kind == PROBE_GAP) {

@@ -323,7 +323,7 @@ const SchemaKey SchemaKeys[] = {
    .help = "penalty at the start of the run"},
   {"contact.*.penalty.scale", REAL | CHOICE, .values = "auto", .range = "(0, inf)", .preset = "auto",
    .help = "factor on the penalty; for initial: auto, 1 is the stiffness of the softer body's elements below the "
-           "surface; auto: " SCENE_PENALTY_SCALE_TEXT " (" SCENE_FRICTION_SCALE_TEXT " with friction), raised by the run where penetration leaves more than 0.4 % of error; "
+           "surface; auto: " SCENE_PENALTY_SCALE_TEXT " (" SCENE_FRICTION_SCALE_TEXT " with friction), raised by the run where penetration leaves more than 0.4 % of error; with accuracy a number is raised, too, until penetration leaves a third of what is allowed; "
            "1 with another initial value, adjust or augment"},
   {"contact.*.penalty.adjust", BOOLEAN, .preset = "false",
    .help = "true: the penalty follows the penetration; needs g_min, g_max and unit"},
@@ -428,8 +428,11 @@ const SchemaKey SchemaKeys[] = {
   {"probes.*.body", TEXT, .help = "volume of the node, if two bodies have a node at the point"},
   {"probes.*.change", BOOLEAN, .preset = "false", .help = "of distance; true: the reference distance is subtracted"},
   {"probes.*.at", POINT | MAP, .unit = "length",
-   .help = "for gap a point; for friction_torque a point of the axis, by default the origin; for contact_edge and "
-           "pressure_max one reference coordinate, such as {z: 100}"},
+   .help = "for gap a point; for friction_torque a point of the axis, by default the origin; for pressure_mean the middle "
+           "of a patch; for contact_edge and pressure_max one reference coordinate, such as {z: 100}"},
+  {"probes.*.within", REAL, .range = "(0, inf)", .unit = "length",
+   .help = "of pressure_mean: the mean is that of a patch of this radius around the point at; a node at the distance r "
+           "counts (1 - (r/within)^2)^2 times its area"},
   {"probes.*.at.x|y", REAL, .unit = "length", .help = "reference coordinate"},
   {"probes.*.at.z", REAL, SOLID, .unit = "length", .help = "reference coordinate"},
   {"probes.*.axis", CHOICE, .values = "x | y | z",
@@ -454,8 +457,9 @@ const SchemaKey SchemaKeys[] = {
    .help = "steps between two checkpoints; 0: only when the run ends early"},
   {"output.certificate", BOOLEAN, .preset = "true",
    .help = "true: each step is judged before it is accepted: nothing passed through anything unseen"},
-  {"output.error", BOOLEAN, .preset = "false",
-   .help = "true: the error of each probe is estimated at the end, split by cause; one more solve for each"},
+  {"output.error", CHOICE, .values = "false | true | history", .preset = "false",
+   .help = "true: the error of each probe is estimated at the end, split by cause; one more solve for each. history: where "
+           "the answer depends on the way to it, what the load steps leave, too, by a second run with half of them"},
   {"accuracy", MAP,
    .help = "meshes are made and solved on until a probe is accurate; the run ends with status 5 if it does not get there"},
   {"accuracy.probe", TEXT, REQUIRED, .help = "name of the probe; its error must have an estimate (output.error)"},

@@ -65,6 +65,15 @@ for scene, mesh, true in (("ring_in_ring", "n_inner: 8, n_outer: 10", 6.43773),
     check.holds("the surface leaves more than the bodies",
                 abs(shrunk["causes"]["contact surfaces"]) > abs(shrunk["causes"]["bodies"]))
 check.near("the same on all ranks", shrunk["causes"]["contact surfaces"], -9.906608, 1e-4)
+# The load steps of a body that yields, by a second run; the reference has steps of 1/320
+force = {}
+for way, dt in ("true", 0.1), ("history", 0.1), ("true", 1 / 320):
+    found = run(args, SCENES / "plastic_cook.yaml", out="steps", overrides=[
+        "mesh.parameters.n=4", f"output.error={way}", f"stepping.initial={dt!r}"]).summary()
+    force[way, dt] = found["probes"]["force"], found["error"]["force"]["causes"]["load steps"]
+check.holds("unless it is paid for, the history is not included", force["true", 0.1][1] == "not included")
+ratio = (force["true", 1 / 320][0] - force["history", 0.1][0]) / force["history", 0.1][1]
+check.holds("history: effectivity", 0.5 <= ratio <= 2, f"{ratio:.3f}")
 rigid = run(args, RUNS / "o_ring.yaml", out="rigid", overrides=["output.error=true", "mesh.parameters.n=6"]).summary()
 check.holds("rigid masters are not included",
             rigid["error"]["force"]["causes"]["contact surfaces"] == "not included")

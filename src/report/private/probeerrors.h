@@ -11,6 +11,8 @@ typedef struct _n_ProbeErrors *ProbeErrors;
 
 PetscErrorCode       ProbeErrorsCreate(Model, Probes, Scene, ProbeErrors *);
 PetscErrorCode       ProbeErrorsDestroy(ProbeErrors *);
+void                 ProbeErrorsSetHistory(ProbeErrors, const PetscReal *steps, PetscReal cpu_s);
+PetscReal            ProbeErrorsHistorySeconds(ProbeErrors);
 PetscErrorCode       ProbeErrorsEstimate(ProbeErrors);
 const QuantityError *ProbeErrorsGet(ProbeErrors, int probe, PetscReal *value, const char **why);
 void                 ProbeErrorsPrint(ProbeErrors, FILE *);

@@ -16,6 +16,17 @@ typedef struct {
   PetscReal         plain; /* the value at the last evaluation, before `absolute` and `factor` */
 } Probe;
 
+/* How much a slave node counts in a mean pressure. X: its reference place (length), not relative to the mesh's centre.
+ */
+static inline PetscReal ProbePatchWeight(const SceneProbe *scene, int dim, const PetscReal *X)
+{
+  PetscReal square = 0;
+
+  if (!(scene->within > 0)) return 1;
+  for (int i = 0; i < dim; i++) square += PetscSqr((X[i] - scene->point[0][i]) / scene->within);
+  return square < 1 ? PetscSqr(1 - square) : 0;
+}
+
 struct _n_Probes {
   Model        model;
   Scene        scene;

@@ -8,10 +8,9 @@
    MeshPlanLargest() gives the factor of the largest mesh that limits of time and memory allow.
 
    Two meshes are witnesses of each other: where the error falls by the part q from one to the next, the change of the
-   answer is (1 - q) / q times what is left. MeshPlanImplied() gives that from the change and the fall, without any
-   trust in the size of an estimate, and with a factor of safety. Where the estimates of both meshes forecast the
-   change, they are right as far: then only what they do not forecast counts so, beside the estimate. Source: Roache,
-   Journal of Fluids Engineering 116 (1994), 405. */
+   answer is (1 - q) / q times what is left. MeshPlanImplied() gives that of the change that the estimates of both meshes
+   have not forecast, and adds the estimate of the last mesh, both with a factor of safety. Source: Roache, Journal of
+   Fluids Engineering 116 (1994), 405. */
 #pragma once
 
 typedef struct {
