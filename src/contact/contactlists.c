@@ -360,15 +360,17 @@ static PetscBool PairDrifts(const ContactPair *pair)
 /* Says whether fresh lists find the same of this term as the solve did. An open term must be open. On facets a closed
    gap must agree. On fits the gap changes a little with their frames, so frames and points must agree, and with
    offsets the gap must agree within `drift`. Area factors must agree on both, weighted by the term's pressure over
-   the pair's largest one, or be as close to a jump of what the solution asks for: factor_drift. depth is the largest
-   penetration of the pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead.
- */
-static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscInt c, PetscReal gap,
+   the pair's largest one, or be as close to a jump of what the solution asks for: factor_drift. At such a jump fresh
+   factors weight the points of a term in another way, or leave it none: closed gaps are compared with the factors in
+   force. gaps are those of the points by fresh lists. depth is the largest penetration of the pair; where the pair is
+   augmented and penetrations go to zero, the bound on them counts instead. */
+static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscInt c, const PetscReal *gaps,
                             const PetscReal *factor, PetscReal t, PetscReal depth, PetscReal pressure, PetscReal drift,
                             PetscReal factor_drift)
 {
-  const PetscReal rest = ContactTermOnsetGap(pair, c, t), old = pair->now.gap[c],
-                  own   = PetscMax(TermPressure(pair, c, old, t), TermPressure(pair, c, gap, t)),
+  const PetscReal gap  = ContactTermGap(pair, factor, gaps, c, NULL),
+                  same = ContactTermGap(pair, pair->factor, gaps, c, NULL), rest = ContactTermOnsetGap(pair, c, t),
+                  old = pair->now.gap[c], own = PetscMax(TermPressure(pair, c, old, t), TermPressure(pair, c, gap, t)),
                   share = pressure > 0 ? PetscMin(own / pressure, 1) : 1;
   PetscBool fitted      = PETSC_TRUE;
   PetscReal tolerance;
@@ -386,28 +388,28 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
     if (share * PetscMin(PetscAbsReal(factor[q] - pair->factor[q]), high - low) > factor_drift) return PETSC_FALSE;
     if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
   }
-  if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(gap - old) <= tolerance);
-  return (PetscBool)(!PetscIsNanReal(gap) && (!PairDrifts(pair) || PetscAbsReal(gap - old) <= drift));
+  if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(same - old) <= tolerance);
+  return (PetscBool)(!PetscIsNanReal(same) && (!PairDrifts(pair) || PetscAbsReal(same - old) <= drift));
 }
 
 /* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. */
 static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscReal lag, PetscBool *agrees)
 {
-  PetscReal depth = 0, pressure = 0, drift, factor_drift = CONTACT_FACTOR_AGREES, *gaps;
+  PetscReal depth = 0, pressure = 0, drift, factor_drift = CONTACT_FACTOR_AGREES, *gaps, *factor;
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
   drift = PairDrifts(pair) ? lag * CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
   if (pair->friction) factor_drift = PetscMin(factor_drift, lag * CONTACT_OFFSET_AGREES);
   *agrees = PETSC_TRUE;
-  PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
+  PetscCall(PetscMalloc2(pair->next->n_slaves, &gaps, pair->next->n_slaves, &factor));
+  for (PetscInt q = 0; q < pair->next->n_slaves; q++) factor[q] = PetscMax(pair->factor[q], pair->next_factor[q]);
   if (pair->fit.fitted) TimingBegin(TIMING_FIT);
-  PetscCall(ContactPointGaps(pair, pair->next, pair->next_factor, NULL, NULL, gaps, NULL));
+  PetscCall(ContactPointGaps(pair, pair->next, factor, NULL, NULL, gaps, NULL));
   if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
-    *agrees = TermAgrees(pair, pair->next, c, ContactTermGap(pair, pair->next_factor, gaps, c, NULL), pair->next_factor,
-                         t, depth, pressure, drift, factor_drift);
-  PetscCall(PetscFree(gaps));
+    *agrees = TermAgrees(pair, pair->next, c, gaps, pair->next_factor, t, depth, pressure, drift, factor_drift);
+  PetscCall(PetscFree2(gaps, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

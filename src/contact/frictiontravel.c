@@ -24,8 +24,9 @@ void FrictionTravelBegin(ContactPair *pair, PetscReal t)
   for (PetscInt c = 0; c < pair->n; c++) pair->friction->pressed[c] = AcceptedForce(pair, c, t);
 }
 
-/* The part of the force of a pair at nodes that came into contact in the step and stick now, or at nodes that left it
-   where that is less. Where contact only grows, or only shrinks, it does not travel. */
+/* The force of a pair at nodes that came into contact in the step and stick now, or at nodes that left it where that is
+   less, as a part of the larger one of the forces before and now. Where contact only grows, or only shrinks, it does not
+   travel, and a load that begins in the step has not travelled. */
 static PetscErrorCode PairTravel(const ContactPair *pair, PetscReal *travel)
 {
   PetscReal sum[4] = {0, 0, 0, 0}; /* before, of it left; now, of it come in */
@@ -40,7 +41,7 @@ static PetscErrorCode PairTravel(const ContactPair *pair, PetscReal *travel)
     sum[3] += before > 0 || pair->now.slips[c] ? 0 : now;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPIU_SUM, pair->mesh->comm));
-  *travel = sum[0] > 0 && sum[2] > 0 ? PetscMin(sum[1] / sum[0], sum[3] / sum[2]) : 0;
+  *travel = sum[0] > 0 && sum[2] > 0 ? PetscMin(sum[1], sum[3]) / PetscMax(sum[0], sum[2]) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

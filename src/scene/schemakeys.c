@@ -367,9 +367,9 @@ const SchemaKey SchemaKeys[] = {
            "down to dt_min. 0: no bound, as without the key where control is fixed"},
   {"stepping.contact_travel", REAL, .range = "[0, 1]", .preset = "0.02",
    .help = "how far a contact with friction may travel along its slave in a step, as it does where bodies roll: the part "
-           "of its force at nodes that have come into contact in the step and stick, at most the part at nodes that have "
-           "left. A step with more is repeated with a smaller dt as long as that lessens it, down to dt_min. 0: no bound, "
-           "as without the key where control is fixed"},
+           "of its force at nodes that have come into contact in the step and stick, at most that of nodes that have "
+           "left, over the larger one of the forces before and now. A step with more is repeated with a smaller dt as "
+           "long as that lessens it, down to dt_min. 0: no bound, as without the key where control is fixed"},
   {"stepping.damping", CHOICE, .values = "none | auto", .preset = "none",
    .help = "auto: where static steps fail, the bodies are followed in pseudo-time, slowed down by a viscous restraint "
            "that is taken away before the step ends; the last screen says how much energy it took"},

@@ -68,8 +68,8 @@ before, after = advises("scatter", RUNS / "hertz_line.yaml", *LINE, "contact.0.p
 check.holds("scatter: figures", before["pressure_scatter"] > 3 * after["pressure_scatter"],
             f"{before['pressure_scatter']:.3g}, {after['pressure_scatter']:.3g}")
 
-# A floor touches the lower block from below with less than 1e-5 of what the other pair bears, through a soft penalty: what
-# that leaves of error is large as a part of this force, and next to nothing in the model.
+# A floor touches the lower block from below with less than 1e-5 of what the other pair bears, through a soft penalty:
+# what that leaves of error is large as a part of this force, and next to nothing in the model.
 light = run(args, STACK, out="light", overrides=[
     "mesh.parameters.floor=0.01", f"bodies.2={{volume: floor, {SVK}}}", "contact.0.penalty.scale=1000",
     "contact.1={name: touch, slave: floor_top, master: lower_bottom, penalty: {scale: 0.1}}",
