@@ -1,7 +1,8 @@
 /* A balanced binary tree over the boxes. Each node is halved at the median centre along its widest direction until one
-   box is left. The nodes are in one array in preorder: node i with n boxes has its left half of n/2 boxes at node i + 1
-   and the rest at node i + 2 (n/2), so that neither children nor ranges are stored. The boxes are halved by their
-   number and not by their place, which keeps the depth at log2 n for any boxes, also for equal ones. */
+   box is left. Where boxes have directions, these count as places besides. The nodes are in one array in preorder: node
+   i with n boxes has its left half of n/2 boxes at node i + 1 and the rest at node i + 2 (n/2), so that neither
+   children nor ranges are stored. The boxes are halved by their number and not by their place, which keeps the depth at
+   log2 n for any boxes, also for equal ones. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,10 +30,14 @@ struct _n_Tree {
 typedef struct {
   int           dim;
   const double *lower, *upper;
+  const double *direction; /* NULL: they have none */
+  double        turn;      /* the length that a direction of length 1 counts as */
 } Boxes;
 
+/* The place of a box along direction k: that of its centre, or from dim on that of its own direction. */
 static double Centre(const Boxes *boxes, int box, int k)
 {
+  if (k >= boxes->dim) return boxes->turn * boxes->direction[(size_t)box * boxes->dim + k - boxes->dim];
   return 0.5 * boxes->lower[(size_t)box * boxes->dim + k] + 0.5 * boxes->upper[(size_t)box * boxes->dim + k];
 }
 
@@ -88,34 +93,68 @@ static Range Right(const Range *range)
   return (Range){0, range->node + 2 * half, range->first + half, range->count - half};
 }
 
+/* How far the places of some boxes lie apart along direction k. */
+static double Width(const Boxes *boxes, const int *order, int count, int k)
+{
+  double low = INFINITY, high = -INFINITY;
+
+  for (int i = 0; i < count; ++i) {
+    const double centre = Centre(boxes, order[i], k);
+
+    low  = fmin(low, centre);
+    high = fmax(high, centre);
+  }
+  return high - low;
+}
+
 /* Sets the boxes and the order of a subtree. */
 static void BuildRange(BoxTree tree, const Boxes *boxes, Range range)
 {
   const int dim   = tree->dim;
   double   *lower = tree->box + (size_t)range.node * 2 * dim, *upper = lower + dim, widest = -1;
   int      *order = tree->order + range.first, along = 0;
-  double    low[MAX_DIM], high[MAX_DIM];
 
   for (int k = 0; k < dim; ++k) {
-    lower[k] = low[k] = INFINITY;
-    upper[k] = high[k] = -INFINITY;
+    lower[k] = INFINITY;
+    upper[k] = -INFINITY;
     for (int i = 0; i < range.count; ++i) {
-      const double centre = Centre(boxes, order[i], k);
-
       lower[k] = fmin(lower[k], boxes->lower[(size_t)order[i] * dim + k]);
       upper[k] = fmax(upper[k], boxes->upper[(size_t)order[i] * dim + k]);
-      low[k]   = fmin(low[k], centre);
-      high[k]  = fmax(high[k], centre);
     }
-    if (high[k] - low[k] > widest) {
-      widest = high[k] - low[k];
-      along  = k;
-    }
+  }
+  for (int k = 0; k < (boxes->direction ? 2 : 1) * dim; ++k) {
+    const double width = Width(boxes, order, range.count, k);
+
+    if (!(width > widest)) continue;
+    widest = width;
+    along  = k;
   }
   if (range.count == 1) return;
   Select(boxes, along, order, range.count, range.count / 2);
   BuildRange(tree, boxes, Left(&range));
   BuildRange(tree, boxes, Right(&range));
+}
+
+/* Sets the components of the directions below a subtree. */
+static void SpanDirections(BoxTree tree, const double *direction, Range range)
+{
+  const int dim  = tree->dim;
+  double   *mine = tree->facing + (size_t)range.node * 2 * dim;
+  Range     half[2];
+
+  for (int k = 0; k < dim; ++k) mine[k] = mine[dim + k] = direction[(size_t)tree->order[range.first] * dim + k];
+  if (range.count == 1) return;
+  half[0] = Left(&range);
+  half[1] = Right(&range);
+  for (int i = 0; i < 2; ++i) {
+    const double *below = tree->facing + (size_t)half[i].node * 2 * dim;
+
+    SpanDirections(tree, direction, half[i]);
+    for (int k = 0; k < dim; ++k) {
+      mine[k]       = fmin(mine[k], below[k]);
+      mine[dim + k] = fmax(mine[dim + k], below[dim + k]);
+    }
+  }
 }
 
 /*@
@@ -137,22 +176,52 @@ static void BuildRange(BoxTree tree, const Boxes *boxes, Range range)
 @*/
 int BoxTreeBuild(int dim, int n, const double *lower, const double *upper, BoxTree *tree)
 {
-  const Boxes boxes = {dim, lower, upper};
-  BoxTree     t     = calloc(1, sizeof(*t));
+  return BoxTreeBuildFacing(dim, n, lower, upper, NULL, tree);
+}
+
+/*@
+  BoxTreeBuildFacing - builds the tree of some boxes that have directions, for BoxTreeClosest() with a side
+
+  Not collective, plain C
+
+  Input Parameters:
++ dim       - 1 to 3
+. n         - number of boxes, which may be 0
+. lower     - [n][dim] lower corners (length), not kept
+. upper     - [n][dim] upper corners (length), not kept
+- direction - [n][dim] of length 1, not kept; NULL: as BoxTreeBuild() does
+
+  Output Parameter:
+. tree - freed with BoxTreeDestroy(); NULL without memory
+
+  Notes:
+  Returns 0, or 1 if there is not enough memory.
+
+  Boxes that look different ways go to different halves: turned round, a direction counts as much as the whole width of
+  the boxes. What looks away from a point is left out as a whole then, and the far side of a sheet as what lies behind.
+@*/
+int BoxTreeBuildFacing(int dim, int n, const double *lower, const double *upper, const double *direction, BoxTree *tree)
+{
+  const size_t nodes = (size_t)2 * n + 1;
+  Boxes        boxes = {dim, lower, upper, direction, 0};
+  BoxTree      t     = calloc(1, sizeof(*t));
 
   *tree = t;
   if (!t) return 1;
   t->dim   = dim;
   t->n     = n;
-  t->box   = malloc(sizeof(*t->box) * ((size_t)2 * n + 1) * 2 * dim);
+  t->box   = malloc(sizeof(*t->box) * nodes * 2 * dim);
   t->order = malloc(sizeof(*t->order) * ((size_t)n + 1));
   t->queue = malloc(sizeof(*t->queue) * ((size_t)n + 1));
-  if (!t->box || !t->order || !t->queue) {
+  if (direction) t->facing = malloc(sizeof(*t->facing) * nodes * 2 * dim);
+  if (!t->box || !t->order || !t->queue || (direction && !t->facing)) {
     BoxTreeDestroy(tree);
     return 1;
   }
   for (int i = 0; i < n; ++i) t->order[i] = i;
+  for (int k = 0; k < dim && n; ++k) boxes.turn = fmax(boxes.turn, Width(&boxes, t->order, n, k) / 2);
   if (n) BuildRange(t, &boxes, (Range){0, 0, 0, n});
+  if (n && direction) SpanDirections(t, direction, (Range){0, 0, 0, n});
   return 0;
 }
 
@@ -307,49 +376,6 @@ static int Nearer(BoxTree tree, const Range *a, const Range *b)
   return a->count == 1 ? tree->order[a->first] < tree->order[b->first] : a->node < b->node;
 }
 
-/* Sets the components of the directions below a subtree. */
-static void SpanDirections(BoxTree tree, const double *direction, Range range)
-{
-  const int dim  = tree->dim;
-  double   *mine = tree->facing + (size_t)range.node * 2 * dim;
-  Range     half[2];
-
-  for (int k = 0; k < dim; ++k) mine[k] = mine[dim + k] = direction[(size_t)tree->order[range.first] * dim + k];
-  if (range.count == 1) return;
-  half[0] = Left(&range);
-  half[1] = Right(&range);
-  for (int i = 0; i < 2; ++i) {
-    const double *below = tree->facing + (size_t)half[i].node * 2 * dim;
-
-    SpanDirections(tree, direction, half[i]);
-    for (int k = 0; k < dim; ++k) {
-      mine[k]       = fmin(mine[k], below[k]);
-      mine[dim + k] = fmax(mine[dim + k], below[dim + k]);
-    }
-  }
-}
-
-/*@
-  BoxTreeSetDirections - gives each box a direction, for BoxTreeClosest() with a side
-
-  Not collective, plain C
-
-  Input Parameters:
-+ tree      - the tree
-- direction - [n][dim], not kept
-
-  Note:
-  Returns 0, or 1 if there is not enough memory.
-@*/
-int BoxTreeSetDirections(BoxTree tree, const double *direction)
-{
-  free(tree->facing);
-  tree->facing = malloc(sizeof(*tree->facing) * ((size_t)2 * tree->n + 1) * 2 * tree->dim);
-  if (!tree->facing) return 1;
-  if (tree->n) SpanDirections(tree, direction, (Range){0, 0, 0, tree->n});
-  return 0;
-}
-
 /* May a direction below a node be opposed to the side's own one? */
 static int MayOppose(BoxTree tree, int node, const BoxTreeSide *side)
 {
@@ -424,7 +450,7 @@ static Range Pop(BoxTree tree, int length)
   Note:
   Boxes of equal distance are visited by number. A box whose distance equals the bound is visited too, so that of two
   equally near facets both are seen. visit must not call BoxTreeClosest() on the same tree, which keeps the queue.
-  A side that asks for opposed directions needs BoxTreeSetDirections().
+  A side that asks for opposed directions needs BoxTreeBuildFacing().
 @*/
 void BoxTreeClosest(BoxTree tree, const double *point, const BoxTreeSide *side, double *bound,
                     void (*visit)(void *context, int index, double *bound), void *context)

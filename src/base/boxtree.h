@@ -1,9 +1,9 @@
 /* A static tree of axis-aligned boxes for the local part of the contact search. Plain C.
 
-   BoxTreeBuild() makes the tree and is the only function that allocates memory; BoxTreeDestroy() frees it.
+   BoxTreeBuild() makes the tree, BoxTreeBuildFacing() one whose boxes have directions; BoxTreeDestroy() frees it.
    BoxTreeNear() gives all boxes around a point, BoxTreeMeet() all that a box meets. BoxTreeClosest() is for a search
-   in which each box that was seen may make the rest superfluous, such as that for the closest facet; after
-   BoxTreeSetDirections() it leaves out what faces away, and what lies behind. The tree keeps the queue of
+   in which each box that was seen may make the rest superfluous, such as that for the closest facet; with
+   directions it leaves out what faces away, and what lies behind. The tree keeps the queue of
    BoxTreeClosest(), so that one such search runs in it at a time. */
 #pragma once
 
@@ -19,9 +19,10 @@ typedef struct {
 } BoxTreeSide;
 
 int  BoxTreeBuild(int dim, int n, const double *lower, const double *upper, BoxTree *tree);
+int  BoxTreeBuildFacing(int dim, int n, const double *lower, const double *upper, const double *direction,
+                        BoxTree *tree);
 void BoxTreeDestroy(BoxTree *tree);
 int  BoxTreeNear(BoxTree, const double *point, double radius, int max, int *found);
 int  BoxTreeMeet(BoxTree, const double *lower, const double *upper, int max, int *found);
-int  BoxTreeSetDirections(BoxTree, const double *direction);
 void BoxTreeClosest(BoxTree, const double *point, const BoxTreeSide *side, double *bound,
                     void (*visit)(void *context, int index, double *bound), void *context);

@@ -12,6 +12,9 @@
    leaves rounding. */
 #define END_RAISED 1.001
 
+/* Less of all energies is rounding: sums over all elements and slave nodes, of which each has some 1e-16. */
+#define END_NO_ENERGY 1e-12
+
 /* What the shape of the surfaces leaves open is told above this part of the forces: that much the run lets penetration
    leave. Beyond the second part it is no longer in proportion to the gaps. */
 #define END_GEOMETRY       0.004
@@ -255,23 +258,37 @@ static void PrintGuards(const RunFigures *figures, FILE *stream)
   fprintf(stream, n ? "\n" : "guards   none acted\n");
 }
 
-/* Prints the work from outside, the energies of plastic bodies and of contact, and how far the work is from their sum.
- */
-static void PrintEnergy(const EnergyFigures *energy, FILE *stream)
+/* Prints whether a step gave energy back that flow and friction had taken. What is less than rounding is none. */
+static void PrintDissipation(const EnergyFigures *energy, FILE *stream)
+{
+  const double sum = (double)EnergySum(energy), least = (double)energy->least;
+
+  if (!(energy->dissipated > 0) && !(least < 0)) return;
+  if (least < -END_NO_ENERGY * sum)
+    fprintf(stream, "; a step dissipated %.2g %% of them", 100 * least / sum);
+  else
+    fprintf(stream, "; no step dissipated less than nothing");
+}
+
+/* Prints the work from outside, the energies of bodies and of contact, and how far the work is from their sum. */
+static void PrintEnergy(const EnergyFigures *energy, PetscBool plastic, FILE *stream)
 {
   const OuterFigures outer = energy->outer;
-  const double       sum   = (double)(energy->elastic + energy->plastic + outer.stored + outer.friction),
-               apart       = (double)EnergyApart(energy);
+  const double       sum = (double)EnergySum(energy), apart = (double)EnergyApart(energy);
 
-  fprintf(stream, "energy   work %.6g from outside = %.6g elastic + %.6g plastic", (double)outer.work,
-          (double)energy->elastic, (double)energy->plastic);
+  fprintf(stream, "energy   work %.6g from outside = %.6g elastic", (double)outer.work, (double)energy->elastic);
+  if (plastic) fprintf(stream, " + %.6g plastic", (double)energy->plastic);
   if (outer.stored > 0) fprintf(stream, " + %.4g contact", (double)outer.stored);
   if (outer.friction > 0) fprintf(stream, " + %.6g friction", (double)outer.friction);
+  if (energy->damping > 0) fprintf(stream, " + %.4g damping", (double)energy->damping);
   if (isnan(apart)) fprintf(stream, ", without that of overlaps resolved at once");
   if (sum > 0 && !isnan(apart))
     fprintf(stream, ", %.2g %% apart by the trapezoidal rule over the steps", 100 * apart / sum);
-  fprintf(stream, "; largest plastic strain %.4g, growth in a step up to %.2g\n", (double)energy->strain,
-          (double)energy->growth);
+  PrintDissipation(energy, stream);
+  if (plastic)
+    fprintf(stream, "; largest plastic strain %.4g, growth in a step up to %.2g", (double)energy->strain,
+            (double)energy->growth);
+  fprintf(stream, "\n");
   if (energy->lag > 0) /* of routines of users alone none is known */
     fprintf(
       stream,
@@ -362,7 +379,8 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
   }
   ProbeErrorsPrint(figures->errors, stream);
   for (int i = 0; i < figures->n_fluids && figures->last; i++) PrintFluid(&figures->fluids[i], stream);
-  if (SceneIsPlastic(figures->scene) && figures->last) PrintEnergy(&figures->last->energy, stream);
+  if (figures->last && (SceneIsPlastic(figures->scene) || figures->certified))
+    PrintEnergy(&figures->last->energy, SceneIsPlastic(figures->scene), stream);
   PrintCertificate(figures, stream);
   PrintUnjudged(figures, stream);
   PrintGuards(figures, stream);

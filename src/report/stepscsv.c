@@ -151,15 +151,20 @@ static void FillContact(const StepRecord *step, PetscReal row[STEP_COLUMNS])
   if (contact->outside_window >= 0) row[COLUMN_OUTSIDE_WINDOW] = (PetscReal)contact->outside_window;
 }
 
-/* Fills the columns that only a run with a plastic body has. */
-static void FillEnergy(const EnergyFigures *energy, PetscReal row[STEP_COLUMNS])
+/* Fills the columns of energies that a run has whose steps are judged, and those that only one with a plastic body
+   has. */
+static void FillEnergy(Scene scene, const EnergyFigures *energy, PetscReal row[STEP_COLUMNS])
 {
-  row[COLUMN_PLASTIC_STRAIN] = energy->strain;
+  const PetscBool plastic = SceneIsPlastic(scene);
+
+  if (!plastic && !(scene->n_contacts && scene->output.certificate)) return;
   row[COLUMN_ELASTIC_ENERGY] = energy->elastic;
-  row[COLUMN_PLASTIC_WORK]   = energy->plastic;
-  row[COLUMN_WORK]           = energy->work;
   row[COLUMN_EXTERNAL_WORK]  = energy->outer.work;
   row[COLUMN_CONTACT_ENERGY] = energy->outer.stored;
+  if (!plastic) return;
+  row[COLUMN_PLASTIC_STRAIN] = energy->strain;
+  row[COLUMN_PLASTIC_WORK]   = energy->plastic;
+  row[COLUMN_WORK]           = energy->work;
 }
 
 /* Fills the fixed columns of a row; NaN where there is no value. */
@@ -176,7 +181,7 @@ static void FillRow(Scene scene, const StepRecord *step, PetscReal wall_s, Petsc
   row[COLUMN_WALL_S]        = wall_s;
   row[COLUMN_CONTACT_NODES] = row[COLUMN_NODES_IN] = row[COLUMN_NODES_OUT] = 0.0;
   if (scene->n_contacts) FillContact(step, row);
-  if (SceneIsPlastic(scene)) FillEnergy(&step->energy, row);
+  FillEnergy(scene, &step->energy, row);
 }
 
 /*@

@@ -245,20 +245,23 @@ static void AddErrors(cJSON *json, const RunFigures *figures)
   }
 }
 
-/* Adds the energies of plastic bodies, if there are any. */
-static void AddEnergy(cJSON *json, Scene scene, const StepRecord *last)
+/* Adds the energies of a run whose steps are judged, and more of them where bodies yield. */
+static void AddEnergy(cJSON *json, const RunFigures *figures)
 {
-  const EnergyFigures energy = last ? last->energy : (EnergyFigures){0};
+  const EnergyFigures energy  = figures->last ? figures->last->energy : (EnergyFigures){0};
+  const PetscBool     plastic = SceneIsPlastic(figures->scene);
   cJSON              *map;
 
-  if (!SceneIsPlastic(scene)) return;
+  if (!plastic && !figures->certified) return;
   map = cJSON_AddObjectToObject(json, "energy");
   AddReal(map, "elastic", energy.elastic);
   AddReal(map, "plastic", energy.plastic);
   AddReal(map, "contact", energy.outer.stored);
   AddReal(map, "friction", energy.outer.friction);
-  AddReal(map, "work", energy.work);
+  AddReal(map, "damping", energy.damping);
   AddReal(map, "external", energy.outer.work);
+  if (!plastic) return;
+  AddReal(map, "work", energy.work);
   AddReal(map, "apart", energy.plastic > 0 ? EnergyApart(&energy) / (energy.plastic + energy.outer.friction) : NAN);
   AddReal(map, "lag", energy.plastic > 0 ? energy.lag / energy.plastic : NAN);
   AddReal(json, "max_plastic_strain", energy.strain);
@@ -360,6 +363,14 @@ static void AddContact(cJSON *json, const RunFigures *figures)
   }
 }
 
+/* An energy over all that bodies and contact store and have dissipated; NaN where that is nothing. */
+static PetscReal EnergyPart(const RunFigures *figures, PetscReal energy)
+{
+  const PetscReal sum = figures->last ? EnergySum(&figures->last->energy) : 0;
+
+  return sum > 0 ? energy / sum : NAN;
+}
+
 /* Adds what is certified; nothing where the scene switches it off or has no contact. */
 static void AddCertificate(cJSON *json, const RunFigures *figures)
 {
@@ -375,6 +386,8 @@ static void AddCertificate(cJSON *json, const RunFigures *figures)
   AddReal(map, "residual", figures->last ? figures->last->residual : NAN);
   AddReal(map, "force_balance", figures->certificate.force);
   AddReal(map, "moment_balance", figures->scene->geometry == GEOMETRY_AXISYMMETRIC ? NAN : figures->certificate.moment);
+  AddReal(map, "energy_apart", EnergyPart(figures, figures->last ? EnergyApart(&figures->last->energy) : NAN));
+  AddReal(map, "least_dissipation", EnergyPart(figures, figures->last ? figures->last->energy.least : NAN));
   AddReal(map, "dissipated_by_friction", figures->last ? figures->last->contact.dissipated : NAN);
   AddReal(map, "dissipated_by_flow",
           figures->last && SceneIsPlastic(figures->scene) ? figures->last->energy.plastic : NAN);
@@ -441,7 +454,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddState(json, figures->scene, figures->n_pairs ? PETSC_TRUE : PETSC_FALSE, figures->last, probes);
   AddUnits(json, figures->scene);
   AddErrors(json, figures);
-  AddEnergy(json, figures->scene, figures->last);
+  AddEnergy(json, figures);
   AddPartition(json, mesh);
   AddContact(json, figures);
   AddFluids(json, figures);

@@ -96,26 +96,28 @@ PetscReal CandidateBoxDistance(int dim, const Candidate *c, const PetscReal *x)
   Input Parameters:
 + dim        - dimension
 . n          - number of candidates
-- candidates - after CandidatePlace()
+. candidates - after CandidatePlace()
+- facing     - BoxTreeClosest() is to be given sides
 
   Output Parameter:
 . tree - free it with BoxTreeDestroy()
 @*/
-PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *candidates, BoxTree *tree)
+PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *candidates, PetscBool facing, BoxTree *tree)
 {
-  double *lower, *upper;
+  double *lower, *upper, *normal;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n * dim, &lower, n * dim, &upper));
+  PetscCall(PetscMalloc3(n * dim, &lower, n * dim, &upper, n * dim, &normal));
   for (PetscInt i = 0; i < n; i++) {
     for (int d = 0; d < dim; d++) {
-      lower[i * dim + d] = candidates[i].lower[d];
-      upper[i * dim + d] = candidates[i].upper[d];
+      lower[i * dim + d]  = candidates[i].lower[d];
+      upper[i * dim + d]  = candidates[i].upper[d];
+      normal[i * dim + d] = candidates[i].normal[d];
     }
   }
-  PetscCheck(!BoxTreeBuild(dim, (int)n, lower, upper, tree), PETSC_COMM_SELF, PETSC_ERR_MEM,
-             "no memory for the search tree");
-  PetscCall(PetscFree2(lower, upper));
+  PetscCheck(!BoxTreeBuildFacing(dim, (int)n, lower, upper, facing ? normal : NULL, tree), PETSC_COMM_SELF,
+             PETSC_ERR_MEM, "no memory for the search tree");
+  PetscCall(PetscFree3(lower, upper, normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -156,8 +156,7 @@ static PetscErrorCode TestPoints(ContactSearch s, const PetscReal *u, PetscReal 
   }
   PetscCall(PetscNew(&lists));
   PetscCall(SearchFieldCreate(s, u, t, box, sight->radius, lists, &field));
-  PetscCall(CandidatesTree(dim, field.n_candidates, field.candidates, &tree));
-  PetscCall(SearchSetDirections(dim, &field, tree));
+  PetscCall(CandidatesTree(dim, field.n_candidates, field.candidates, PETSC_TRUE, &tree));
   for (PetscInt q = 0; q < s->slaves->n; q++) {
     const BoxTreeSide side  = {.own     = &normal[3 * q],
                                .opposed = SEARCH_OPPOSED_NOT - 2 * sight->turn,

@@ -226,8 +226,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(field->n_candidates, &found, field->n_candidates, &ends, lists->n_points, &buffer.position));
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
-  PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, &tree));
-  if (s->one_body) PetscCall(SearchSetDirections(dim, field, tree)); /* no face of one's own body is averse */
+  PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, s->one_body, &tree)); /* none is averse then */
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     Nearest look = {.lists      = lists,
                     .slaves     = s->slaves,

@@ -149,29 +149,6 @@ PetscErrorCode SearchFieldDestroy(SearchField *field)
 }
 
 /*@
-  SearchSetDirections - gives a tree the normals of the candidates.
-
-  Not collective
-
-  Input Parameters:
-+ dim   - dimension
-. field - the candidates
-- tree  - the tree over their boxes
-@*/
-PetscErrorCode SearchSetDirections(int dim, const SearchField *field, BoxTree tree)
-{
-  PetscReal *normal;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(field->n_candidates * dim, &normal));
-  for (PetscInt c = 0; c < field->n_candidates; c++)
-    for (int d = 0; d < dim; d++) normal[c * dim + d] = field->candidates[c].normal[d];
-  PetscCheck(!BoxTreeSetDirections(tree, normal), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the tree");
-  PetscCall(PetscFree(normal));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   SearchListsDistance - returns the distance (length) from the slave points within which faces are collected for lists.
 
   Not collective

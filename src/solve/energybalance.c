@@ -1,17 +1,19 @@
-/* Work, stored energy and dissipation of plastic bodies, see energybalance.h. */
+/* Work, stored energy and dissipation, see energybalance.h. */
 #include "solve/energybalance.h"
 
-/* Part of the energies that overlaps which are resolved at once may bring, up to which the balance is judged. It is lost
-   where they are resolved, so that the balance may be off by as much. Facets that touch where they are curved bring some
-   0.1 %. */
+/* Part of the energies that overlaps which are resolved at once may bring, up to which the balance is judged. It is
+   lost where they are resolved, so that the balance may be off by as much. Facets that touch where they are curved
+   bring some 0.1 %. */
 #define ENERGY_GIVEN 1e-2
 
 struct _n_EnergyBalance {
   OuterWork     outer;
+  Problem       problem;    /* borrowed */
   Mesh          mesh;       /* borrowed */
   Elasticity    elasticity; /* borrowed */
-  PetscReal    *f, *f_0;    /* local internal forces of the last accepted state and of the one before */
-  EnergyFigures figures;    /* the same on all ranks */
+  PetscBool     plastic;    /* a body may yield */
+  PetscReal    *f, *f_0; /* local internal forces of the last accepted state and of the one before; NULL: not plastic */
+  EnergyFigures figures; /* the same on all ranks */
 };
 
 /*@
@@ -33,7 +35,10 @@ PetscErrorCode EnergyBalanceCreate(Problem problem, EnergyBalance *balance)
   PetscCall(PetscNew(balance));
   (*balance)->mesh       = problem->mesh;
   (*balance)->elasticity = problem->elasticity;
+  (*balance)->problem    = problem;
+  (*balance)->plastic    = ProblemIsPlastic(problem);
   PetscCall(OuterWorkCreate(problem, &(*balance)->outer));
+  if (!(*balance)->plastic) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(n, &(*balance)->f));
   PetscCall(PetscCalloc1(n, &(*balance)->f_0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -79,16 +84,22 @@ static PetscErrorCode Evaluate(EnergyBalance balance, const PetscReal *u, PetscR
 + balance - the balance
 . u_0     - local displacements (length) of the accepted state before
 . u       - those of the accepted state, after ElasticityAcceptPlastic()
+. t       - its load parameter
 - path    - what that gave on this rank
 @*/
-PetscErrorCode EnergyBalanceAdd(EnergyBalance balance, const PetscReal *u_0, const PetscReal *u,
+PetscErrorCode EnergyBalanceAdd(EnergyBalance balance, const PetscReal *u_0, const PetscReal *u, PetscReal t,
                                 const PlasticPath *path)
 {
   EnergyFigures *figures = &balance->figures;
   PetscReal     *before = balance->f, sum[4] = {0, 0, 0, path->lag}; /* energy, plastic work, work of the step, lag */
   PetscReal      most[2] = {0, path->growth};                        /* strain, growth */
+  PetscBool      ok;
 
   PetscFunctionBeginUser;
+  if (!balance->plastic) {
+    PetscCall(ProblemEnergy(balance->problem, u, t, ENERGY_ELASTIC, &figures->elastic, &ok));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   balance->f   = balance->f_0;
   balance->f_0 = before;
   PetscCall(Evaluate(balance, u, &sum[0]));
@@ -104,6 +115,23 @@ PetscErrorCode EnergyBalanceAdd(EnergyBalance balance, const PetscReal *u_0, con
   figures->strain = most[0];
   figures->growth = PetscMax(figures->growth, most[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  EnergyBalanceEnd - compares what has been dissipated with the accepted state before.
+
+  Not collective
+
+  Input Parameter:
+. balance - after EnergyBalanceAdd() and OuterWorkAdd() of its outer work
+@*/
+void EnergyBalanceEnd(EnergyBalance balance)
+{
+  EnergyFigures  *figures = &balance->figures;
+  const PetscReal now     = figures->plastic + OuterWorkGet(balance->outer).friction;
+
+  figures->least      = PetscMin(figures->least, now - figures->dissipated);
+  figures->dissipated = now;
 }
 
 /*@
@@ -136,6 +164,19 @@ EnergyFigures EnergyBalanceGet(EnergyBalance balance)
 }
 
 /*@
+  EnergySum - returns what bodies and contact store and all that has been dissipated.
+
+  Not collective
+
+  Input Parameter:
+. figures - of the last accepted state
+@*/
+PetscReal EnergySum(const EnergyFigures *figures)
+{
+  return figures->elastic + figures->plastic + figures->damping + figures->outer.stored + figures->outer.friction;
+}
+
+/*@
   EnergyApart - returns the distance of the work from outside from what bodies and contact store and have dissipated.
 
   Not collective
@@ -149,7 +190,7 @@ EnergyFigures EnergyBalanceGet(EnergyBalance balance)
 PetscReal EnergyApart(const EnergyFigures *figures)
 {
   const OuterFigures *outer = &figures->outer;
-  const PetscReal     sum   = figures->elastic + figures->plastic + outer->stored + outer->friction;
+  const PetscReal     sum   = EnergySum(figures);
 
   return outer->given > ENERGY_GIVEN * sum ? NAN : PetscAbsReal(outer->work - sum);
 }
@@ -167,13 +208,13 @@ PetscReal EnergyApart(const EnergyFigures *figures)
 PetscErrorCode EnergyBalanceArchive(EnergyBalance balance, Archive archive, const PetscReal *u)
 {
   EnergyFigures *figures = &balance->figures;
-  PetscReal     *value[] = {&figures->elastic, &figures->plastic, &figures->work,
-                            &figures->strain,  &figures->growth,  &figures->lag},
+  PetscReal     *value[] = {&figures->elastic, &figures->plastic, &figures->work,       &figures->strain,
+                            &figures->growth,  &figures->lag,     &figures->dissipated, &figures->least},
             energy;
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "model/energies", PETSC_STATIC_ARRAY_LENGTH(value), value));
   PetscCall(OuterWorkArchive(balance->outer, archive, u));
-  if (ArchiveLoads(archive)) PetscCall(Evaluate(balance, u, &energy));
+  if (ArchiveLoads(archive) && balance->plastic) PetscCall(Evaluate(balance, u, &energy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -47,7 +47,8 @@ static PetscErrorCode ModelBuild(Model model, PetscInt phase)
   PetscCall(VecDuplicate(model->x, &model->work->step));
   if (scene->kinematics != KINEMATICS_SMALL || SceneIsPlastic(scene))
     PetscCall(ExtrapolationCreate(mesh, &model->work->extrapolation));
-  if (ProblemIsPlastic(model->problem)) PetscCall(EnergyBalanceCreate(model->problem, &model->balance));
+  if (ProblemIsPlastic(model->problem) || (model->contact && scene->output.certificate))
+    PetscCall(EnergyBalanceCreate(model->problem, &model->balance));
   PetscCall(ModelCreateSNES(model));
   PetscCall(ModelCreatePenaltyError(model));
   if (model->contact) PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
@@ -257,7 +258,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscCall(LinearSolverRelease(work->solver));
   ToolsAccept(model->mesh, model->u, model->t);
   PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t, &path));
-  if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u, &path));
+  if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u, model->t, &path));
   if (SceneBreaks(model->scene, model->t)) ElasticityForgetFlow(model->problem->elasticity);
   if (model->balance) PetscCall(OuterWorkBegin(EnergyBalanceOuter(model->balance)));
   if (model->certificate && stepped) {
@@ -266,8 +267,10 @@ PetscErrorCode ModelAccept(Model model)
   } else {
     PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   }
-  if (model->balance)
+  if (model->balance) {
     PetscCall(OuterWorkAdd(EnergyBalanceOuter(model->balance), work->accepted_u, work->accepted_t, model->u, model->t));
+    EnergyBalanceEnd(model->balance);
+  }
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);
   model->problem->force_so_far = ProblemForceScale(model->problem);
@@ -322,6 +325,17 @@ PetscErrorCode ModelRestore(Model model)
   }
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   if (model->contact) PetscCall(ContactRestore(model->contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Saves or loads the balance of energies, if there is one. A run whose steps were not judged has none to load. */
+static PetscErrorCode ModelArchiveBalance(Model model, Archive archive)
+{
+  PetscBool there = (PetscBool)(model->balance != NULL);
+
+  PetscFunctionBeginUser;
+  if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, "model/energies", &there));
+  if (model->balance && there) PetscCall(EnergyBalanceArchive(model->balance, archive, model->work->accepted_u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -391,7 +405,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   if (model->problem->bodies) PetscCall(FreeBodiesArchive(model->problem->bodies, archive));
   if (model->contact) PetscCall(ContactArchive(model->contact, archive, model->u, model->t));
   PetscCall(ElasticityArchivePlastic(model->problem->elasticity, archive));
-  if (model->balance) PetscCall(EnergyBalanceArchive(model->balance, archive, work->accepted_u));
+  PetscCall(ModelArchiveBalance(model, archive));
   PetscCall(FluidArchive(model->problem->fluids, archive));
   PetscCall(CertificateArchive(model->certificate, archive));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);

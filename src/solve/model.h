@@ -105,7 +105,7 @@ typedef struct _n_Model {
   Vec           x;      /* free displacements (length) */
   PetscReal    *u;      /* local displacements u[n_nodes*dim] (length) at load parameter t, prescribed ones included */
   PetscReal     t;
-  EnergyBalance balance;   /* NULL: no body is plastic */
+  EnergyBalance balance;   /* NULL: no body is plastic, and no step is judged */
   PetscReal   most_facing; /* turn (radians) of surfaces opposite each other above which ModelSolve() does not begin */
   Certificate certificate; /* NULL: there is no contact, or the scene switches it off */
   struct _n_ModelWork *work;

@@ -340,7 +340,8 @@ static PetscErrorCode ModelStopCrawl(Model model, SNESConvergedReason *reason)
   PetscReal      lambda;
 
   PetscFunctionBeginUser;
-  if (work->relaxed.linear || model->balance || ContactHasFriction(model->contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (work->relaxed.linear || ProblemIsPlastic(model->problem) || ContactHasFriction(model->contact))
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchGetLambda(search, &lambda));
   work->crawls = lambda < NEWTON_CRAWL ? work->crawls + 1 : 0;

@@ -383,11 +383,12 @@ static PetscInt StepIterations(const SolveReport *solve)
 /* Multiplies force and energies of a record by the thickness of the plane. */
 static void ScaleRecord(Scene scene, StepRecord *record)
 {
-  PetscReal *per_thickness[] = {&record->contact.force,      &record->contact.dissipated,
-                                &record->energy.elastic,     &record->energy.plastic,
-                                &record->energy.work,        &record->energy.lag,
-                                &record->energy.outer.work,  &record->energy.outer.stored,
-                                &record->energy.outer.given, &record->energy.outer.friction};
+  PetscReal *per_thickness[] = {
+    &record->contact.force,        &record->contact.dissipated,  &record->energy.elastic,
+    &record->energy.plastic,       &record->energy.work,         &record->energy.lag,
+    &record->energy.damping,       &record->energy.dissipated,   &record->energy.least,
+    &record->energy.outer.work,    &record->energy.outer.stored, &record->energy.outer.given,
+    &record->energy.outer.friction};
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(per_thickness); i++) *per_thickness[i] *= scene->thickness;
 }
@@ -413,7 +414,8 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   record->tied     = stepper->size.tied;
   if (stepper->last && model->t >= 1 - STEPPER_SAME_T) PetscCall(stepper->last(stepper->last_context));
   PetscCall(ModelAccept(model));
-  record->energy = EnergyBalanceGet(model->balance);
+  record->energy         = EnergyBalanceGet(model->balance);
+  record->energy.damping = report->damping + solve->damping;
   ScaleRecord(model->scene, record);
   if (solve->jump[0]) {
     report->jumps++;
@@ -495,7 +497,8 @@ static PetscErrorCode LoadStepperFlow(LoadStepper stepper, PetscReal dt, PetscRe
   PetscFunctionBeginUser;
   *used  = 0;
   *stays = PETSC_TRUE;
-  if (!model->balance || !(strain > 0 || model->scene->stepping.plastic_lag > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ProblemIsPlastic(model->problem) || !(strain > 0 || model->scene->stepping.plastic_lag > 0))
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ElasticityPlasticPath(model->problem->elasticity, model->u, model->t, &path));
   growth = strain > 0 ? path.growth / strain : 0;
   lag    = LagUsed(stepper, &path, dt);

@@ -18,7 +18,7 @@ typedef struct {
   PetscReal      beta;     /* beta_{N_c}; NaN: another control than that by contact, or no node approached */
   PetscInt       tied;     /* nodes beyond those wanted that touched together, so that no step separates them */
   ContactSummary contact;
-  EnergyFigures  energy; /* of the accepted state; zero where no body is plastic */
+  EnergyFigures  energy; /* of the accepted state; zero where the model has no balance */
 } StepRecord;
 
 /* All steps so far. */

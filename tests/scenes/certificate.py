@@ -1,13 +1,15 @@
 """Runs judge their steps by default: a needle in a film and beams that cross edge on edge are refused with node, edge
-and place, on any number of ranks; cubes that overhang each other are not, and outer forces and moments balance."""
+and place, on any number of ranks; cubes that overhang each other are not, and outer forces and moments balance. What
+the work from outside misses of all energies falls with the square of the step, with self contact and with friction."""
 import re
 
 from harness import Check, arguments, run, SCENES
 
 BALANCE = 1e-12  # of the outer forces
+RULE = (3, 5)  # by which the error of the trapezoidal rule falls with steps of half the length
 ARMS = 1e-3  # of their moments: surfaces that press stand a little in each other
 
-args = arguments(("case", "needle, beams or blocks"))
+args = arguments(("case", "needle, beams, blocks or energy"))
 check = Check()
 if args.case == "needle":
     film = run(args, SCENES / "film.yaml", out="film", must=2)
@@ -20,6 +22,15 @@ elif args.case == "beams":
         beams = run(args, SCENES / "crossed_beams.yaml", out=f"beams{gap}", must=2,
                     overrides=[f"mesh.parameters.gap={gap}", "stepping={control: fixed, initial: 0.5, dt_min: 0.2}"])
         check.holds(f"gap {gap}: the edges are named", re.search(r"the edge of the nodes \d+ and \d+ ", beams.text))
+elif args.case == "energy":
+    folding, jobs = SCENES.parent.parent / "runs/folding", SCENES.parent / "jobs"
+    for scene in (folding / "bellows.yaml", jobs / "rope_on_bollard.yaml"):
+        judged = [run(args, scene, out=f"{scene.stem}_{steps}", overrides=[
+            f"stepping={{control: fixed, initial: {1 / steps}}}"]).summary()["certificate"] for steps in (10, 20)]
+        ratio = judged[0]["energy_apart"] / judged[1]["energy_apart"]
+        check.holds(f"{scene.stem}: energies come together", RULE[0] < ratio < RULE[1], f"{ratio:.2f}")
+        check.near(f"{scene.stem}: work from outside", judged[1]["energy_apart"], 0, 1e-3)
+        check.near(f"{scene.stem}: no step gives back what was dissipated", judged[1]["least_dissipation"], 0, 1e-12)
 else:
     summary = run(args, SCENES / "offset_blocks.yaml", out="blocks").summary()
     certificate = summary["certificate"]

@@ -193,8 +193,7 @@ static void TestDirections(void **state)
     RandomBoxes(dim, n, 0.02);
     for (int i = 0; i < n; ++i)
       for (int k = 0; k < dim; ++k) direction[i * dim + k] = lower[i * dim + k] - 0.5;
-    assert_int_equal(BoxTreeBuild(dim, n, lower, upper, &tree), 0);
-    assert_int_equal(BoxTreeSetDirections(tree, direction), 0);
+    assert_int_equal(BoxTreeBuildFacing(dim, n, lower, upper, direction, &tree), 0);
     for (int trial = 0; trial < 100; ++trial) {
       const double point[3]   = {Random(0, 1), Random(0, 1), Random(0, 1)},
                    own[3]     = {Random(-1, 1), Random(-1, 1), Random(-1, 1)};

@@ -131,7 +131,7 @@ typedef struct {
 void           CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *);
 PetscReal      CandidateBulge(const Candidate *, PetscReal size);
 PetscReal      CandidateBoxDistance(int dim, const Candidate *, const PetscReal *x);
-PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, BoxTree *);
+PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, PetscBool facing, BoxTree *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
 /* faceexchange.c */
 void      SearchSlaveBox(ContactSearch, PetscReal box[6]);
@@ -166,7 +166,6 @@ PetscErrorCode FitSupportSlave(FitSupport *, const Nearest *, PetscInt q, PetscI
 PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, int first, FitProblem *, FitResult *, int *rung);
 /* searchfield.c */
 PetscReal        SearchListsDistance(ContactSearch, PetscReal motion);
-PetscErrorCode   SearchSetDirections(int dim, const SearchField *, BoxTree);
 PetscErrorCode   SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6],
                                    PetscReal distance, NeighbourLists, SearchField *);
 PetscErrorCode   SearchFieldDestroy(SearchField *);
