@@ -369,7 +369,8 @@ PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
 }
 
 /*@
-  ContactSoften - limits what a penalty counts for in energy, force and tangent, until the next call.
+  ContactSoften - limits what the penalty of contact counts for in energy, force and tangent that the last prediction
+  did not count on, until the next call.
 
   Not collective
 

@@ -84,7 +84,7 @@ typedef struct {
   PetscReal *term_weight;           /* their areas in it; where faces have terms, nodes and faces share the area */
   PetscReal  automatic;             /* penalty (force per length and area) */
   PetscReal  initial;               /* the penalty at the start of the run */
-  PetscReal  most;                  /* largest penalty that counts (force per length and area), ContactSoften() */
+  PetscReal  most;                  /* largest penalty that counts (force per length and area), ContactTermMost() */
   PetscBool  holding, touching;     /* a linear step: closed terms stay so, and what touches is closed */
   PetscBool *held, *predicted;      /* terms closed where the linear step began; those the prediction counted on */
 
@@ -195,6 +195,7 @@ PetscInt       ContactTermId(const ContactPair *, PetscInt term);
 /* contactterm.c */
 PetscReal ContactPairPresence(const ContactPair *, PetscReal t);
 LawState  ContactTermState(const ContactPair *, PetscInt term, PetscReal t, PetscReal most);
+PetscReal ContactTermMost(const ContactPair *, PetscInt term);
 LawState  ContactTermStateIn(const ContactPair *, PetscInt term, const ContactState *, PetscReal t, PetscReal most);
 void      ContactTermLaw(const ContactPair *, PetscInt term, PetscReal t, LawValue *, PetscReal *gap, PetscReal *area);
 PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term,
