@@ -241,13 +241,11 @@ LawState ContactTermStateIn(const ContactPair *pair, PetscInt c, const ContactSt
 - c    - the term
 
   Note:
-  What ContactSoften() allows, but for terms that the prediction counted on, whose penalty counts as it is. Where they
-  were softened, too, what is pressed together would spring back. With friction they are softened: a linear step takes
-  what sticks along, although most of it will slip, and the way would lead far off.
+  ContactSoften() may limit it.
 @*/
 PetscReal ContactTermMost(const ContactPair *pair, PetscInt c)
 {
-  return pair->predicted[c] && !pair->friction ? PETSC_MAX_REAL : pair->most;
+  return pair->predicted[c] ? pair->predicted_most : pair->most;
 }
 
 /*@

@@ -84,7 +84,8 @@ typedef struct {
   PetscReal *term_weight;           /* their areas in it; where faces have terms, nodes and faces share the area */
   PetscReal  automatic;             /* penalty (force per length and area) */
   PetscReal  initial;               /* the penalty at the start of the run */
-  PetscReal  most;                  /* largest penalty that counts (force per length and area), ContactTermMost() */
+  PetscReal  most;                  /* largest penalty that counts (force per length and area), ContactSoften() */
+  PetscReal  predicted_most;        /* that of terms which the prediction counted on */
   PetscBool  holding, touching;     /* a linear step: closed terms stay so, and what touches is closed */
   PetscBool *held, *predicted;      /* terms closed where the linear step began; those the prediction counted on */
 
