@@ -178,7 +178,7 @@ PetscErrorCode ContactMarkPredicted(Contact);
 PetscErrorCode ContactPredictionMissed(Contact, PetscBool *missed);
 PetscErrorCode ContactUnpredictedEnergy(Contact, const PetscReal *u, PetscReal t, PetscReal *energy);
 /* Penalties and multipliers */
-PetscErrorCode ContactSoften(Contact, PetscReal most);
+PetscErrorCode ContactSoften(Contact, PetscReal most, PetscBool all);
 PetscErrorCode ContactStiffest(Contact, PetscReal *most);
 PetscErrorCode ContactPairDepth(Contact, int pair, PetscReal *over_h);
 PetscErrorCode ContactStiffen(Contact, int pair, PetscReal factor);

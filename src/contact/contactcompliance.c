@@ -19,7 +19,7 @@ typedef struct {
 /* Change of a term's pressure by its stiffer penalty, where nothing moves. A penalty that is at its bound stays. */
 static PetscReal TermStiffer(const ContactPair *pair, PetscInt c, const LawValue *value)
 {
-  const LawState state = ContactTermState(pair, c, pair->t, pair->most);
+  const LawState state = ContactTermState(pair, c, pair->t, ContactTermMost(pair, c));
 
   return ContactTermAtBound(pair, c) ? 0 : value->pressure - state.multiplier;
 }

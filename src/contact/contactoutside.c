@@ -86,7 +86,7 @@ typedef struct {
 static void AddPressure(const ContactPair *pair, PetscInt c, PetscReal t_0, PairEnergy *energy)
 {
   const ContactState *accepted = &pair->accepted;
-  const LawState      now      = ContactTermState(pair, c, pair->t, pair->most);
+  const LawState      now      = ContactTermState(pair, c, pair->t, ContactTermMost(pair, c));
   const LawState      before   = ContactTermStateIn(pair, c, accepted, t_0, PETSC_MAX_REAL);
   LawValue            value, then = {0, 0, 0};
   PetscReal           area, held, gap;

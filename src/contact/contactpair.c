@@ -371,9 +371,9 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));
   PetscCall(SurfaceFindFreeEdges(pair->slave, pair->n_images, pair->images));
   pair->automatic = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
-  pair->most      = PETSC_MAX_REAL;
-  penalty         = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
-  pair->initial   = penalty;
+  pair->most = pair->predicted_most = PETSC_MAX_REAL;
+  penalty       = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
+  pair->initial = penalty;
   PetscCall(ContactStateCreate(pair->n, penalty, friction, &pair->now));
   PetscCall(ContactStateCreate(pair->n, penalty, friction, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images,

@@ -369,22 +369,27 @@ PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
 }
 
 /*@
-  ContactSoften - limits what a penalty counts for in energy, force and tangent, until the next call.
+  ContactSoften - limits what penalties count for in energy, force and tangent, until the next call.
 
   Not collective
 
   Input Parameters:
 + contact - the contact
-- most    - multiple of a pair's automatic penalty, the same on all ranks; PETSC_MAX_REAL ends the limit
+. most    - multiple of a pair's automatic penalty, the same on all ranks; PETSC_MAX_REAL ends the limit
+- all     - terms that the last prediction counted on are limited, too
 
   Note:
   The penalties themselves do not change.
 @*/
-PetscErrorCode ContactSoften(Contact contact, PetscReal most)
+PetscErrorCode ContactSoften(Contact contact, PetscReal most, PetscBool all)
 {
   PetscFunctionBeginUser;
-  for (int p = 0; p < contact->n_pairs; p++)
-    contact->pairs[p].most = most < PETSC_MAX_REAL ? most * contact->pairs[p].automatic : PETSC_MAX_REAL;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    pair->most           = most < PETSC_MAX_REAL ? most * pair->automatic : PETSC_MAX_REAL;
+    pair->predicted_most = all ? pair->most : PETSC_MAX_REAL;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -57,7 +57,7 @@ static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const P
 static PetscErrorCode AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
 {
   const ContactPair *pair  = &step->contact->pairs[p];
-  const LawState     state = ContactTermState(pair, c, t, pair->most);
+  const LawState     state = ContactTermState(pair, c, t, ContactTermMost(pair, c));
   LawValue           value;
   PetscReal          opening;
 

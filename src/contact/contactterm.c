@@ -219,8 +219,8 @@ static PetscReal PresenceFactor(PetscReal p)
 . c     - the term
 . state - the pair's present or accepted state, which gives penalty and multiplier
 . t     - load parameter of that state, for the offset and for the part of the pair that is there
-- most  - largest penalty that counts (force per length and area): pair->most for energy, forces and tangent, which
-         ContactSoften() may limit; PETSC_MAX_REAL for the penalty as it is
+- most  - largest penalty that counts (force per length and area): ContactTermMost() for energy, forces and tangent;
+         PETSC_MAX_REAL for the penalty as it is
 @*/
 LawState ContactTermStateIn(const ContactPair *pair, PetscInt c, const ContactState *state, PetscReal t, PetscReal most)
 {
@@ -229,6 +229,23 @@ LawState ContactTermStateIn(const ContactPair *pair, PetscInt c, const ContactSt
   return (LawState){.penalty    = part * PetscMin(most, ContactTermPenalty(pair, c, state->penalty[c])),
                     .offset     = ContactTermOffset(pair, c, t),
                     .multiplier = state->multiplier[c] - (pair->carried ? pair->carried[c] : 0)};
+}
+
+/*@
+  ContactTermMost - returns the largest penalty of a term that counts for energy, forces and tangent.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+- c    - the term
+
+  Note:
+  ContactSoften() may limit it.
+@*/
+PetscReal ContactTermMost(const ContactPair *pair, PetscInt c)
+{
+  return pair->predicted[c] ? pair->predicted_most : pair->most;
 }
 
 /*@
@@ -280,7 +297,7 @@ static void TermHold(const ContactPair *pair, PetscInt c, const LawState *state,
 @*/
 void ContactTermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *gap, PetscReal *area)
 {
-  const LawState  state = ContactTermState(pair, c, t, pair->most);
+  const LawState  state = ContactTermState(pair, c, t, ContactTermMost(pair, c));
   const PetscReal found = ContactTermGap(pair, pair->factor, pair->point_gap, c, area);
 
   *value = (LawValue){0, 0, 0};

@@ -506,7 +506,7 @@ static PetscReal TermOpening(const ContactPair *pair, PetscInt c, const LawState
 static PetscErrorCode BeginTerm(ContactPair *pair, PetscInt c, PetscReal t)
 {
   Friction       f     = pair->friction;
-  const LawState state = ContactTermState(pair, c, t, pair->most);
+  const LawState state = ContactTermState(pair, c, t, ContactTermMost(pair, c));
   FrictionInput  in    = {.stiffness = 0};
 
   PetscFunctionBeginUser;

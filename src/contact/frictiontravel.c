@@ -7,7 +7,7 @@
 /* The normal force of a term in the accepted state. Its gap then counts: new lists and offsets give another one. */
 static PetscReal AcceptedForce(const ContactPair *pair, PetscInt c, PetscReal t)
 {
-  const LawState  state = ContactTermState(pair, c, t, pair->most);
+  const LawState  state = ContactTermState(pair, c, t, ContactTermMost(pair, c));
   const PetscReal gap   = pair->accepted.gap[c];
   LawValue        value = {0, 0, 0};
   PetscReal       area;

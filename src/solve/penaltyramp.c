@@ -34,9 +34,10 @@ static PetscErrorCode ModelUnpredictedEnergy(Model model, PetscReal *energy)
 static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, PetscReal least, PetscReal full,
                                           PetscReal *most)
 {
-  const Problem problem = model->problem;
-  PetscReal     elastic, accepted, allowed, energy;
-  PetscBool     ok;
+  const Problem   problem = model->problem;
+  const PetscBool all     = model->work->softens;
+  PetscReal       elastic, accepted, allowed, energy;
+  PetscBool       ok;
 
   PetscFunctionBeginUser;
   PetscCall(ProblemSetTrial(problem, model->x, model->t));
@@ -45,14 +46,14 @@ static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, Pe
   allowed = unpredicted ? PetscMax(RAMP_UNPREDICTED * PetscAbsReal(elastic - accepted), RAMP_NEGLIGIBLE * elastic)
                         : RAMP_RAISED * elastic;
   for (*most = full;; *most = PetscMax(least, *most / RAMP_FACTOR)) {
-    PetscCall(ContactSoften(model->contact, *most));
+    PetscCall(ContactSoften(model->contact, *most, all));
     if (unpredicted)
       PetscCall(ModelUnpredictedEnergy(model, &energy));
     else
       PetscCall(ProblemEnergy(problem, problem->trial, model->t, ENERGY_CONTACT, &energy, &ok));
     if (energy <= allowed || *most <= least) break;
   }
-  PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL));
+  PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,9 +66,9 @@ static PetscErrorCode ModelSolveSoft(Model model, PetscReal most, SolveReport *r
   PetscFunctionBeginUser;
   work->left = PETSC_FALSE;
   work->soft = PETSC_TRUE;
-  PetscCall(ContactSoften(model->contact, most));
+  PetscCall(ContactSoften(model->contact, most, model->work->softens));
   PetscCall(ModelNewton(model, report));
-  PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL));
+  PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL, PETSC_FALSE));
   work->soft = PETSC_FALSE;
   PetscCall(PetscInfo(model->snes, "penalties softened to %g automatic ones: %" PetscInt_FMT " iterations\n",
                       (double)most, report->newton - spent));

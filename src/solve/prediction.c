@@ -4,8 +4,8 @@
 
 /* A prediction has at most this many pieces. The rest of the way is then taken at once. */
 #define PREDICTION_PIECES 8
-/* Penalties during a prediction in pieces, in automatic penalties. The contact that is met must turn the bodies back;
-   it need not hold them exactly. penaltyramp.c has the same bound. */
+/* Penalties of softened contact during a prediction in pieces, in automatic penalties. It must turn the bodies back; it
+   need not hold them exactly. penaltyramp.c has the same bound. */
 #define PREDICTION_SOFT 0.1
 /* Most repetitions of a run's first step to where a body touches. Each squares the opening, over the radius. */
 #define PREDICTION_TOUCHES 3
@@ -242,6 +242,47 @@ static PetscErrorCode ModelStayBehind(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Repeats the prediction x in pieces, from the accepted state, until the rest of the way is short. all: the contact
+   that the first linear step counted on is softened, too. strict: ends where a piece is followed by a longer way than
+   before, or fails; then *settled is false. *pieces: those that were made. */
+static PetscErrorCode ModelPredictPieces(Model model, Vec x, PetscBool all, PetscBool strict, PetscInt *pieces,
+                                         PetscBool *settled, SolveReport *report)
+{
+  const StressReference reference = {model->work->solved, 0, 0};
+  const PetscInt        n         = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal             t = model->work->accepted_t, before = PETSC_MAX_REAL, turn, part, *u, *v;
+  Vec                   from;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(model->x, &from));
+  PetscCall(VecCopy(model->work->accepted_x, from));
+  PetscCall(VecCopy(x, model->x));
+  PetscCall(PetscCalloc2(n, &u, n, &v));
+  PetscCall(PetscArraycpy(u, model->work->accepted_u, n));
+  if (model->contact) PetscCall(ContactSoften(model->contact, PREDICTION_SOFT, all));
+  *settled = PETSC_FALSE;
+  for (*pieces = 0; *pieces < PREDICTION_PIECES && report->result == SOLVE_CONVERGED; ++*pieces) {
+    PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
+    PetscCall(ModelLargestTurn(model, u, v, &turn));
+    *settled = (PetscBool)(turn <= MODEL_FARTHEST);
+    if (*settled || (strict && turn >= before)) break;
+    before = turn;
+    part   = MODEL_FARTHEST / turn;
+    t += part * (model->t - t);
+    PetscCall(VecAXPBY(model->x, 1 - part, part, from));
+    PetscCall(VecCopy(model->x, from));
+    PetscCall(ProblemDisplacements(model->problem, from, t, u));
+    if (model->contact) PetscCall(ModelReachOn(model, u, t, report));
+    PetscCall(ModelStepLoads(model, u, reference.u ? &reference : NULL, t, PETSC_FALSE, PETSC_FALSE, report));
+  }
+  if (model->contact) PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL, PETSC_FALSE));
+  PetscCall(PetscInfo(model->snes, "prediction in %" PetscInt_FMT " pieces, %s contact softened: %s\n", *pieces,
+                      all ? "all" : "new", *settled ? "settled" : "not settled"));
+  PetscCall(PetscFree2(u, v));
+  PetscCall(VecDestroy(&from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelPredictFar - repeats the prediction in pieces, where it went too far for one linear step.
 
@@ -251,42 +292,42 @@ static PetscErrorCode ModelStayBehind(Model model, SolveReport *report)
 + model  - after ModelPredict()
 - report - costs and failures are added to it
 
-  Note:
+  Notes:
   Each piece is a part of the way, from which the next linear step continues with the tangent there. None of the states
   on the way is in equilibrium, and their stresses must not get into the tangent. It has those of the accepted
   state, as after a shortened step of Newton's method.
+
+  At first all contact is softened. What is pressed together may then spring back, so that the pieces lead away from
+  every equilibrium: a way that is longer after a piece than before it says so. Then the pieces are made anew, and
+  contact that the first linear step counted on keeps its penalty. Not so with friction: a linear step takes what sticks
+  along, although most of it will slip. If either way grows longer, the first is gone to its end.
 @*/
 PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 {
-  const StressReference reference = {model->work->solved, 0, 0};
-  const PetscInt        n         = model->mesh->n_nodes * model->mesh->dim;
-  PetscReal             t         = model->work->accepted_t, turn, part, *u, *v;
-  PetscInt              pieces    = 0;
-  Vec                   from;
+  const PetscBool   keeps   = (PetscBool)(model->contact && !ContactHasFriction(model->contact));
+  const SolveResult result  = report->result;
+  PetscBool         settled = PETSC_FALSE;
+  PetscInt          pieces  = 0;
+  Vec               x;
 
   PetscFunctionBeginUser;
+  model->work->softens = (PetscBool)!keeps;
   if (model->scene->kinematics == KINEMATICS_SMALL || model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDuplicate(model->x, &from));
-  PetscCall(VecCopy(model->work->accepted_x, from));
-  PetscCall(PetscCalloc2(n, &u, n, &v));
-  PetscCall(PetscArraycpy(u, model->work->accepted_u, n));
-  if (model->contact) PetscCall(ContactSoften(model->contact, PREDICTION_SOFT));
-  for (; pieces < PREDICTION_PIECES && report->result == SOLVE_CONVERGED; pieces++) {
-    PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
-    PetscCall(ModelLargestTurn(model, u, v, &turn));
-    if (turn <= MODEL_FARTHEST) break;
-    part = MODEL_FARTHEST / turn;
-    t += part * (model->t - t);
-    PetscCall(VecAXPBY(model->x, 1 - part, part, from));
-    PetscCall(VecCopy(model->x, from));
-    PetscCall(ProblemDisplacements(model->problem, from, t, u));
-    if (model->contact) PetscCall(ModelReachOn(model, u, t, report));
-    PetscCall(ModelStepLoads(model, u, reference.u ? &reference : NULL, t, PETSC_FALSE, PETSC_FALSE, report));
+  PetscCall(VecDuplicate(model->x, &x));
+  PetscCall(VecCopy(model->x, x));
+  for (int keep = 0; keep <= 1 && keeps && !settled; keep++) {
+    report->result       = result;
+    model->work->softens = (PetscBool)!keep;
+    PetscCall(ModelPredictPieces(model, x, !keep, PETSC_TRUE, &pieces, &settled, report));
+    if (!pieces) model->work->softens = PETSC_FALSE;
   }
-  if (model->contact) PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL));
+  if (!settled) {
+    report->result       = result;
+    model->work->softens = PETSC_TRUE;
+    PetscCall(ModelPredictPieces(model, x, PETSC_TRUE, PETSC_FALSE, &pieces, &settled, report));
+  }
   if ((pieces || model->work->unsettled) && model->contact) PetscCall(ModelStayBehind(model, report));
-  PetscCall(PetscFree2(u, v));
-  PetscCall(VecDestroy(&from));
+  PetscCall(VecDestroy(&x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

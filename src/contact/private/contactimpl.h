@@ -85,6 +85,7 @@ typedef struct {
   PetscReal  automatic;             /* penalty (force per length and area) */
   PetscReal  initial;               /* the penalty at the start of the run */
   PetscReal  most;                  /* largest penalty that counts (force per length and area), ContactSoften() */
+  PetscReal  predicted_most;        /* that of terms which the prediction counted on */
   PetscBool  holding, touching;     /* a linear step: closed terms stay so, and what touches is closed */
   PetscBool *held, *predicted;      /* terms closed where the linear step began; those the prediction counted on */
 
@@ -195,6 +196,7 @@ PetscInt       ContactTermId(const ContactPair *, PetscInt term);
 /* contactterm.c */
 PetscReal ContactPairPresence(const ContactPair *, PetscReal t);
 LawState  ContactTermState(const ContactPair *, PetscInt term, PetscReal t, PetscReal most);
+PetscReal ContactTermMost(const ContactPair *, PetscInt term);
 LawState  ContactTermStateIn(const ContactPair *, PetscInt term, const ContactState *, PetscReal t, PetscReal most);
 void      ContactTermLaw(const ContactPair *, PetscInt term, PetscReal t, LawValue *, PetscReal *gap, PetscReal *area);
 PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term,
