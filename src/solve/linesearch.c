@@ -389,6 +389,22 @@ static PetscErrorCode ChoosePart(Model model, Halvings *h, int *best, PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes the part of the step at which the search stands: w and G are those there. */
+static PetscErrorCode EndSearch(const Halvings *h, PetscReal part)
+{
+  PetscBool changed, changed_w;
+  Vec       x, F, y, w, G;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESLineSearchGetVecs(h->search, &x, &F, &y, &w, &G));
+  PetscCall(SNESLineSearchPostCheck(h->search, x, y, w, &changed, &changed_w));
+  PetscCall(VecCopy(w, x));
+  PetscCall(VecCopy(G, F));
+  PetscCall(SNESLineSearchSetLambda(h->search, part));
+  PetscCall(SNESLineSearchComputeNorms(h->search));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The search where friction leaves no energy. It takes the first of the steps 1, 1/2, 1/4, ... on which the work that
    is done against the residual falls as an energy would. Residuals alone mislead it: where bodies flow plastically, or
    what sticks begins to slip, they rise on the way to an equilibrium, and fall on a way to states in which all slips.
@@ -399,7 +415,8 @@ static PetscErrorCode ModelSearchWork(SNESLineSearch search, void *context)
   Model      model = context;
   ModelWork *work  = model->work;
   Halvings   h     = {.search = search};
-  PetscBool  changed, changed_w, stands;
+  PetscBool  changed, stands;
+  PetscReal  part;
   PetscInt   iterate;
   int        best;
   SNES       snes;
@@ -416,17 +433,20 @@ static PetscErrorCode ModelSearchWork(SNESLineSearch search, void *context)
   PetscCall(VecDotRealPart(F, y, &h.slope));
   work->norms[iterate % LINE_MEMORY] = h.before;
   for (int i = 0; i < PetscMin(iterate + 1, LINE_MEMORY); i++) h.largest = PetscMax(h.largest, work->norms[i]);
+  if (h.slope > 0 && ProblemIsPlastic(model->problem)) {
+    PetscCall(ModelSearchSlope(model, search, h.slope, h.first, &part));
+    if (part > 0) {
+      PetscCall(EndSearch(&h, part));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+  }
   PetscCall(ChoosePart(model, &h, &best, &stands));
   if (h.norm[best] == PETSC_MAX_REAL) {
     PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_FAILED_REDUCT));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (!stands) PetscCall(EvaluatePart(&h, best));
-  PetscCall(SNESLineSearchPostCheck(search, x, y, w, &changed, &changed_w));
-  PetscCall(VecCopy(w, x));
-  PetscCall(VecCopy(G, F));
-  PetscCall(SNESLineSearchSetLambda(search, h.first / (1 << best)));
-  PetscCall(SNESLineSearchComputeNorms(search));
+  PetscCall(EndSearch(&h, h.first / (1 << best)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

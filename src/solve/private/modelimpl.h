@@ -2,8 +2,9 @@
    offers to those above it.
 
    problem.c is below all of them, and freebodies.c and rigidsearch.c below it. linearcontact.c finds the contact that
-   is right at the end of a linear step. linecuts.c says why a line search shortened its step. relaxedsearch.c
-   is the line search, linesearch.c chooses what it compares, and corrects steps for contact. newton.c runs SNES once
+   is right at the end of a linear step. linecuts.c says why a line search shortened its step. slopesearch.c finds how
+   far a step of bodies that yield leads to balance, relaxedsearch.c is the line search, linesearch.c chooses what it
+   compares, and corrects steps for contact. newton.c runs SNES once
    with the present contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties,
    dampedsolve.c follows the bodies in pseudo-time where Newton's method finds no equilibrium.
    penaltyerror.c estimates what penetration leaves of error and stiffens penalties, jump.c tells an equilibrium that
@@ -118,6 +119,8 @@ typedef struct _n_ModelWork {
 PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
 /* linecuts.c */
 PetscErrorCode ModelCountCut(Model, Vec x);
+/* slopesearch.c */
+PetscErrorCode ModelSearchSlope(Model, SNESLineSearch, PetscReal slope, PetscReal first, PetscReal *part);
 /* relaxedsearch.c */
 PetscErrorCode ModelLargestTurn(Model, const PetscReal *u, const PetscReal *v, PetscReal *turn);
 PetscErrorCode ModelSearchRelaxed(SNESLineSearch, void *model);
