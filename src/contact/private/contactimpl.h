@@ -87,6 +87,7 @@ typedef struct {
   PetscReal  most;                  /* largest penalty that counts (force per length and area), ContactSoften() */
   PetscBool  holding, touching;     /* a linear step: closed terms stay so, and what touches is closed */
   PetscBool *held, *predicted;      /* terms closed where the linear step began; those the prediction counted on */
+  PetscBool *expected, *arrived;    /* terms that press at the end of the last linear step; of the one before */
 
   PetscReal   *carried; /* pressure of each term that a fluid carries in the contact's place; NULL: no fluid */
   ContactState now, accepted;
