@@ -119,6 +119,8 @@ PetscErrorCode ContactRestore(Contact contact)
 
     PetscCall(ContactStateCopy(&pair->accepted, &pair->now));
     if (pair->before) PetscCall(PetscArraycpy(pair->before, pair->accepted.gap, pair->n));
+    PetscCall(PetscArrayzero(pair->expected, pair->n));
+    PetscCall(PetscArrayzero(pair->arrived, pair->n));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

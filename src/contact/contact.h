@@ -174,6 +174,7 @@ PetscErrorCode ContactMultiplyTransposed(Contact, int pair, const PetscReal *x);
 PetscErrorCode ContactMultiplyEnd(Contact, PetscReal *y);
 /* Linear steps and predictions */
 PetscErrorCode ContactHoldActiveSet(Contact, PetscBool holding, PetscBool touching);
+PetscErrorCode ContactHoldExpected(Contact, PetscBool *any);
 PetscErrorCode ContactMarkPredicted(Contact);
 PetscErrorCode ContactPredictionMissed(Contact, PetscBool *missed);
 PetscErrorCode ContactUnpredictedEnergy(Contact, const PetscReal *u, PetscReal t, PetscReal *energy);

@@ -385,7 +385,8 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   pair->tool = ToolOfPair(mesh, scene, (int)(contact - scene->contacts));
   SearchSetTool(pair->search, pair->tool);
   SearchSetRungs(pair->search, pair->first_rung);
-  PetscCall(PetscCalloc2(pair->n, &pair->held, pair->n, &pair->predicted));
+  PetscCall(
+    PetscCalloc4(pair->n, &pair->held, pair->n, &pair->predicted, pair->n, &pair->expected, pair->n, &pair->arrived));
   if (friction) PetscCall(FrictionCreate(pair));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
   if (contact->augment) PetscCall(AndersonCreate(mesh->comm, pair->n, pair->area, &pair->mixing));
@@ -429,7 +430,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(ContactVariationsDestroy(&pair->variations));
   PetscCall(PetscFree(pair->before));
   PetscCall(AndersonDestroy(&pair->mixing));
-  PetscCall(PetscFree2(pair->held, pair->predicted));
+  PetscCall(PetscFree4(pair->held, pair->predicted, pair->expected, pair->arrived));
   PetscCall(FrictionDestroy(&pair->friction));
   PetscCall(PetscFree(pair->carried));
   PetscCall(PetscFree(pair->marks));

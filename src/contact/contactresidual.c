@@ -217,6 +217,44 @@ PetscErrorCode ContactHoldActiveSet(Contact contact, PetscBool holding, PetscBoo
 }
 
 /*@
+  ContactHoldExpected - begins a linear step, in which what is in contact stays so, and what pressed at the end of the
+linear step to the present state is pulled there.
+
+  Collective
+
+  Input Parameter:
+. contact - the contact, after a linear step from the present state was found; ContactHoldActiveSet() ends the new one
+
+  Output Parameter:
+. any - something of that is open at the present state; else no step is begun. The same on all ranks
+
+  Note:
+  Surfaces are curved and bodies turn, so that a linear step leaves a little open of what it is to close. That may be
+all that holds a body.
+@*/
+PetscErrorCode ContactHoldExpected(Contact contact, PetscBool *any)
+{
+  int open = 0;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt c = 0; c < pair->n; c++) open |= pair->arrived[c] && pair->now.status[c] != CONTACT_CLOSED;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &open, 1, MPI_INT, MPI_LOR, contact->mesh->comm));
+  *any = (PetscBool)open;
+  if (!open) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactHoldActiveSet(contact, PETSC_TRUE, PETSC_FALSE));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt c = 0; c < pair->n; c++) pair->held[c] = (PetscBool)(pair->held[c] || pair->arrived[c]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactResidual - computes contact forces, energy and the sum of squared forces at (u, t).
 
   Collective

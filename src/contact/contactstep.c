@@ -459,7 +459,8 @@ PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, co
 }
 
 /*@
-  ContactStepMarkPredicted - notes what presses at the end of a step that predicts, for ContactUnpredictedEnergy().
+  ContactStepMarkPredicted - notes what presses at the end of a step, for ContactHoldExpected(), and of one that
+predicts for ContactUnpredictedEnergy().
 
   Not collective
 
@@ -470,9 +471,16 @@ PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, co
 PetscErrorCode ContactStepMarkPredicted(ContactStep step, const PetscBool *pressed)
 {
   PetscFunctionBeginUser;
+  for (int p = 0; p < step->contact->n_pairs; p++) {
+    ContactPair *pair = &step->contact->pairs[p];
+
+    PetscCall(PetscArraycpy(pair->arrived, pair->expected, pair->n));
+    PetscCall(PetscArrayzero(pair->expected, pair->n));
+  }
   for (PetscInt i = 0; i < step->mine; i++) {
     const ContactPair *pair = &step->contact->pairs[step->pair[i]];
 
+    pair->expected[step->term[i]] = pressed[step->first[step->rank] + i];
     if (pair->holding) pair->predicted[step->term[i]] = pressed[step->first[step->rank] + i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -148,6 +148,42 @@ static PetscErrorCode ModelTurnStep(Model model, SNES snes, Vec F, Vec y, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Replaces a step that leads uphill by one in which what pressed at the end of the step before is held, if that leads
+   downhill. Where bodies yield, contact alone often holds them, and a tangent without what a step has just missed has
+   soft motions to both sides. Turned round, such a step drives the body into what it has missed. */
+static PetscErrorCode ModelHoldStep(Model model, SNES snes, Vec F, Vec y, PetscReal *slope)
+{
+  const Problem problem = model->problem;
+  PetscBool     any, ok;
+  PetscReal     held;
+  KSP           ksp;
+  Vec           b, step;
+
+  PetscFunctionBeginUser;
+  if (*slope >= 0 || !model->contact || !ProblemIsPlastic(problem)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactHoldExpected(model->contact, &any));
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(y, &b));
+  PetscCall(VecDuplicate(y, &step));
+  PetscCall(LinearSolverRenew(model->work->solver));
+  PetscCall(ModelTangent(model, problem->trial, NULL, model->t));
+  PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
+  PetscCall(ProblemCollectResidual(problem, model->x, b));
+  PetscCall(SNESGetKSP(snes, &ksp));
+  PetscCall(KSPSetOperators(ksp, problem->A, problem->P));
+  PetscCall(KSPSolve(ksp, b, step));
+  if (ok && !LinearCheckLost(model->linear))
+    PetscCall(ModelSolveLinearContact(model, problem->trial, NULL, model->t, step));
+  PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
+  PetscCall(VecDotRealPart(F, step, &held));
+  PetscCall(PetscInfo(snes, "a step that leads uphill is made anew with contact held: slope %g\n", (double)held));
+  if (held > 0) PetscCall(VecCopy(step, y));
+  if (held > 0) *slope = held;
+  PetscCall(VecDestroy(&b));
+  PetscCall(VecDestroy(&step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Notes whether the last iterations of a solve with friction have hardly lowered the residual. The contact problem of a
    linear step may then be one whose answer leads to and fro over a kink, as where a roller passes from node to node. As
    long as that is so, it is not relaxed. */
@@ -190,7 +226,9 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
   if (model->contact && conservative) ModelChooseObjective(model, NAN, slope);
-  if (model->work->objective == OBJECTIVE_ENERGY) PetscCall(ModelTurnStep(model, snes, F, y, slope));
+  if (model->work->objective != OBJECTIVE_ENERGY) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelHoldStep(model, snes, F, y, &slope));
+  PetscCall(ModelTurnStep(model, snes, F, y, slope));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -389,6 +427,22 @@ static PetscErrorCode ChoosePart(Model model, Halvings *h, int *best, PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes the part of the step at which the search stands: w and G are those there. */
+static PetscErrorCode EndSearch(const Halvings *h, PetscReal part)
+{
+  PetscBool changed, changed_w;
+  Vec       x, F, y, w, G;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESLineSearchGetVecs(h->search, &x, &F, &y, &w, &G));
+  PetscCall(SNESLineSearchPostCheck(h->search, x, y, w, &changed, &changed_w));
+  PetscCall(VecCopy(w, x));
+  PetscCall(VecCopy(G, F));
+  PetscCall(SNESLineSearchSetLambda(h->search, part));
+  PetscCall(SNESLineSearchComputeNorms(h->search));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The search where friction leaves no energy. It takes the first of the steps 1, 1/2, 1/4, ... on which the work that
    is done against the residual falls as an energy would. Residuals alone mislead it: where bodies flow plastically, or
    what sticks begins to slip, they rise on the way to an equilibrium, and fall on a way to states in which all slips.
@@ -399,7 +453,8 @@ static PetscErrorCode ModelSearchWork(SNESLineSearch search, void *context)
   Model      model = context;
   ModelWork *work  = model->work;
   Halvings   h     = {.search = search};
-  PetscBool  changed, changed_w, stands;
+  PetscBool  changed, stands;
+  PetscReal  part;
   PetscInt   iterate;
   int        best;
   SNES       snes;
@@ -416,17 +471,20 @@ static PetscErrorCode ModelSearchWork(SNESLineSearch search, void *context)
   PetscCall(VecDotRealPart(F, y, &h.slope));
   work->norms[iterate % LINE_MEMORY] = h.before;
   for (int i = 0; i < PetscMin(iterate + 1, LINE_MEMORY); i++) h.largest = PetscMax(h.largest, work->norms[i]);
+  if (h.slope > 0 && ProblemIsPlastic(model->problem)) {
+    PetscCall(ModelSearchSlope(model, search, h.slope, h.first, &part));
+    if (part > 0) {
+      PetscCall(EndSearch(&h, part));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+  }
   PetscCall(ChoosePart(model, &h, &best, &stands));
   if (h.norm[best] == PETSC_MAX_REAL) {
     PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_FAILED_REDUCT));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (!stands) PetscCall(EvaluatePart(&h, best));
-  PetscCall(SNESLineSearchPostCheck(search, x, y, w, &changed, &changed_w));
-  PetscCall(VecCopy(w, x));
-  PetscCall(VecCopy(G, F));
-  PetscCall(SNESLineSearchSetLambda(search, h.first / (1 << best)));
-  PetscCall(SNESLineSearchComputeNorms(search));
+  PetscCall(EndSearch(&h, h.first / (1 << best)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -417,7 +417,7 @@ static PetscErrorCode Judge(const Search *s, PetscReal rise)
   }
   if (paid) {
     if (s->model->contact) PetscCall(ContactCycleStart(s->model->work->watch)); /* a lower energy is no repetition */
-    step->waits    = PETSC_FALSE;
+    step->waits = PETSC_FALSE;
     LengthenBound(step, step->turn);
   }
   step->rise = since;
@@ -446,6 +446,23 @@ static PetscErrorCode SearchClosely(const Search *s, PetscReal slope, PetscBool 
 static PetscBool SearchJumps(const Search *s)
 {
   return (PetscBool)(ProblemConservative(s->model->problem) && ProblemIsPlastic(s->model->problem));
+}
+
+/* Searches for balance along the step, where bodies yield. *taken: there is one, and the energy falls on the way, as
+   far as it can be told. */
+static PetscErrorCode SearchBalance(const Search *s, PetscReal slope, PetscBool *taken)
+{
+  PetscReal part, rise = -slope;
+
+  PetscFunctionBeginUser;
+  *taken = PETSC_FALSE;
+  if (!(slope > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelSearchSlope(s->model, s->search, slope, 1, &part));
+  if (part == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->model->work->objective == OBJECTIVE_ENERGY) PetscCall(Rise(s, part, &rise));
+  *taken = (PetscBool)(rise <= -SEARCH_FALL * part * slope);
+  if (*taken) PetscCall(Take(s, part));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Chooses how much of the step is taken, by energies. */
@@ -486,9 +503,9 @@ static PetscErrorCode SearchByEnergy(const Search *s, PetscReal slope)
   steps, and does what it would have done at once: it shortens the step. How far cells turn in such a step is bounded,
   and the bound follows whether the last ones have paid.
 
-  Where residuals are compared, at iterates close to equilibrium, where the contact set repeats itself, and where bodies
-  yield, steps are shortened as before. Without an energy work is compared there first, which has no round-off of large
-  energies.
+  Where residuals are compared, at iterates close to equilibrium, and where the contact set repeats itself, steps are
+  shortened as before. Where bodies yield, ModelSearchSlope() comes first. Without an energy work is compared there
+first, which has no round-off of large energies.
 
   Source: Chamberlain, Powell, Lemarechal and Pedersen, The watchdog technique for forcing convergence in algorithms for
   constrained optimization, Math. Programming Study 16 (1982) 1-17.
@@ -510,6 +527,7 @@ PetscErrorCode ModelSearchRelaxed(SNESLineSearch search, void *context)
   PetscCall(VecDotRealPart(s.F, s.y, &slope));
   if (!work->relaxed.waits && (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL || SearchJumps(&s))) {
     if (lambda == 1) PetscCall(SearchClosely(&s, slope, &taken));
+    if (lambda == 1 && SearchJumps(&s)) PetscCall(SearchBalance(&s, slope, &taken));
     if (!taken) PetscCall(Backtrack(&s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -88,6 +88,7 @@ typedef struct {
   PetscReal  predicted_most;        /* that of terms which the prediction counted on */
   PetscBool  holding, touching;     /* a linear step: closed terms stay so, and what touches is closed */
   PetscBool *held, *predicted;      /* terms closed where the linear step began; those the prediction counted on */
+  PetscBool *expected, *arrived;    /* terms that press at the end of the last linear step; of the one before */
 
   PetscReal   *carried; /* pressure of each term that a fluid carries in the contact's place; NULL: no fluid */
   ContactState now, accepted;

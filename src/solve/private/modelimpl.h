@@ -1,11 +1,12 @@
 /* What the solvers share and no other folder sees: the working state of a model, and the functions that one solver
    offers to those above it.
 
-   problem.c is below all of them, and freebodies.c and rigidsearch.c below it. linearcontact.c finds the contact that
-   is right at the end of a linear step. linecuts.c says why a line search shortened its step. relaxedsearch.c
-   is the line search, linesearch.c chooses what it compares, and corrects steps for contact. newton.c runs SNES once
-   with the present contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties,
-   dampedsolve.c follows the bodies in pseudo-time where Newton's method finds no equilibrium.
+   problem.c is below all of them, and freebodies.c and rigidsearch.c below it. tangent.c makes the tangent and prepares
+   its linear solver. linearcontact.c finds the contact that is right at the end of a linear step. linecuts.c says why a
+   line search shortened its step. slopesearch.c finds how far a step of bodies that yield leads to balance,
+   relaxedsearch.c is the line search, linesearch.c chooses what it compares, and corrects steps for contact. newton.c
+   runs SNES once with the present contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on
+   softened penalties, dampedsolve.c follows the bodies in pseudo-time where Newton's method finds no equilibrium.
    penaltyerror.c estimates what penetration leaves of error and stiffens penalties, jump.c tells an equilibrium that
    was reached by a jump, adjoint.c weighs errors of a solution. equilibrium.c goes from an accepted state to the next
    one. model.c holds the accepted state. Each file calls only those named before it. */
@@ -115,10 +116,16 @@ typedef struct _n_ModelWork {
   PetscInt    crawls;             /* steps in a row of which the line search left next to nothing */
 } ModelWork;
 
+/* tangent.c */
+PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, PetscReal t);
+PetscErrorCode ModelReleaseTangent(Model);
+PetscErrorCode ModelLinearise(Model, KSP *);
 /* linearcontact.c */
 PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
 /* linecuts.c */
 PetscErrorCode ModelCountCut(Model, Vec x);
+/* slopesearch.c */
+PetscErrorCode ModelSearchSlope(Model, SNESLineSearch, PetscReal slope, PetscReal first, PetscReal *part);
 /* relaxedsearch.c */
 PetscErrorCode ModelLargestTurn(Model, const PetscReal *u, const PetscReal *v, PetscReal *turn);
 PetscErrorCode ModelSearchRelaxed(SNESLineSearch, void *model);
@@ -132,9 +139,6 @@ PetscErrorCode ModelFindJump(Model, SolveReport *);
 PetscErrorCode ModelCreateSNES(Model);
 PetscErrorCode ModelStepFrom(Model, const PetscReal *u);
 PetscErrorCode ModelStepFromSolved(Model, const PetscReal *u);
-PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, PetscReal t);
-PetscErrorCode ModelReleaseTangent(Model);
-PetscErrorCode ModelLinearise(Model, KSP *);
 PetscErrorCode ModelLinearFailure(Model, SolveResult *);
 PetscErrorCode ModelNewton(Model, SolveReport *);
 /* prediction.c */

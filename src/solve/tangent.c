@@ -1,0 +1,143 @@
+/* The tangent of a model and its linear solver. */
+#include "base/timing.h"
+#include "modelimpl.h"
+
+/* Updates the factor of an earlier tangent for the contact terms that have come and gone since. */
+static PetscErrorCode ModelUpdateFactor(Model model, PetscInt terms)
+{
+  PetscInt   rows;
+  PetscReal *s;
+  Mat        N;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(model->x, &rows));
+  PetscCall(PetscMalloc1(terms, &s));
+  PetscCall(ContactChangeVectors(model->contact, rows, terms, s, &N));
+  PetscCall(ReusedFactorUpdate(LinearSolverKept(model->work->solver), N, s));
+  PetscCall(MatDestroy(&N));
+  PetscCall(PetscFree(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds out whether contact couples so many unknowns that factors of bodies and contact have much more fill than those
+   of bodies alone. In two dimensions contact is on lines, and it does not. Where PETSc is to test the tangent or to
+   make its own, the matrix must hold all of it, and the answer is no. */
+static PetscErrorCode ModelCouples(Model model, PetscBool *couples)
+{
+  static const char *const options[] = {"-snes_test_jacobian", "-snes_fd", "-snes_fd_color", "-snes_mf",
+                                        "-snes_mf_operator"};
+
+  PetscFunctionBeginUser;
+  *couples = (PetscBool)(model->contact && model->mesh->dim == 3 && ContactHasFits(model->contact));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(options) && *couples; i++) {
+    PetscBool given;
+
+    PetscCall(PetscOptionsHasName(NULL, NULL, options[i], &given));
+    if (given) *couples = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At the first tangent: lets the linear solver order its unknowns, and keeps contact apart from the bodies if the
+   solver asks for that. A problem with a single solve is done sooner with any order. */
+static PetscErrorCode ModelOrder(Model model)
+{
+  PetscBool couples = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (model->work->ordered || ProblemIsLinear(model->problem)) PetscFunctionReturn(PETSC_SUCCESS);
+  model->work->ordered = PETSC_TRUE;
+  PetscCall(ModelCouples(model, &couples));
+  PetscCall(LinearSolverOrder(model->work->solver, model->problem->P, couples));
+  if (!LinearSolverBorders(model->work->solver)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ProblemSetForm(model->problem, TANGENT_BORDERED));
+  PetscCall(SNESSetJacobian(model->snes, model->problem->A, model->problem->P, NULL, NULL)); /* NULL: as it is */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives the linear solver the contact terms that the matrix P does not hold. */
+static PetscErrorCode ModelBorder(Model model)
+{
+  Border border;
+
+  PetscFunctionBeginUser;
+  if (model->problem->form == TANGENT_JOINED) PetscFunctionReturn(PETSC_SUCCESS);
+  TimingBegin(TIMING_ASSEMBLY_CONTACT);
+  PetscCall(ContactGetBorder(model->contact, &border));
+  PetscCall(LinearSolverSetBorder(model->work->solver, &border));
+  TimingEnd(TIMING_ASSEMBLY_CONTACT);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelTangent - computes the tangent at (u, t) and prepares the linear solver for it.
+
+  Collective
+
+  Input Parameters:
++ model     - the model
+. u         - local displacements u[n_nodes*dim] (length)
+. reference - the state from which the elements extrapolate stresses; NULL: the tangent is the derivative of the
+residual
+- t         - load parameter
+
+  Note:
+  The first call lets the linear solver order its unknowns. Where the factor of an earlier tangent still serves, SNES is
+  told to keep the preconditioner, and the factor is updated for the contact terms that came and went.
+@*/
+PetscErrorCode ModelTangent(Model model, const PetscReal *u, const StressReference *reference, PetscReal t)
+{
+  TangentChange change;
+  PetscBool     older;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelOrder(model));
+  PetscCall(LinearSolverRelease(model->work->solver));
+  PetscCall(ProblemTangent(model->problem, u, reference, t, &change));
+  PetscCall(ModelBorder(model));
+  PetscCall(LinearSolverNext(model->work->solver, u, change.C, change.pattern, change.terms, &older));
+  PetscCall(SNESSetLagPreconditioner(model->snes, older ? -1 : 1)); /* SNES tells the KSP so after each tangent */
+  if (older && change.terms > 0) PetscCall(ModelUpdateFactor(model, change.terms));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelReleaseTangent - frees what the linear solver does not need of the last tangent, where memory counts.
+
+  Not collective
+
+  Input Parameter:
+. model - before the linear solve
+
+  Note:
+  With the iterative solver this is the elements' own form of the tangent: a ninth of all memory. In a direct solve it is
+  little beside the factors.
+@*/
+PetscErrorCode ModelReleaseTangent(Model model)
+{
+  PetscFunctionBeginUser;
+  if (LinearSolverIterates(model->work->solver)) PetscCall(ElasticityReleaseTangent(model->problem->elasticity));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelLinearise - computes the tangent at the trial state for linear solves with it.
+
+  Collective
+
+  Input Parameter:
+. model - after ProblemSetTrial() at its solution
+
+  Output Parameter:
+. ksp - solves with the tangent, which is the derivative of the residual
+@*/
+PetscErrorCode ModelLinearise(Model model, KSP *ksp)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LinearSolverRenew(model->work->solver));
+  PetscCall(LinearSolverSetStart(model->work->solver, 0));
+  PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
+  PetscCall(SNESGetKSP(model->snes, ksp));
+  PetscCall(KSPSetOperators(*ksp, model->problem->A, model->problem->P));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
