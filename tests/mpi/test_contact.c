@@ -369,13 +369,13 @@ static void test_soften(void **state)
   assert_near(Evaluate(), 5000 * 0.05 * 0.05 / 2 * Area, 1e-10);
   OK(ContactStiffest(parts.problem->contact, &most));
   assert_near(most, 5, 1e-12);
-  OK(ContactSoften(parts.problem->contact, 0.2));
+  OK(ContactSoften(parts.problem->contact, 0.2, PETSC_TRUE));
   assert_near(Evaluate(), 200 * 0.05 * 0.05 / 2 * Area, 1e-10);
   assert_near(Show(LEFT, 0).force, 200 * 0.05 * Area, 1e-10);
   assert_near(Show(LEFT, 0).penalty, 5000, 1e-9);
-  OK(ContactSoften(parts.problem->contact, 10)); /* above the penalty: no limit */
+  OK(ContactSoften(parts.problem->contact, 10, PETSC_TRUE)); /* above the penalty: no limit */
   assert_near(Evaluate(), 5000 * 0.05 * 0.05 / 2 * Area, 1e-10);
-  OK(ContactSoften(parts.problem->contact, PETSC_MAX_REAL));
+  OK(ContactSoften(parts.problem->contact, PETSC_MAX_REAL, PETSC_TRUE));
   assert_near(Evaluate(), 5000 * 0.05 * 0.05 / 2 * Area, 1e-10);
   PartsDestroy(&parts);
 }
