@@ -110,7 +110,7 @@ static double PartLeft(const MeshChange *c, int order)
   const double rate  = isnan(c->estimate) ? MESHPLAN_ROUGH_RATE : FirstRate(order),
                least = c->finer > 1 ? pow(c->finer, -rate) : 0;
 
-  if (isnan(c->estimate)) return Within(least, 0, MESHPLAN_SLOWEST);
+  if (isnan(c->estimate)) return least > 0 ? fmin(least, MESHPLAN_SLOWEST) : MESHPLAN_SLOWEST;
   if (!isfinite(c->fall)) return MESHPLAN_SLOWEST;
   return fmin(c->even ? fmax(c->fall, least) : sqrt(c->fall), MESHPLAN_SLOWEST);
 }

@@ -18,6 +18,11 @@
 #define REFINEMENT_MOST_ELEMENTS 8
 /* It is made for at most this part of the present error, or the change of the answer would hardly tell anything. */
 #define REFINEMENT_PART 0.5
+/* Sizes are scaled by at least this, over all meshes. */
+#define REFINEMENT_LEAST_SCALE 0.5
+/* Elements of second order are tried where the limits allow a mesh of elements so many times smaller, which has as many
+   unknowns. */
+#define REFINEMENT_ORDER_ROOM 2
 /* CPU seconds that are left where there are none: no mesh takes so few (s). */
 #define REFINEMENT_NO_TIME 1e-9
 /* A mesh that only is to confirm the estimate has elements so many times smaller, all of them: an estimate that misses
@@ -32,6 +37,8 @@ typedef struct {
   PetscReal     value, mesh_s;
   PetscReal implied; /* error of the elements and surfaces by the change of the answer; NaN: there is no mesh before */
   PetscInt  dofs;
+  double    factor; /* its elements are smaller by it than those of the first mesh */
+  int       order;
   PetscBool rough; /* there is no estimate of the elements and surfaces, only the change of the answer */
 } SolvedMesh;
 
@@ -47,9 +54,14 @@ typedef struct {
   PetscBool     even;       /* all elements of the next mesh are smaller by the same factor */
   PetscReal    *size;       /* wanted of the next mesh at each local cell of the last one */
   int           n_edits;
-  char        **edit; /* of each density, or of the file of sizes */
-  int           n;
-  MeshFigures  *figures; /* of each mesh */
+  char        **edit;             /* of each density, or of the file of sizes */
+  PetscBool     tries_order;      /* the next mesh has elements of second order in the place of those of the last one */
+  PetscBool     chooses, may_try; /* the order is for the run to choose; it has not tried the second one yet */
+  double        wanted;           /* cells that the sizes of the next mesh should give; 0: not by sizes */
+  double        scale;            /* on sizes: gmsh makes fewer cells than they ask for, in space */
+  PetscInt      cells;            /* of the first mesh */
+  int           n, n_plan;
+  MeshFigures  *figures, *plan; /* of each mesh; of those after which the next one is planned: they have its order */
   SolvedMesh   *mesh;
   double        cpu_s; /* spent before the present mesh */
   PetscMPIInt   rank;
@@ -126,7 +138,12 @@ static PetscErrorCode Begin(Run *run, const RunInput *input, Refinement *r)
   char                *copy;
 
   PetscFunctionBeginUser;
-  *r = (Refinement){.run = run, .input = *input, .wish = *wish, .dim = run->mesh->dim, .order = run->mesh->order};
+  *r         = (Refinement){.run   = run,
+                            .input = *input,
+                            .wish  = *wish,
+                            .dim   = run->mesh->dim,
+                            .order = run->mesh->order,
+                            .scale = 1};
   r->n_given = input->n_set;
   PetscCallMPI(MPI_Comm_rank(run->comm, &r->rank));
   PetscCall(PetscStrallocpy(name, &copy));
@@ -139,9 +156,11 @@ static PetscErrorCode Begin(Run *run, const RunInput *input, Refinement *r)
                           "%s: '%s' declares no parameter that refines its mesh; allowed: names of them in "
                           "accuracy.densities",
                           SceneWhere(run->scene, "accuracy", NULL), run->scene->mesh_file));
-  r->n_edits = r->structured ? r->n_densities : 1;
+  r->n_edits = (r->structured ? r->n_densities : 1) + 1;
+  r->chooses = r->may_try = (PetscBool)(run->scene->order_chosen && r->order == 1);
+  r->cells                = run->mesh->n_cells_global;
   PetscCall(PetscCalloc1(r->n_edits, &r->edit));
-  PetscCall(PetscCalloc2(wish->meshes, &r->figures, wish->meshes, &r->mesh));
+  PetscCall(PetscCalloc3(wish->meshes, &r->figures, wish->meshes, &r->plan, wish->meshes, &r->mesh));
   r->wish.densities = NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -154,7 +173,7 @@ static PetscErrorCode End(Refinement *r)
   PetscCall(PetscFree(r->size));
   PetscCall(PetscFree(r->edit));
   PetscCall(PetscFree(r->density));
-  PetscCall(PetscFree2(r->figures, r->mesh));
+  PetscCall(PetscFree3(r->figures, r->plan, r->mesh));
   if (r->input.n_set > r->n_given) PetscCall(PetscFree(r->input.set));
   PetscCall(PetscFree(r->probe));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -178,31 +197,65 @@ static double Spread(const QuantityError *error)
   return (double)error->spread + fabs((double)SurfacesPart(error));
 }
 
-/* Takes what the change from the mesh before implies. Where it is more than was estimated, so was it on that mesh. */
+/* Takes what the change from the mesh before implies. Second order puts nodes half as far apart. Where it is more than
+ * was estimated, so was it on that mesh. */
 static void Compare(Refinement *r)
 {
   SolvedMesh       *mesh    = &r->mesh[r->n];
   const SolvedMesh *before  = mesh - 1;
-  MeshFigures      *figures = &r->figures[r->n];
+  MeshFigures      *figures = &r->figures[r->n], *last = r->n_plan ? &r->plan[r->n_plan - 1] : NULL;
   MeshChange        change;
 
   mesh->implied = NAN;
   if (!r->n) return;
-  change            = (MeshChange){.change   = (double)(MeshAnswer(mesh) - MeshAnswer(before)),
-                                   .before   = (double)MeshPart(&before->error),
-                                   .estimate = (double)MeshPart(&mesh->error),
-                                   .fall     = Spread(&mesh->error) / Spread(&before->error),
-                                   .finer    = figures->factor / figures[-1].factor,
-                                   .even     = r->even};
-  mesh->implied     = (PetscReal)MeshPlanImplied(&change, r->order);
-  figures->error    = (double)MeshError(mesh);
-  figures[-1].error = fmax(figures[-1].error, (double)mesh->implied + fabs(change.change));
+  change         = (MeshChange){.change   = (double)(MeshAnswer(mesh) - MeshAnswer(before)),
+                                .before   = (double)MeshPart(&before->error),
+                                .estimate = (double)MeshPart(&mesh->error),
+                                .fall     = Spread(&mesh->error) / Spread(&before->error),
+                                .finer    = r->tries_order ? 2 : mesh->factor / before->factor,
+                                .even     = r->even};
+  mesh->implied  = (PetscReal)MeshPlanImplied(&change, before->order);
+  figures->error = (double)MeshError(mesh);
+  last->error    = fmax(last->error, (double)mesh->implied + fabs(change.change));
+}
+
+/* How much finer the elements of the present mesh are than those of the first one; planned: by densities. */
+static double PresentFactor(Refinement *r, double planned)
+{
+  const double cells = (double)r->run->mesh->n_cells_global;
+
+  if (r->structured) return planned;
+  if (r->wanted > 0) r->scale *= fmax(pow(cells / r->wanted, 1.0 / r->dim), REFINEMENT_LEAST_SCALE);
+  r->scale = fmin(fmax(r->scale, REFINEMENT_LEAST_SCALE), 1);
+  return pow(cells / (double)r->cells, 1.0 / r->dim);
+}
+
+/* Chooses the order of the elements (of a probe without an estimate by the error of the energy) after a mesh of second
+   order on the cells of one of first order: the one with which the error of the second mesh takes less time, as smooth
+   solutions have it. */
+static void ChooseOrder(Refinement *r)
+{
+  const MeshFigures *second = &r->figures[r->n];
+  const SolvedMesh  *mesh   = &r->mesh[r->n];
+  MeshFigures        first  = r->plan[r->n_plan - 1];
+  const double       fall  = mesh->rough ? Spread(&mesh->error) / Spread(&mesh[-1].error) : second->error / first.error;
+  const double       finer = MeshPlanFactor(1, &first, 1, fall * first.error) / first.factor;
+  const double       cpu_s = MeshPlanForecast(1, &first, r->dim, 1, finer * first.factor).cpu_s;
+
+  Say(r, "order   2 takes %.2g s for an error of %.2g %%, order 1 would take some %.2g s\n", second->cpu_s,
+      100 * second->error / fabs((double)r->mesh[r->n].value), cpu_s);
+  if (second->cpu_s <= cpu_s) {
+    r->n_plan            = 0;
+    r->plan[r->n_plan++] = *second;
+  } else
+    r->order = 1;
 }
 
 /* Takes the figures of the mesh that was solved last. */
-static PetscErrorCode Record(Refinement *r, double factor)
+static PetscErrorCode Record(Refinement *r, double planned)
 {
-  SolvedMesh          *mesh = &r->mesh[r->n];
+  const double         factor = PresentFactor(r, planned);
+  SolvedMesh          *mesh   = &r->mesh[r->n];
   const QuantityError *error;
   const char          *why;
   RunUsage             usage;
@@ -218,6 +271,8 @@ static PetscErrorCode Record(Refinement *r, double factor)
   mesh->error.cells = NULL; /* they go with the run */
   mesh->mesh_s      = r->run->mesh_s;
   mesh->rough       = (PetscBool)(why != NULL);
+  mesh->factor      = factor;
+  mesh->order       = r->run->mesh->order;
   r->figures[r->n]  = (MeshFigures){.factor   = factor,
                                     .unknowns = (double)mesh->dofs,
                                     .error    = (double)MeshEstimate(error),
@@ -225,6 +280,11 @@ static PetscErrorCode Record(Refinement *r, double factor)
                                     .rss_mb   = (double)usage.peak_rss_mb};
   r->cpu_s          = (double)usage.cpu_s;
   Compare(r);
+  if (r->tries_order)
+    ChooseOrder(r);
+  else
+    r->plan[r->n_plan++] = r->figures[r->n];
+  r->tries_order = PETSC_FALSE;
   r->n++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -283,12 +343,21 @@ static PetscErrorCode Write(const Refinement *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gives the sizes the scale with which gmsh makes as many cells as they ask for. more: cells, over the present ones. */
+static void TakeScale(Refinement *r, double more)
+{
+  const Mesh mesh = r->run->mesh;
+
+  r->wanted = more * (double)mesh->n_cells_global;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) r->size[c] *= (PetscReal)r->scale;
+}
+
 /* Chooses the sizes of the next mesh's elements and forecasts it. finer: it may have so many times the elements, to the
    power of 1 / dim. */
 static PetscErrorCode PlanSizes(Refinement *r, PetscReal finer, MeshFigures *next)
 {
   const Mesh           mesh   = r->run->mesh;
-  const MeshFigures   *last   = &r->figures[r->n - 1];
+  const MeshFigures   *last   = &r->plan[r->n_plan - 1];
   const PetscReal      wanted = WantedMeshError(r) / (PetscReal)last->error;
   const QuantityError *error;
   const char          *why;
@@ -303,8 +372,9 @@ static PetscErrorCode PlanSizes(Refinement *r, PetscReal finer, MeshFigures *nex
   PetscCall(ElementSizesFind(r->run->model, error->cells, PetscMin(wanted, REFINEMENT_PART),
                              PetscMin(PetscPowRealInt(finer, r->dim), REFINEMENT_MOST_ELEMENTS), r->size, &forecast));
   *next =
-    MeshPlanForecast(r->n, r->figures, r->dim, r->order, last->factor * pow((double)forecast.elements, 1.0 / r->dim));
+    MeshPlanForecast(r->n_plan, r->plan, r->dim, r->order, last->factor * pow((double)forecast.elements, 1.0 / r->dim));
   next->error = last->error * (double)forecast.error;
+  TakeScale(r, (double)forecast.elements);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -312,18 +382,19 @@ static PetscErrorCode PlanSizes(Refinement *r, PetscReal finer, MeshFigures *nex
 static PetscErrorCode PlanEven(Refinement *r, double factor, MeshFigures *next)
 {
   const Mesh      mesh    = r->run->mesh;
-  const PetscReal smaller = (PetscReal)(factor / r->figures[r->n - 1].factor);
+  const PetscReal smaller = (PetscReal)(factor / r->plan[r->n_plan - 1].factor);
   PetscReal      *measure;
 
   PetscFunctionBeginUser;
   r->even = PETSC_TRUE;
-  *next   = MeshPlanForecast(r->n, r->figures, r->dim, r->order, factor);
+  *next   = MeshPlanForecast(r->n_plan, r->plan, r->dim, r->order, factor);
   if (r->structured) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree(r->size));
   PetscCall(PetscMalloc1(mesh->n_cells, &r->size));
   PetscCall(PetscMalloc1(mesh->n_cells, &measure));
   MeshCellSizes(mesh, r->size, measure);
   for (PetscInt c = 0; c < mesh->n_cells; c++) r->size[c] /= smaller;
+  TakeScale(r, pow((double)smaller, r->dim));
   PetscCall(PetscFree(measure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -334,10 +405,10 @@ static double LargestFactor(Refinement *r)
   const MeshFigures left    = {.cpu_s  = r->wish.cpu_s > 0 ? fmax(r->wish.cpu_s - r->cpu_s, REFINEMENT_NO_TIME) : 0,
                                .rss_mb = r->wish.rss_mb},
                     in_time = {.cpu_s = left.cpu_s};
-  const double largest      = MeshPlanLargest(r->n, r->figures, r->dim, r->order, left);
+  const double largest      = MeshPlanLargest(r->n_plan, r->plan, r->dim, r->order, left);
 
   if (largest == 0)
-    r->why = MeshPlanLargest(r->n, r->figures, r->dim, r->order, in_time) == 0
+    r->why = MeshPlanLargest(r->n_plan, r->plan, r->dim, r->order, in_time) == 0
                ? "the next mesh would take more than accuracy.limit.time"
                : "the next mesh would take more than accuracy.limit.memory";
   return largest;
@@ -352,11 +423,23 @@ static PetscBool IsDoubted(const Refinement *r)
   return (PetscBool)(OtherError(last) + MeshEstimate(&last->error) <= r->wish.to * PetscAbsReal(last->value));
 }
 
+/* Plans the last mesh with elements of second order. */
+static void PlanOrder(Refinement *r, MeshFigures *next)
+{
+  *next          = MeshPlanForecast(r->n_plan, r->plan, r->dim, 1, 2 * r->plan[r->n_plan - 1].factor);
+  next->factor   = r->plan[r->n_plan - 1].factor;
+  r->even        = PETSC_TRUE;
+  r->tries_order = PETSC_TRUE;
+  r->may_try     = PETSC_FALSE;
+  r->order       = 2;
+  r->wanted      = 0;
+}
+
 /* Chooses the next mesh and forecasts it. r->why: there is none. */
 static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
 {
   const SolvedMesh *last    = Last(r);
-  const double      largest = LargestFactor(r), present = r->figures[r->n - 1].factor;
+  const double      largest = LargestFactor(r), present = r->plan[r->n_plan - 1].factor;
   const PetscBool   doubted = IsDoubted(r);
 
   PetscFunctionBeginUser;
@@ -366,10 +449,13 @@ static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
            MeshError(last) < WantedMeshError(r))
     r->why = "what is left of error does not come from the mesh";
   if (r->why) PetscFunctionReturn(PETSC_SUCCESS);
-  if (doubted)
+  if (r->may_try && !doubted && largest >= REFINEMENT_ORDER_ROOM * present)
+    PlanOrder(r, next);
+  else if (doubted)
     PetscCall(PlanEven(r, fmin(largest, REFINEMENT_WITNESS * present), next));
-  else if (r->structured)
-    PetscCall(PlanEven(r, fmin(largest, MeshPlanFactor(r->n, r->figures, r->order, (double)WantedMeshError(r))), next));
+  else if (r->structured || r->run->mesh->order != r->order)
+    PetscCall(
+      PlanEven(r, fmin(largest, MeshPlanFactor(r->n_plan, r->plan, r->order, (double)WantedMeshError(r))), next));
   else
     PetscCall(PlanSizes(r, (PetscReal)(largest / present), next));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -392,24 +478,28 @@ static PetscErrorCode EditSizes(Refinement *r)
 /* Makes the edits of the scene that give the next mesh. */
 static PetscErrorCode Edit(Refinement *r, double factor)
 {
-  RunInput *input = &r->input;
+  RunInput *input     = &r->input;
+  const int densities = r->n_edits - 1;
+  int       n         = r->n_given;
   char    **set;
   char      value[MESH_DENSITY_TEXT];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(r->n_given + r->n_edits, &set));
   PetscCall(PetscArraycpy(set, input->set, r->n_given));
-  for (int i = 0; i < r->n_edits; i++) {
-    if (!r->edit[i]) PetscCall(PetscMalloc1(EDIT_LENGTH, &r->edit[i]));
-    set[r->n_given + i] = r->edit[i];
-    if (!r->structured) continue;
+  for (int i = 0; i < r->n_edits; i++)
+    if (!r->edit[i]) PetscCall(PetscCalloc1(EDIT_LENGTH, &r->edit[i]));
+  for (int i = 0; i < densities && r->structured; i++) {
     MeshDensityText(&r->density[i], (PetscReal)factor, value);
     PetscCall(PetscSNPrintf(r->edit[i], EDIT_LENGTH, "mesh.parameters.%s=%s", r->density[i].name, value));
   }
-  if (!r->structured) PetscCall(EditSizes(r));
+  if (!r->structured && !r->tries_order) PetscCall(EditSizes(r));
+  PetscCall(PetscSNPrintf(r->edit[densities], EDIT_LENGTH, "mesh.order=%d", r->order));
+  for (int i = 0; i < r->n_edits; i++)
+    if (r->edit[i][0] && (i < densities || r->chooses)) set[n++] = r->edit[i];
   if (input->n_set > r->n_given) PetscCall(PetscFree(input->set));
   input->set       = set;
-  input->n_set     = r->n_given + r->n_edits;
+  input->n_set     = n;
   input->overwrite = PETSC_TRUE;
   input->mesh      = r->n + 1;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -424,7 +514,8 @@ static PetscErrorCode SolveNext(Refinement *r, const MeshFigures *next, BurnishS
   PetscFunctionBeginUser;
   PetscCall(Edit(r, next->factor));
   Say(r, "next    ");
-  for (int i = 0; r->structured && i < r->n_edits; i++)
+  if (r->tries_order) Say(r, " elements of second order,");
+  for (int i = 0; r->structured && !r->tries_order && i < r->n_edits - 1; i++)
     Say(r, " %s,", strchr(r->edit[i], '.') + strlen(".parameters."));
   Say(r, " some %.0f unknowns, error by the mesh %.2g %%, CPU %.2g s\n", next->unknowns, part * next->error,
       next->cpu_s);

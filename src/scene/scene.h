@@ -245,6 +245,7 @@ typedef struct {
   int              n_cad_surfaces;
   SceneCadSurface *cad_surfaces;
   int              order; /* of the elements, 1 or 2; 0 stands for that of the .msh file */
+  int              order_chosen; /* 1: the scene names neither the order nor a formulation */
   char            *sizes; /* view of gmsh with the sizes of elements; NULL: those of the .geo file */
   int              n_parameters;
   ScenePair       *parameters; /* of the .geo file */

@@ -78,6 +78,9 @@ PetscErrorCode SceneReadAccuracy(Scene scene)
   if (SchemaHas(document, "accuracy.limit.time")) scene->accuracy.cpu_s = SchemaReal(document, "accuracy.limit.time");
   if (SchemaHas(document, "accuracy.limit.memory"))
     scene->accuracy.rss_mb = SchemaReal(document, "accuracy.limit.memory");
+  scene->order_chosen = !SceneHas(scene, "mesh", "order");
+  for (int b = 0; b < scene->n_bodies; b++)
+    scene->order_chosen = scene->order_chosen && (scene->bodies[b].rigid || scene->bodies[b].chosen);
   scene->output.error = PetscMax(scene->output.error, SCENE_ERROR_YES);
   ReleasePenalties(scene);
   PetscFunctionReturn(PETSC_SUCCESS);
