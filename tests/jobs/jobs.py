@@ -222,6 +222,18 @@ JOBS = [
     Job("brake_block", "brake block on a drum that turns", [
         Answer("torque", -7178.4, 0.05, "limit"),
     ], steps=12),
+    Job("brake_shoe", "brake shoe with a lining on a drum that turns", [
+        Answer("torque", -17402.9, 0.001, "limit"),
+    ], steps=10),
+    Job("sheet_over_edge", "rubber sheet drawn around the edge of a table", [
+        Answer("pull", 1.877, 0.1, "limit"),
+    ], steps=14, stiff=["contact.0.penalty={scale: 30}"]),
+    Job("wedge_clamp", "wedge driven between two clamped blocks, in space", [
+        Answer("push", 1092.13, 0.2, "closed form"),
+    ], steps=10),
+    Job("cone_clutch", "ring pressed on a cone that turns, in space", [
+        Answer("torque", -561830, 0.5, "closed form"),
+    ], steps=12),
     Job("wedge_lock", "wedge driven in, let go and pulled", [
         Answer("grip", 1979, 0.05, "limit"),
         Answer("hold", 228, 0.3, "limit"),
