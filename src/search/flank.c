@@ -167,14 +167,15 @@ PetscBool FlankIsOwn(const Nearest *look, const Candidate *c)
   return (PetscBool)(shared == look->own || (shared > 0 && !FlankFaces(look, c)));
 }
 
-/* Is a facet behind the slave point, beyond its own body? Only facets that face the point can be taken for partners. */
+/* Is a facet behind the slave point, beyond or beside its own body? Only facets that face the point can be taken for
+ * partners. */
 static PetscBool IsHidden(const Nearest *look, const Candidate *c)
 {
   Foot foot;
 
   if (!look->listed || !FlankFaces(look, c)) return PETSC_FALSE;
   CandidateFoot(look, c, &foot);
-  return OwnBodyHides(look, c, &foot);
+  return (PetscBool)(OwnBodyHides(look, c, &foot) || (look->one_body && OwnBodyTurnsFrom(look, &foot)));
 }
 
 /*@
