@@ -347,6 +347,18 @@ static void WriteAuto(const ChangePlace *at, char *text, size_t size)
   snprintf(text, size, "-set %s.formulation=auto", at->figures->scene->bodies[at->body].path);
 }
 
+/* Bodies of which the run itself gives others than full elements, and routines of the user, have no enhanced ones. */
+static int IsFull(const ChangePlace *at)
+{
+  return at->body >= 0 && at->figures->scene->bodies[at->body].formulation == FORMULATION_FULL &&
+         at->figures->scene->bodies[at->body].material.law != MATERIAL_UMAT;
+}
+
+static void WriteEnhanced(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set %s.formulation=enhanced", at->figures->scene->bodies[at->body].path);
+}
+
 static int IsFirstOrder(const ChangePlace *at)
 {
   return at->figures->scene->order != 2;
@@ -541,6 +553,7 @@ static const Change changes[CHANGES] = {
   [CHANGE_FORMULATION]    = {"bodies.*.formulation", AXIS_ELEMENTS, 1, IsEnhanced, WriteFormulation},
   [CHANGE_AUTO]           = {"bodies.*.formulation", AXIS_ELEMENTS, 1, IsNamed, WriteAuto},
   [CHANGE_SECOND_ORDER]   = {"mesh.order", AXIS_ELEMENTS, 1, IsFirstOrder, WriteSecondOrder},
+  [CHANGE_ENHANCED]       = {"bodies.*.formulation", AXIS_ELEMENTS, 1, IsFull, WriteEnhanced},
   [CHANGE_SHORTER]        = {"stepping", AXIS_STEP, -1, MayBeShorter, WriteShorter},
   [CHANGE_SHORTER_MIN]    = {"stepping.dt_min", AXIS_STEP, -1, StopsEarly, WriteShorterMin},
   [CHANGE_FLOW]           = {"stepping.plastic_strain", AXIS_STEP, -1, MayBeShorter, WriteFlow},

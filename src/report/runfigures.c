@@ -1,5 +1,6 @@
 /* The figures of a finished run, see runfigures.h. */
 #include "runfigures.h"
+#include "errors/strainvariation.h"
 #include "linear/directsolver.h"
 #include <sys/resource.h>
 
@@ -136,6 +137,8 @@ PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run,
   figures->n_fluids = FluidCount(model->problem->fluids);
   PetscCall(PetscMalloc1(figures->n_fluids, &figures->fluids));
   for (int i = 0; i < figures->n_fluids; i++) FluidGetReport(model->problem->fluids, i, &figures->fluids[i]);
+  PetscCall(PetscMalloc1(scene->n_bodies, &figures->variation));
+  PetscCall(StrainVariation(model->mesh, scene, model->problem->elasticity, model->u, figures->variation));
   PetscCall(CollectFreeBodies(model, figures));
   PetscCall(CollectStored(model, figures));
   PetscCall(PetscCalloc1(figures->n_pairs, &figures->pairs));
@@ -156,5 +159,6 @@ PetscErrorCode RunFiguresDestroy(RunFigures *figures)
   PetscFunctionBeginUser;
   PetscCall(PetscFree(figures->pairs));
   PetscCall(PetscFree(figures->fluids));
+  PetscCall(PetscFree(figures->variation));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

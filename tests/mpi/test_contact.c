@@ -358,7 +358,7 @@ static void test_augment(void **state)
 }
 
 /* Softened penalties limit energy and force, as multiples of the automatic penalty of 1000, and leave the penalties as
-   they are. */
+   they are. Terms that a prediction counted on are limited only where all are. */
 static void test_soften(void **state)
 {
   PetscReal most;
@@ -373,6 +373,9 @@ static void test_soften(void **state)
   assert_near(Evaluate(), 200 * 0.05 * 0.05 / 2 * Area, 1e-10);
   assert_near(Show(LEFT, 0).force, 200 * 0.05 * Area, 1e-10);
   assert_near(Show(LEFT, 0).penalty, 5000, 1e-9);
+  OK(ContactMarkPredicted(parts.problem->contact));
+  OK(ContactSoften(parts.problem->contact, 0.2, PETSC_FALSE));
+  assert_near(Evaluate(), 5000 * 0.05 * 0.05 / 2 * Area, 1e-10);
   OK(ContactSoften(parts.problem->contact, 10, PETSC_TRUE)); /* above the penalty: no limit */
   assert_near(Evaluate(), 5000 * 0.05 * 0.05 / 2 * Area, 1e-10);
   OK(ContactSoften(parts.problem->contact, PETSC_MAX_REAL, PETSC_TRUE));

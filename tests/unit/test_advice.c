@@ -18,6 +18,7 @@ typedef struct {
   StepperReport            way;
   RunRecord                run;
   StepRecord               last;
+  PetscReal                variation; /* of the body */
   RunFigures               figures;
 } Case;
 
@@ -45,12 +46,13 @@ static void Good(Case *c)
   c->whole.stepping.dt_min       = 1e-5;
   c->whole.solver.max_iterations = 30;
   c->whole.output.every          = 1;
-  c->figures                     = (RunFigures){.scene   = &c->whole,
-                                                .run     = &c->run,
-                                                .usage   = {.wall_s = 1},
-                                                .last    = &c->last,
-                                                .n_pairs = 1,
-                                                .pairs   = &c->pair};
+  c->figures                     = (RunFigures){.scene     = &c->whole,
+                                                .run       = &c->run,
+                                                .usage     = {.wall_s = 1},
+                                                .last      = &c->last,
+                                                .n_pairs   = 1,
+                                                .pairs     = &c->pair,
+                                                .variation = &c->variation};
 }
 
 static void Collect(const char *line, void *text)
@@ -130,6 +132,23 @@ static void test_locking(void **state)
   Expect(&c, NULL);
 }
 
+/* A body of first order that bends has a line, unless it locks by its volume. */
+static void test_bending(void **state)
+{
+  Case c;
+
+  (void)state;
+  Good(&c);
+  c.variation = 0.19;
+  Expect(&c, NULL);
+  c.variation = 0.33;
+  Expect(&c,
+         "body 'block' stores 33 % of its energy in strains that vary within elements of first order: it bends, and "
+         "they bend too stiffly: -set mesh.order=2, or -set bodies.0.formulation=enhanced");
+  c.body.locks = 1;
+  Expect(&c, "lock (too stiff)");
+}
+
 /* The size of the results is foretold from a tenth of a gigabyte on. */
 static void test_foretold(void **state)
 {
@@ -177,7 +196,8 @@ static void test_pairs(void **state)
   Expect(&c, "3 of 20 slave points");
   Good(&c);
   c.pair.fits.apart_over_h = 0.2;
-  Expect(&c, "the smooth surface is up to 0.2 of a face of the slave off the faces of 'foot': a finer or more even mesh");
+  Expect(&c,
+         "the smooth surface is up to 0.2 of a face of the slave off the faces of 'foot': a finer or more even mesh");
   Good(&c);
   c.pair.quality.sagitta = 2e-3;
   Expect(&c, "smoother=diffuse");
@@ -278,8 +298,7 @@ static void test_path(void **state)
   c.whole.stepping.dt_max = 1;
   c.way.steps = c.way.newton_accepted = 200;
   Expect(&c, "-set stepping.initial=0.0025");
-  c.last.energy         = (EnergyFigures){
-    .elastic = 1e5, .plastic = 1000, .work = 1.005e5, .outer = {.work = 1.005e5}};
+  c.last.energy         = (EnergyFigures){.elastic = 1e5, .plastic = 1000, .work = 1.005e5, .outer = {.work = 1.005e5}};
   c.way.steps           = 10;
   c.way.newton_accepted = 50;
   Expect(&c, NULL);
@@ -452,10 +471,10 @@ static void test_kernels(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_length), cmocka_unit_test(test_locking), cmocka_unit_test(test_foretold),
-    cmocka_unit_test(test_pairs),  cmocka_unit_test(test_steps),   cmocka_unit_test(test_agree),
-    cmocka_unit_test(test_order),  cmocka_unit_test(test_sides),   cmocka_unit_test(test_kernels),
-    cmocka_unit_test(test_flow),   cmocka_unit_test(test_path)};
+    cmocka_unit_test(test_length),   cmocka_unit_test(test_locking), cmocka_unit_test(test_bending),
+    cmocka_unit_test(test_foretold), cmocka_unit_test(test_pairs),   cmocka_unit_test(test_steps),
+    cmocka_unit_test(test_agree),    cmocka_unit_test(test_order),   cmocka_unit_test(test_sides),
+    cmocka_unit_test(test_kernels),  cmocka_unit_test(test_flow),    cmocka_unit_test(test_path)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

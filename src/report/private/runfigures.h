@@ -49,7 +49,8 @@ typedef struct {
   PetscBool          certified; /* all accepted steps were judged and hold */
   int                n_fluids;
   FluidReport       *fluids;
-  ProbeErrors        errors; /* of the probes; NULL: not asked for */
+  PetscReal         *variation; /* of each body: see errors/strainvariation.h */
+  ProbeErrors        errors;    /* of the probes; NULL: not asked for */
 } RunFigures;
 
 PetscErrorCode RunUsageCollect(MPI_Comm, RunUsage *);
