@@ -272,4 +272,7 @@ JOBS = [
     Job("pipe_flared", "pipe end flared on a cone", [
         Answer("rim", 3.940, 0.07, "limit"),
     ], steps=35, picture=["--mirror", "x"], stiff=["stepping.dt_max=0.02"]),
+    Job("hole_expanded", "hole in a sheet expanded by a cone", [
+        Answer("hole", 3.111, 0.7, "limit"),
+    ], steps=15, picture=["--mirror", "x"], levels=(1.5, 2.25, 3.375), stiff=["stepping.dt_max=0.02"]),
 ]
