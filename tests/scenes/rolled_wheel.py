@@ -33,6 +33,11 @@ travel = surface.summary()["contact"][0]["friction"]["travel"]
 # 2.5469 in 200 steps of one length
 check.near("thrust, surface to surface", surface.steps()[-1]["thrust"], -2.547, max(travel, 0.005) * 2.547)
 check.holds("pressed alone: no travel", pressed.summary()["contact"][0]["friction"]["travel"] == 0)
+# Where a load begins, nodes that had next to no force leave as others come in: nothing has travelled.
+begun = run(args, SCENES.parent / "jobs/wedge_clamp.yaml", "-quiet", out="begun",
+            overrides=["loads.0.pressure=100", "output.every=0"])
+travel = begun.summary()["contact"][0]["friction"]["travel"]
+check.holds("a load that begins: no travel", travel < 1e-3, f"{travel:.3g}")
 refused = run(args, wheel, out="smooth", must=1,
               overrides=["contact.0.friction={mu: 0}", "stepping.contact_travel=0.1"])
 check.holds("no pair has friction: refused", "contact_travel" in refused.text, refused.text[-200:])
