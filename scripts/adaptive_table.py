@@ -1,6 +1,6 @@
-"""What an accuracy of 0.2 % costs on free meshes: by meshes of the run's own choice (-to 0.2), by uniform refinement of
-the same first mesh, which is divided by 1, 2, 4 and so on, and by the best single mesh of a study by hand, graded towards
-the contact or the corner. Leaves one record per mesh, prints the table and draws the errors over unknowns and over CPU
+"""What an accuracy of 0.2 % costs on free meshes: by meshes of the run's own choice (-to 0.2), by uniform refinement of the
+same first mesh, which is divided by 1, 2, 4 and so on, and by the best single mesh of a study by hand, graded towards the
+contact or the corner. Leaves one record per mesh, prints the table and draws the errors over unknowns and over CPU
 seconds, with meshes of the loop down to 0.01 %, which show the rate; --print tables and draws an existing record, --only
 runs some scenes.
     python scripts/adaptive_table.py [--burnish BINARY] [--record FILE] [--only NAME ...]
@@ -116,8 +116,8 @@ def cost(rows, way):
 
 
 def table(rows):
-    print("| scene | loop: meshes | unknowns | CPU (s) | true error (%) | uniform: unknowns | CPU (s) | loop over uniform "
-          "| by hand: unknowns | CPU (s) | loop over by hand |")
+    print("| scene | loop: meshes | unknowns | CPU (s) | true error (%) | uniform: unknowns | CPU (s) "
+          "| loop over uniform | by hand: unknowns | CPU (s) | loop over by hand |")
     print("| --- " * 11 + "|")
     for name in dict.fromkeys(row["scene"] for row in rows):
         mine = [row for row in rows if row["scene"] == name]
@@ -143,7 +143,8 @@ def draw(rows):
     names = list(dict.fromkeys(row["scene"] for row in rows))
     figure, axes = plt.subplots(2, len(names), figsize=(3 * len(names), 6), squeeze=False)
     for column, name in zip(axes.T, names):
-        for way, colour, marker in (("loop", "#0072b2", "o"), ("fine", "#009e73", "^"), ("uniform", "#d55e00", "s")):
+        for way, colour, marker in (("loop", "#0072b2", "o"), ("fine", "#009e73", "^"),
+                                    ("uniform", "#d55e00", "s")):
             mine = [row for row in rows if row["scene"] == name and row["way"] == way]
             errors = [max(error(row), 1e-3) for row in mine]
             column[0].loglog([float(row["unknowns"]) for row in mine], errors, marker=marker, color=colour, label=LABELS[way])
