@@ -30,7 +30,8 @@ CASES = {  # scene, probe, overrides; a number: the reference of a job
     "punch": ("runs/punch.yaml", "force", ("mesh.parameters.n=2", SECOND), None),
     "o_ring": ("runs/o_ring.yaml", "force", ("mesh.parameters.n=6", SECOND), None),
     "cup_flattening": ("runs/cup_flattening.yaml", "plane_force", ("mesh.parameters={n_arc: 30, n_wall: 1}", ), None),
-    "ring_in_ring": ("runs/ring_in_ring.yaml", "mean_pressure", ("mesh.parameters={n_inner: 8, n_outer: 10}", ), 6.43887),
+    "ring_in_ring": ("runs/ring_in_ring.yaml", "mean_pressure", ("mesh.parameters={n_inner: 8, n_outer: 10}", ),
+                     6.43887),
     "spheres": ("runs/spheres.yaml", "mean_pressure", ("mesh.parameters={n_inner: 3, n_outer: 4}", ), 15.22436),
     # 17352 unknowns of second order, h 0.1, penalties 1000 times as stiff as elements: 0.003, 0.01 and some 0.02 %
     "hertz_line": ("runs/hertz_line.yaml", "force", LINE, 2702.82),
@@ -44,7 +45,8 @@ CASES = {  # scene, probe, overrides; a number: the reference of a job
     "plate_cylinder": ("runs/plate_cylinder.yaml", "tip_uy", PLATE, -0.845999),
     "plate_cylinder force": ("runs/plate_cylinder.yaml", "cylinder_fy", PLATE, 79235.2),
     # 45792 unknowns and what is estimated for them: 0.05 %
-    "pipe_pinch": ("runs/pipe_pinch.yaml", "plate_force", ("mesh.parameters={n_arc: 12, n_wall: 1, n_len: 4}", ), 123899),
+    "pipe_pinch": ("runs/pipe_pinch.yaml", "plate_force", ("mesh.parameters={n_arc: 12, n_wall: 1, n_len: 4}", ),
+                   123899),
     "lip_seal": ("tests/jobs/lip_seal.yaml", "lip_up", FREE, 0.46007),
     "x_ring": ("tests/jobs/x_ring.yaml", "force", FREE, 239.1),
     "job o_ring": ("tests/jobs/o_ring.yaml", "force", FREE, 537.9),

@@ -182,6 +182,28 @@ static int IsOwnWall(int dim, const Piece *piece, const Point *point, int state,
   return distance >= STAND_OWN_WALL * Distance(point->X, at);
 }
 
+/* Does the way from a point to a foot behind which it stands enter another wall of its own body? The point is then in
+   front of that wall, as a coil of a spiral spring is inside of the next one, and not in the material below the foot.
+ */
+static int IsBeforeWall(const Look *look, const Point *point, int state, const double foot[3])
+{
+  const double *p = point->x[state];
+
+  for (int i = 0; i < look->n_found; i++) {
+    const Piece *piece = &look->list->pieces[look->found[i]];
+    double       from, to, at[3], closest[3];
+
+    if (piece->body != point->body || HasTag(piece, look->dim, point->tag)) continue;
+    from = PieceFront(look->dim, (const Place *)piece->x[state], p);
+    to   = PieceFront(look->dim, (const Place *)piece->x[state], foot);
+    if (from <= STAND_TIE * piece->size || to >= -STAND_TIE * piece->size) continue;
+    for (int d = 0; d < 3; d++) at[d] = p[d] + from / (from - to) * (foot[d] - p[d]);
+    (void)PieceClosest(look->dim, (const Place *)piece->x[state], at, closest);
+    if (Distance(at, closest) <= STAND_TIE * piece->size) return 1;
+  }
+  return 0;
+}
+
 /* The closest point so far */
 typedef struct {
   const Piece *piece;
@@ -262,6 +284,7 @@ Stand PointStand(const Look *look, const Point *point, int state)
     distance = Distance(foot, point->x[state]);
     if (distance > nearest.distance + STAND_TIE * piece->size) continue;
     if (IsOwnWall(look->dim, piece, point, state, distance)) continue;
+    if (piece->body == point->body && IsBeforeWall(look, point, state, foot)) continue;
     KeepNearest(piece, state, foot, interior, distance, &nearest);
   }
   if (!nearest.piece || FaceMarksTreated(point->marks, nearest.piece->marks)) return stand;
@@ -317,8 +340,7 @@ static double TipNear(const Look *look, const Point *point, double chord)
     const Piece *piece = &look->list->pieces[look->around[i]];
 
     for (int a = 0; a < look->dim; a++)
-      if (Distance(piece->x[1][a], point->x[1]) <= chord)
-        tip = fmax(tip, TipOver(chord, piece->tip[a], piece->side));
+      if (Distance(piece->x[1][a], point->x[1]) <= chord) tip = fmax(tip, TipOver(chord, piece->tip[a], piece->side));
   }
   return tip;
 }

@@ -1,6 +1,7 @@
 """A run reaches the accuracy that is asked for, on meshes of its own choice: by densities of the geometry, and by sizes of
 elements for a free one; on any number of ranks. The change from the mesh before counts where the estimate is less. A limit ends it with the best answer and status 5."""
 import csv
+import pathlib
 
 from harness import Check, arguments, run, SCENES
 
@@ -56,6 +57,14 @@ for probe, per_cent, true in ("force", 0.2, 2702.82), ("patch", 1, 1365.39), ("h
     finished, meshes = wish(RUNS / "hertz_line.yaml", probe, per_cent, f"line_{probe}", *line)
     check.near(f"{probe}: the error is below the wish", meshes[-1]["value"], true, per_cent / 100 * true)
 check.holds("the change alone is said to count", "by the change of the answer alone" in finished.text)
+# The order of the elements where the scene leaves it to the run; reference: that of scripts/adaptive_table.py
+scene = pathlib.Path(args.out) / "bracket.yaml"
+scene.parent.mkdir(parents=True, exist_ok=True)
+scene.write_text((RUNS / "free" / "bracket.yaml").read_text().replace(", order: 2", "").replace(
+    "../../meshes", str(RUNS.parent / "meshes")))
+finished, meshes = wish(scene, "force", 0.5, "order")
+check.holds("elements of second order are tried, and are cheaper", "order   2 takes" in finished.text)
+check.near("order: the error is below the wish", meshes[-1]["value"], 0.227703, 0.005 * 0.227703)
 finished, meshes = wish(RUNS / "cook.yaml", "tip_uy", 0.01, "limit", "accuracy.meshes=2", must=5)
 check.holds("a limit ends it", len(meshes) == 2 and "is not reached" in finished.text)
 finished, meshes = wish(RUNS / "cook.yaml", "tip_uy", 5, "alone", "accuracy.meshes=1", "mesh.order=2",

@@ -8,9 +8,9 @@
    MeshPlanLargest() gives the factor of the largest mesh that limits of time and memory allow.
 
    Two meshes are witnesses of each other: where the error falls by the part q from one to the next, the change of the
-   answer is (1 - q) / q times what is left. MeshPlanImplied() gives that of the change that the estimates of both meshes
-   have not forecast, and adds the estimate of the last mesh, both with a factor of safety. Source: Roache, Journal of
-   Fluids Engineering 116 (1994), 405. */
+   answer is (1 - q) / q times what is left. MeshPlanImplied() gives that of the change that the estimates of both
+   meshes have not forecast, and adds the estimate of the last mesh, both with a factor of safety. Source: Roache,
+   Journal of Fluids Engineering 116 (1994), 405. */
 #pragma once
 
 typedef struct {

@@ -38,7 +38,7 @@ typedef struct {
   Probes          probes;
   Results         results;
   LoadStepper     stepper;
-  PetscBool       refines;       /* the scene asks for an accuracy: this run is on one of several meshes */
+  PetscBool       refines; /* the scene asks for an accuracy: this run is on one of several meshes */
   PetscInt        n_ends, ends_room;
   PetscReal      *ends;          /* load parameters at which steps ended, with output.error: history */
   PetscInt        kept;          /* step of the last checkpoint, -1: none */
