@@ -21,7 +21,6 @@ from launch import ROOT, command, environment, fill_scenes, read_records
 
 WISH, FINE, MOST_CPU = 0.2, 0.01, 15  # per cent; of the meshes that show the rate; seconds of one mesh
 COLUMNS = ("scene", "way", "mesh", "unknowns", "cpu_s", "gmsh_s", "value", "estimate", "reference")
-PICTURE = ROOT / "runs/records/adaptive.png"
 BRACKET = tuple({"refine": refine, "near": near} for refine in (0.5, 1, 2) for near in (2, 4, 8, 16))
 NEAR = tuple({"refine": refine, "near": near} for refine in (0.3, 0.5, 1, 2) for near in (8, 16, 32))
 LABELS = {"loop": "-to 0.2", "fine": "-to 0.01", "uniform": "uniform"}
@@ -128,7 +127,6 @@ def table(rows):
         for other in (uniform, hand):
             cells += [other[1]["unknowns"], f"{other[0]:.2f}", f"{loop[0] / other[0]:.2f}"] if other else ["-"] * 3
         print("| " + " | ".join(cells) + " |")
-    draw(rows)
 
 
 def slope(panel, rows):
@@ -140,7 +138,7 @@ def slope(panel, rows):
                      ls="--", label="optimal rate")
 
 
-def draw(rows):
+def draw(rows, path):
     """Errors over unknowns above, over CPU seconds of all meshes below."""
     names = list(dict.fromkeys(row["scene"] for row in rows))
     figure, axes = plt.subplots(2, len(names), figsize=(3 * len(names), 6), squeeze=False)
@@ -168,8 +166,8 @@ def draw(rows):
     axes[1][0].legend(fontsize=7)
     axes[0][0].legend(fontsize=7)
     figure.tight_layout()
-    figure.savefig(PICTURE, dpi=72)
+    figure.savefig(path, dpi=72)
 
 
 if __name__ == "__main__":
-    fill_scenes(__doc__, "adaptive", COLUMNS, records, CASES, table)
+    fill_scenes(__doc__, "adaptive", COLUMNS, records, CASES, table, draw)

@@ -59,8 +59,9 @@ def fill_table(args, columns, solve, cases, print_table):
     print_table(read_records(args.record))
 
 
-def fill_scenes(description, name, columns, solve, scenes, print_table):
-    """A script that runs scenes into a record and prints its table; solve gives the list of records of a scene."""
+def fill_scenes(description, name, columns, solve, scenes, print_table, draw=None):
+    """A script that runs scenes into a record and prints its table; solve gives the list of records of a scene, and draw
+    makes the picture beside the record."""
     parser = table_parser(description, name)
     parser.add_argument("--only", nargs="*", default=list(scenes), metavar="NAME", help="of these scenes")
     args = parser.parse_args()
@@ -68,6 +69,8 @@ def fill_scenes(description, name, columns, solve, scenes, print_table):
         args.out.mkdir(parents=True, exist_ok=True)
         write_records(args.record, columns, lambda scene: solve(args, scene), args.only, 1)
     print_table(read_records(args.record))
+    if draw:
+        draw(read_records(args.record), args.record.with_suffix(".png"))
 
 
 def fill_row(row, columns, summary):

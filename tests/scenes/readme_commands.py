@@ -113,6 +113,9 @@ FULL = {
     f"{PYTHON} scripts/forming_table.py": printed("forming_table", "forming"),
     f"{PYTHON} scripts/michell_table.py": printed("michell_table", "michell"),
     f"{PYTHON} scripts/penalty_table.py --record runs/records/penalty.csv": printed("penalty_table", "penalty"),
+    f"{PYTHON} scripts/adaptive_table.py --record runs/records/adaptive.csv --only bracket hertz_line ring_in_ring "
+    '"hertz_line patch"':
+    printed("adaptive_table", "adaptive"),
     f"{PYTHON} scripts/error_table.py --record runs/records/error.csv": printed("error_table", "error"),
     f"{PYTHON} scripts/sensitivity_table.py --record runs/records/sensitivity.csv":
     printed("sensitivity_table", "sensitivity"),
