@@ -25,8 +25,8 @@ void FrictionTravelBegin(ContactPair *pair, PetscReal t)
 }
 
 /* The force of a pair at nodes that came into contact in the step and stick now, or at nodes that left it where that is
-   less, as a part of the larger one of the forces before and now. Where contact only grows, or only shrinks, it does not
-   travel, and a load that begins in the step has not travelled. */
+   less, as a part of the larger one of the forces before and now. Where contact only grows, or only shrinks, it does
+   not travel, and a load that begins in the step has not travelled. */
 static PetscErrorCode PairTravel(const ContactPair *pair, PetscReal *travel)
 {
   PetscReal sum[4] = {0, 0, 0, 0}; /* before, of it left; now, of it come in */
