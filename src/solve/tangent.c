@@ -110,8 +110,8 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, const StressReferen
 . model - before the linear solve
 
   Note:
-  With the iterative solver this is the elements' own form of the tangent: a ninth of all memory. In a direct solve it
-is little beside the factors.
+  With the iterative solver this is the elements' own form of the tangent, a ninth of all memory. Beside factors it is
+  little.
 @*/
 PetscErrorCode ModelReleaseTangent(Model model)
 {
