@@ -800,6 +800,14 @@ PetscErrorCode ElasticityReleaseTangent(Elasticity e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Refuses work with a local block CSR that was released. A rank without nodes has none. */
+static PetscErrorCode CheckTangent(Elasticity e)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(e->value || !e->row[e->mesh->n_nodes], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "there is no tangent");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ElasticityExtrapolates - says whether a StressReference changes the tangent of any cell.
 
@@ -840,7 +848,7 @@ PetscErrorCode ElasticityAddBlock(Elasticity e, PetscInt n, const PetscInt nodes
   const int dim = e->dim;
 
   PetscFunctionBeginUser;
-  PetscCheck(e->value || !e->row[e->mesh->n_nodes], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "there is no tangent");
+  PetscCall(CheckTangent(e));
   for (PetscInt a = 0; a < n; a++) {
     const PetscInt row = e->row[nodes[a]];
 
@@ -877,7 +885,7 @@ PetscErrorCode ElasticityMultiplyLocal(Elasticity e, const PetscReal *x, PetscRe
   const int dim = e->dim;
 
   PetscFunctionBeginUser;
-  PetscCheck(e->value || !e->row[e->mesh->n_nodes], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "there is no tangent");
+  PetscCall(CheckTangent(e));
   for (PetscInt n = 0; n < e->mesh->n_nodes; n++) {
     for (PetscInt k = e->row[n]; k < e->row[n + 1]; k++) {
       const PetscReal *value = &e->value[(size_t)k * dim * dim], *xk = &x[e->column[k] * dim];
@@ -908,7 +916,7 @@ PetscErrorCode ElasticityMultiplyTransposed(Elasticity e, const PetscReal *x, Pe
   const int dim = e->dim;
 
   PetscFunctionBeginUser;
-  PetscCheck(e->value || !e->row[e->mesh->n_nodes], PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "there is no tangent");
+  PetscCall(CheckTangent(e));
   for (PetscInt n = 0; n < e->mesh->n_nodes; n++) {
     for (PetscInt k = e->row[n]; k < e->row[n + 1]; k++) {
       const PetscReal *value = &e->value[(size_t)k * dim * dim];
