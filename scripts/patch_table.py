@@ -1,6 +1,8 @@
 """Contact patch test in 3D (runs/patch_blocks.yaml): by how much the slave nodes' pressure and the stress in the
 elements next to the interface differ from the load, which is exact everywhere. Runs formulations, elements, mesh pairs,
-jitters and strains, leaves one record per run and prints the tables; --print tables an existing record.
+jitters and strains, leaves one record per run and prints the tables; --print tables an existing record. The way is
+`pair`, slave and master by name; `symmetric`, both surfaces in one list, each the other's slave with half weight; or
+`augmented`, the same with multipliers until no node is beyond 1e-7 of the nodes' spacing.
     python scripts/patch_table.py [--burnish BINARY] [--jobs N] [--record FILE]
 Stress is the one along y in the elements that have a face on the interface, from the displacements in results.h5: the
 mean over an element's quadrature points, and in the record also the largest over the points themselves."""
@@ -30,7 +32,12 @@ PAIRS = {
     2: ((6, 7), (7, 6), (6, 12), (12, 6))
 }  # faces per side, master/slave
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
-COLUMNS = ("strain", "elements", "order", "master", "slave", "jitter", "formulation", "status", "iterations",
+WAYS = {"pair": ("slave: upper_bottom, master: lower_top", ""), "symmetric": ("surfaces: [upper_bottom, lower_top]", ""),
+        "augmented": ("surfaces: [upper_bottom, lower_top]", ", augment: true, g_max: 1e-7, unit: spacing")}
+CONTACT = ("contact=[{{name: joint, {0}, smoother: diffuse, formulation: {2}, symmetry: [wall_x_low, wall_x_high, "
+           "wall_z_low, wall_z_high], penalty: {{initial: auto, scale: 100{1}}}}}]")
+SIDES = ("joint", "joint.upper_bottom.lower_top", "joint.lower_top.upper_bottom")  # of a pair; of a list
+COLUMNS = ("strain", "elements", "order", "master", "slave", "jitter", "formulation", "way", "status", "iterations",
            "fall_backs", "wall_s", "pressure_max", "pressure_rms", "stress_master", "stress_slave", "point_master",
            "point_slave")
 CORNERS = {"tet": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
@@ -106,22 +113,23 @@ def layer_stress(directory, finite):
     return [numpy.concatenate(s) for s in stresses]  # one type of element in each body
 
 
-def overrides(strain, elements, order, pair, jitter, formulation):
+def overrides(strain, elements, order, pair, jitter, formulation, way):
     load, how = STRAINS[strain]
     lower, upper = FORMS[elements]
     return [
         f"mesh.order={order}", f"mesh.parameters.n_lower={pair[0]}", f"mesh.parameters.n_upper={pair[1]}",
         f"mesh.parameters.jitter={jitter}", f"mesh.parameters.lower={lower}", f"mesh.parameters.upper={upper}",
-        f"contact.0.formulation={formulation}", f"loads.0.pressure={load}", *how
+        CONTACT.format(*WAYS[way], formulation), "probes=[]", f"loads.0.pressure={load}", *how
     ]
 
 
 def deviations(directory, strain):
-    """Largest and rms deviation of the nodal pressure, and largest of the elements' stress on both sides, from the
-    load, in per cent."""
+    """Largest and rms deviation of the slave nodes' pressure, on both sides where there are two, and largest of the
+    elements' stress on both sides, from the load, in per cent."""
     load = STRAINS[strain][0]
     with h5py.File(directory / "results.h5", "r") as file:
-        pressure = file["steps"][sorted(file["steps"])[-1]]["contact/joint/pressure"][()]
+        contact = file["steps"][sorted(file["steps"])[-1]]["contact"]
+        pressure = numpy.concatenate([contact[side]["pressure"][()] for side in SIDES if side in contact])
     error = 100 * (pressure / load - 1)
     figures = {"pressure_max": numpy.max(numpy.abs(error)), "pressure_rms": numpy.sqrt(numpy.mean(error**2))}
     for side, stress in zip(("master", "slave"), layer_stress(directory, strain == "finite")):
@@ -131,7 +139,7 @@ def deviations(directory, strain):
 
 
 def cases():
-    """Strain, elements, order, pair, jitter, formulation of every run."""
+    """Strain, elements, order, pair, jitter, formulation, way of every run."""
     jitters = (0, 0.125, 0.25)
     chosen = [("small", "bricks", order, pair, jitter, how)
               for order in (1, 2)
@@ -151,24 +159,33 @@ def cases():
     chosen += [("finite", "bricks", order, pair, 0.25, "surface_to_surface")
                for order in (1, 2)
                for pair in PAIRS[order]]
-    return chosen + [("finite", "tetrahedra", order, PAIRS[order][0], 0.25, "surface_to_surface") for order in (1, 2)]
+    chosen += [("finite", "tetrahedra", order, PAIRS[order][0], 0.25, "surface_to_surface") for order in (1, 2)]
+    chosen = [(*case, "pair") for case in chosen]
+    chosen += [("small", "bricks", order, pair, jitter, how, "symmetric")
+               for order in (1, 2)
+               for pair in PAIRS[order]
+               for jitter in (0, 0.25)
+               for how in FORMULATIONS]
+    return chosen + [("small", "bricks", order, pair, 0.25, "surface_to_surface", "augmented")
+                     for order in (1, 2)
+                     for pair in PAIRS[order]]
 
 
 def solve(case, args):
-    strain, elements, order, pair, jitter, formulation = case
+    strain, elements, order, pair, jitter, formulation, way = case
     directory = args.out / "-".join(
-        str(v) for v in (strain, elements.replace(" ", "_").replace("/", "_"), order, *pair, jitter, formulation))
+        str(v) for v in (strain, elements.replace(" ", "_").replace("/", "_"), order, *pair, jitter, formulation, way))
     shutil.rmtree(directory, ignore_errors=True)
     command = [args.burnish, str(SCENE), "-o", str(directory), "-quiet"]
     for override in overrides(*case):
         command += ["-set", override]
     finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               text=True)
-    record = dict(zip(COLUMNS, (strain, elements, order, *pair, jitter, formulation, finished.returncode)))
+    record = dict(zip(COLUMNS, (strain, elements, order, *pair, jitter, formulation, way, finished.returncode)))
     if finished.returncode == 0:
         summary = json.loads((directory / "summary.json").read_text())
         record.update(iterations=summary["newton_iterations"],
-                      fall_backs=json.dumps(summary["contact"][0]["fall_backs"]), wall_s=round(summary["wall_s"], 2))
+                      fall_backs=json.dumps(sum(pair["fall_backs"] for pair in summary["contact"])), wall_s=round(summary["wall_s"], 2))
         record.update({name: f"{value:.4g}" for name, value in deviations(directory, strain).items()})
     else:
         print(case, finished.stdout)
@@ -187,18 +204,19 @@ def print_tables(records):
         "the interface, master / slave\n"
     )
     print(
-        "| strain | elements | order | master/slave | jitter | node to surface | surface to surface | iterations |\n|" +
-        " --- |" * 8)
-    keys = dict.fromkeys(tuple(r[name] for name in COLUMNS[:6]) for r in records)
+        "| strain | elements | order | master/slave | jitter | way | node to surface | surface to surface | iterations |\n|" +
+        " --- |" * 9)
+    named = (*COLUMNS[:6], "way")
+    keys = dict.fromkeys(tuple(r[name] for name in named) for r in records)
     for key in keys:
-        found = {r["formulation"]: r for r in records if tuple(r[name] for name in COLUMNS[:6]) == key}
+        found = {r["formulation"]: r for r in records if tuple(r[name] for name in named) == key}
         cells = [
             f"{figure(r, 'pressure_max')}; {figure(r, 'stress_master')} / {figure(r, 'stress_slave')}" if r else "-"
             for r in (found.get(name) for name in FORMULATIONS)
         ]
         iterations = " / ".join(found[name]["iterations"] if name in found else "-" for name in FORMULATIONS)
         print(
-            f"| {key[0]} | {key[1]} | {key[2]} | {key[3]}/{key[4]} | {key[5]} | {cells[0]} | {cells[1]} | {iterations} "
+            f"| {key[0]} | {key[1]} | {key[2]} | {key[3]}/{key[4]} | {key[5]} | {key[6]} | {cells[0]} | {cells[1]} | {iterations} "
             "|"
         )
 

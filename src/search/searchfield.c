@@ -123,7 +123,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   }
   FaceRecordsSort(field->n_records, field->records);
   PetscCall(PetscFree(geometry));
-  if (s->maps) PetscCall(FetchMaps(s, field));
+  if (s->maps && s->maps->ptr) PetscCall(FetchMaps(s, field)); /* partners are sought before there are maps */
   PetscCall(NeighbourListsCreateNodes(s, field, lists));
   PetscCall(NeighbourListsUpdateNodes(s, lists, u, t));
   PetscCall(MakeCandidates(s, lists, box, distance, field));

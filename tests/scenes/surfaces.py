@@ -160,6 +160,18 @@ def friction():
             check.near(f"{formulation}: friction by slave and master, {probe}", named[probe] / own[probe], 1, SIDES)
 
 
+def live():
+    """Tips with offsets that follow the nodes: partners are sought before there are maps of offsets."""
+    forces = []
+    for offset, ranks in (("held", 1), ("live", 1), ("live", args.ranks)):
+        tips = f"{{name: tips, surfaces: [skin], offset: {offset}, penalty: {{initial: 10000, scale: 1}}}}"
+        probes = run(args, FRAME, out=f"{offset}_{ranks}", ranks=ranks, overrides=[
+            "mesh.parameters.n=8", f"contact=[{tips}]", "probes=[{name: force, reaction: top, component: y}]"]).summary()["probes"]
+        forces.append(probes["force"])
+    check.near("force with live offsets", forces[1] / forces[0], 1, SMOOTHED)
+    check.near(f"force with live offsets on {args.ranks} ranks", forces[2] / forces[1], 1, 1e-9)
+
+
 def overlap():
     """A shrink fit by a list of all bodies; overlaps that are too deep for it are refused, not missed."""
     contact = "contact=[{name: fit, surfaces: all, initial_overlap: resolve}]"
@@ -231,7 +243,7 @@ def refusals():
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, mirror, walls, ranks, refusals, override, friction, overlap, bumper or edges"))
+args = arguments(("case", "frame, mirror, walls, ranks, refusals, override, friction, overlap, bumper, edges or live"))
 check = Check()
 if args.case == "frame":
     for smoother in ("facet", "diffuse"):
@@ -242,5 +254,5 @@ elif args.case == "mirror":
     mirror("surface_to_surface")
 else:
     {"walls": walls, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
-     "overlap": overlap, "bumper": bumper, "edges": edges}[args.case]()
+     "overlap": overlap, "bumper": bumper, "edges": edges, "live": live}[args.case]()
 check.finish()
