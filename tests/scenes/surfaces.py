@@ -32,7 +32,7 @@ def frame(name, contact, form, loads=(), bodies=()):
 
 
 def frames(smoother, formulation):
-    """The whole frame, its half on a plane with twice the penalty, and two bodies."""
+    """The whole frame, its half on its own image and on a plane with twice the penalty, and two bodies."""
     how = f"smoother: {smoother}, formulation: {formulation}, penalty: {{initial: 10000, scale: 1}}"
     plane = f"formulation: {formulation}, penalty: {{initial: 20000, scale: 1}}"
     two = ["bodies.1={volume: lower, material: {law: svk, E: 1000, nu: 0.3}}"]
@@ -43,6 +43,11 @@ def frames(smoother, formulation):
                  ["loads=[{surface: back, ux: 0, uy: 0}, {surface: top, uy: -0.002}]"])
     listed = frame("listed", f"{{name: tips, surfaces: [tip, lower_tip], {how}}}", 2, held, two)
     named = frame("named", f"{{name: tips, slave: tip, master: lower_tip, {how}}}", 2, held, two)
+    image = frame("image", f"{{name: tips, surfaces: [tip], symmetry: [back], {how}}}", 1,
+                  ["supports=[{surface: back, uy: 0}]",
+                   "loads=[{surface: back, ux: 0}, {surface: top, uy: -0.002}]"])
+    check.near(f"{name}: force of half a frame on its own image", image[0] / whole[0], 1, EXACT)
+    check.near(f"{name}: pressure of half a frame on its own image", image[1] / whole[1], 1, EXACT)
     bounds = {"facet": (EXACT, EXACT), "diffuse": (SMOOTHED, SMOOTHED_PRESSURE[formulation])}[smoother]
     check.near(f"{name}: force of half a frame on a plane", whole[0] / half[0], 1, bounds[0])
     check.near(f"{name}: pressure of half a frame on a plane", whole[1] / half[1], 1, bounds[1])
