@@ -21,11 +21,11 @@
 
 /* Where a solve in pseudo-time steps stands. */
 typedef struct {
-  PetscReal mean, scale;  /* of the restraint, see damping.h: the elements' mean, the present one */
-  PetscReal factor;       /* by which the next pseudo-time step is longer */
-  PetscReal force;        /* its force at the end of the last pseudo-time step */
-  PetscReal most;         /* the largest one so far */
-  PetscReal enough;       /* below this one a static solve is tried */
+  PetscReal mean, scale; /* of the restraint, see damping.h: the elements' mean, the present one */
+  PetscReal factor;      /* by which the next pseudo-time step is longer */
+  PetscReal force;       /* its force at the end of the last pseudo-time step */
+  PetscReal most;        /* the largest one so far */
+  PetscReal enough;      /* below this one a static solve is tried */
   PetscInt  steps, failures;
 } Relaxation;
 
@@ -53,12 +53,24 @@ PetscErrorCode ModelAnchor(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Makes the contact lists at the anchor. Those of a failed solve may have been made far from it. */
+static PetscErrorCode GoBackLists(Model model)
+{
+  const Problem problem = model->problem;
+  PetscBool     hold;
+
+  PetscFunctionBeginUser;
+  PetscCall(
+    ProblemRenewLists(problem, model->work->accepted_u, model->work->accepted_t, model->t, PETSC_TRUE, 1, &hold));
+  ContactForgetLost(model->contact); /* by the gaps of the failed solve points seem lost that are not */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Returns to the anchor after a failure. */
 static PetscErrorCode GoBack(Model model, SolveReport *report)
 {
   PetscFunctionBeginUser;
   PetscCall(ElasticityReturn(model->problem->elasticity, VOLUMES_OF_ANCHOR));
-  if (model->contact) ContactForgetLost(model->contact);
   model->work->cycling     = PETSC_FALSE;
   model->work->cycles      = 0;
   model->problem->inverted = -1;
@@ -66,6 +78,7 @@ static PetscErrorCode GoBack(Model model, SolveReport *report)
   report->result           = SOLVE_CONVERGED;
   PetscCall(DofSpringsReturn(model->problem->damping, model->x));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  if (model->contact) PetscCall(GoBackLists(model));
   PetscCall(ModelStepFromSolved(model, model->problem->trial));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
