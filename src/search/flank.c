@@ -424,6 +424,25 @@ static PetscReal DeepShare(const Nearest *look, int facing, int n, const int *fo
   return 1 - SmoothStep(depth / (NEIGHBOUR_LISTS_DEEP * look->size) - 1) * (1 - SmoothStep(2 * side / depth - 1));
 }
 
+/* Marks the points of the facets that do not face the slave point. */
+static void MarkAversed(const Nearest *look, int facing, int n, const int *found)
+{
+  for (int k = facing; k < n; k++) {
+    const Facet *facet = &look->candidates[found[k]].facet;
+
+    for (int a = 0; a < ElementGet(facet->type)->corners; a++) look->aversed[facet->nodes[a]] = look->q + 1;
+  }
+}
+
+/* May a facet share an edge with one of those? Few do, so that the others need not be compared with it. */
+static PetscBool MayEnd(const Nearest *look, const Facet *facet)
+{
+  int marked = 0;
+
+  for (int a = 0; a < ElementGet(facet->type)->corners; a++) marked += look->aversed[facet->nodes[a]] == look->q + 1;
+  return (PetscBool)(marked >= look->lists->dim - 1);
+}
+
 /*@
   FlankShare - finds the ends of the flank, and the part of the slave point's area that takes part in contact with it.
 
@@ -446,9 +465,11 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
 {
   PetscReal share = 1;
 
+  MarkAversed(look, facing, n, found);
   for (int i = 0; i < facing; i++) {
     ends[i] = 0;
     share   = PetscMin(share, FreeShare(look, &look->candidates[found[i]], facing, found));
+    if (!MayEnd(look, &look->candidates[found[i]].facet)) continue;
     for (int k = facing; k < n; k++) {
       const Candidate *beyond = &look->candidates[found[k]];
       FlankEdge        edge;

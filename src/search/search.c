@@ -221,10 +221,12 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   const int  dim = lists->dim;
   BoxTree    tree;
   int       *found, *ends;
+  PetscInt  *aversed;
   ListBuffer buffer = {0};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(field->n_candidates, &found, field->n_candidates, &ends, lists->n_points, &buffer.position));
+  PetscCall(PetscCalloc1(lists->n_points, &aversed));
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
   PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, s->one_body, &tree)); /* none is averse then */
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
@@ -239,6 +241,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                     .one_body   = s->one_body,
                     .marks      = s->marks ? s->marks[q] : 0,
                     .best       = -1,
+                    .aversed    = aversed,
                     .least      = s->reach + motion,
                     .tie        = FACET_TIE * (s->reach + motion)};
 
@@ -252,6 +255,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   lists->facet_size                 = buffer.size;
   BoxTreeDestroy(&tree);
   PetscCall(PetscFree3(found, ends, buffer.position));
+  PetscCall(PetscFree(aversed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

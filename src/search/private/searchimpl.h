@@ -80,8 +80,9 @@ typedef struct {
   /* Distance (length) of the nearest candidate of all, or the largest one that is searched. Distances that differ by
      less than tie are equal. */
   PetscReal least, tie;
-  Foot      foot;   /* on the best candidate */
-  PetscBool averse; /* a candidate within a face of the slave does not face the point */
+  Foot      foot;    /* on the best candidate */
+  PetscBool averse;  /* a candidate within a face of the slave does not face the point */
+  PetscInt *aversed; /* of every point of the lists: 1 + the last slave point that does not face a facet there */
 } Nearest;
 
 /* Growing lists of all slave points. */
