@@ -841,6 +841,21 @@ static PetscErrorCode TermLacksFeet(const ContactPair *pair, PetscInt c, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The multiplier of a term at the last projection (force per area). in: of FrictionTermAsk(); NULL: no friction acts.
+ */
+static void TermGrip(const ContactPair *pair, const FrictionInput *in, PetscReal grip[3])
+{
+  static const PetscReal unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  PetscReal              part[2];
+
+  for (int d = 0; d < 3; d++) grip[d] = 0;
+  if (!in || !pair->scene->augment) return;
+  for (int d = 0; d < 3; d++) {
+    FrictionComponents(in->normal, in->along, unit[d], part);
+    for (int k = 0; k < 2; k++) grip[d] += in->grip[k] * part[k];
+  }
+}
+
 /*@
   FrictionResidual - computes the tractions of a pair, which become its present state, and adds their forces.
 
@@ -879,7 +894,7 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
       for (int d = 0; d < 3; d++) pair->friction->force[3 * q + d] += weight * out.traction[d];
     }
     for (int d = 0; d < 3; d++) now->traction[3 * c + d] = acts ? out.traction[d] : 0;
-    FrictionTermGrip(pair, acts ? &in : NULL, &now->grip[3 * c]);
+    TermGrip(pair, acts ? &in : NULL, &now->grip[3 * c]);
     pair->friction->elastic[c] = acts ? out.elastic : 0;
     now->slips[c]              = (PetscBool)(acts && out.state == FRICTION_SLIPS);
     now->slid[c]               = accepted->slid[c] + (acts ? out.slipped : 0);

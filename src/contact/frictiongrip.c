@@ -2,21 +2,6 @@
    as the pressures do, and take the elastic slip away. */
 #include "contactimpl.h"
 
-/* The multiplier of a term at the last projection (force per area). in: of FrictionTermAsk(); NULL: no friction acts.
- */
-void FrictionTermGrip(const ContactPair *pair, const FrictionInput *in, PetscReal grip[3])
-{
-  static const PetscReal unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  PetscReal              part[2];
-
-  for (int d = 0; d < 3; d++) grip[d] = 0;
-  if (!in || !pair->scene->augment) return;
-  for (int d = 0; d < 3; d++) {
-    FrictionComponents(in->normal, in->along, unit[d], part);
-    for (int k = 0; k < 2; k++) grip[d] += in->grip[k] * part[k];
-  }
-}
-
 /* Elastic slip of a term that sticks in the last residual, over the bound of its pair; 0 where it slips. */
 PetscReal FrictionTermBeyond(const ContactPair *pair, PetscInt c)
 {

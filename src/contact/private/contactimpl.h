@@ -273,7 +273,6 @@ PetscErrorCode FrictionResidual(ContactPair *, PetscReal t, PetscReal *values);
 PetscErrorCode FrictionNodalForces(const ContactPair *, const PetscReal *force, PetscReal *on_node);
 PetscErrorCode FrictionShow(const ContactPair *, const PetscReal *area, ContactNodes *);
 /* frictiongrip.c */
-void           FrictionTermGrip(const ContactPair *, const FrictionInput *, PetscReal grip[3]);
 PetscReal      FrictionTermBeyond(const ContactPair *, PetscInt term);
 PetscErrorCode FrictionGripNext(const ContactPair *, PetscReal *grip);
 PetscErrorCode FrictionGripTake(ContactPair *, const PetscReal *grip);
