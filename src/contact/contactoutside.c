@@ -108,19 +108,25 @@ static void AddPressure(const ContactPair *pair, PetscInt c, PetscReal t_0, Pair
   energy->given -= area * (held - PetscSqr(PetscMax(before.multiplier, 0)) / (2 * before.penalty));
 }
 
-/* Adds those of a term's elastic slip, which begins a step as what the accepted penalty made of it. */
+/* Adds those of a term's elastic slip, which begins a step as what the accepted penalty made of it. The tractions less
+   their multipliers are stored. A multiplier takes energy along the elastic slip. */
 static void AddElasticSlip(const ContactPair *pair, PetscInt c, PairEnergy *energy)
 {
-  const PetscReal *before = &pair->accepted.traction[3 * c], *now = &pair->now.traction[3 * c];
+  const PetscReal *held_before = &pair->accepted.grip[3 * c], *held = &pair->now.grip[3 * c];
   const PetscReal  stiffness = pair->friction->stiffness, stick = pair->friction->automatic * pair->accepted.stick;
-  PetscReal        area = 0, square = 0, product = 0;
+  PetscReal        area = 0, square = 0, product = 0, taken = 0;
 
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
     if (FrictionTermTakes(pair, k)) area += pair->term_weight[k] * pair->factor[pair->term_point[k]];
   for (int d = 0; d < 3; d++) {
-    square += PetscSqr(now[d]);
-    product += before[d] * now[d];
+    const PetscReal before = pair->accepted.traction[3 * c + d] - held_before[d];
+    const PetscReal now    = pair->now.traction[3 * c + d] - held[d];
+
+    square += PetscSqr(now);
+    product += before * now;
+    taken += (held_before[d] + held[d]) / 2 * (now - before) / stiffness;
   }
+  energy->given -= area * taken;
   energy->stored += area * square / (2 * stiffness);
   if (pair->scene->stick_slip == 0) energy->given += area * product / 2 * (1 / stick - 1 / stiffness);
 }

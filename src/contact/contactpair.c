@@ -319,6 +319,18 @@ static PetscErrorCode PairTurnMaster(Scene scene, Loads loads, const ContactPair
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Makes the mixing of a pair's multipliers: pressures, and two components of each traction. */
+static PetscErrorCode PairCreateMixing(ContactPair *pair)
+{
+  const PetscInt n = pair->n, all = pair->friction ? 3 * n : n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(all, &pair->weight));
+  for (PetscInt i = 0; i < all; i++) pair->weight[i] = pair->area[i < n ? i : (i - n) / 2];
+  PetscCall(AndersonCreate(pair->mesh->comm, all, pair->weight, &pair->mixing));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactPairCreate - creates surfaces, terms, state and search of one pair of the scene, without lists.
 
@@ -389,7 +401,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
     PetscCalloc4(pair->n, &pair->held, pair->n, &pair->predicted, pair->n, &pair->expected, pair->n, &pair->arrived));
   if (friction) PetscCall(FrictionCreate(pair));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
-  if (contact->augment) PetscCall(AndersonCreate(mesh->comm, pair->n, pair->area, &pair->mixing));
+  if (contact->augment) PetscCall(PairCreateMixing(pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -430,6 +442,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(ContactVariationsDestroy(&pair->variations));
   PetscCall(PetscFree(pair->before));
   PetscCall(AndersonDestroy(&pair->mixing));
+  PetscCall(PetscFree(pair->weight));
   PetscCall(PetscFree4(pair->held, pair->predicted, pair->expected, pair->arrived));
   PetscCall(FrictionDestroy(&pair->friction));
   PetscCall(PetscFree(pair->carried));

@@ -39,8 +39,9 @@ static PenaltyUpdate TermUpdate(const ContactPair *pair, PetscInt c, PetscReal l
   return update;
 }
 
-/* How the penetrations of an augmented pair relate to their bound in the present state, over all ranks. A multiplier
-   may also press across an opening, so that a term that is open by more than the bound and presses is beyond it too. */
+/* How the penetrations and elastic slips of an augmented pair relate to their bound in the present state, over all
+   ranks. A multiplier may also press across an opening, so that a term that is open by more than the bound and presses
+   is beyond it too. */
 static PetscErrorCode PairBeyond(const ContactPair *pair, ContactWindow *window)
 {
   PetscInt  count[4] = {0, 0, pair->now.augmented, pair->now.missed};
@@ -48,10 +49,11 @@ static PetscErrorCode PairBeyond(const ContactPair *pair, ContactWindow *window)
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n; c++) {
-    const PetscReal distance =
+    PetscReal distance =
       PetscAbsReal(pair->now.gap[c] - ContactTermOffset(pair, c, pair->t)) / ContactTermBound(pair, c);
 
     if (pair->now.status[c] != CONTACT_CLOSED) continue;
+    if (pair->friction) distance = PetscMax(distance, FrictionTermBeyond(pair, c));
     count[0]++;
     count[1] += distance > 1;
     excess = PetscMax(excess, distance);
@@ -76,17 +78,18 @@ static PetscReal TermPressure(const ContactPair *pair, PetscInt c)
   return value.pressure;
 }
 
-/* The pressures of a pair become its multipliers, if one of its terms is beyond the bound and updates are left in
-   this step. Collective, after a converged solve, in the state of its last ContactResidual(). WINDOW_MISSED: the step
-   must be solved again. WINDOW_HOLDS: the state is as it was, and only terms that do not press lose their
-   multipliers. A stiff body changes its forces little in a solve with a soft penalty, so from the second update of a
-   step on, the pressures are mixed with those of the updates before. Steps that end beyond the bound are counted.
-   Source: Simo and Laursen (1992), Computers & Structures 42, 97-116, Uzawa's update. */
+/* The pressures and tractions of a pair become its multipliers, if one of its terms is beyond the bound and updates
+   are left in this step. Collective, after a converged solve, in the state of its last ContactResidual().
+   WINDOW_MISSED: the step must be solved again. WINDOW_HOLDS: the state is as it was, and only terms that do not press
+   lose their multipliers. A stiff body changes its forces little in a solve with a soft penalty, so from the second
+   update of a step on, the pressures are mixed with those of the updates before. Steps that end beyond the bound are
+   counted. Source: Simo and Laursen (1992), Computers & Structures 42, 97-116, Uzawa's update. */
 static PetscErrorCode PairAugment(ContactPair *pair, ContactWindowState *state)
 {
-  ContactWindow window;
-  PetscReal    *pressure;
-  PetscMPIInt   rank;
+  ContactWindow  window;
+  const PetscInt n = pair->friction ? 3 * pair->n : pair->n;
+  PetscReal     *before, *next; /* pressures, and two components of each traction */
+  PetscMPIInt    rank;
 
   PetscFunctionBeginUser;
   PetscCall(PairBeyond(pair, &window));
@@ -100,16 +103,22 @@ static PetscErrorCode PairAugment(ContactPair *pair, ContactWindowState *state)
   if (!rank) pair->now.missed += window.outside && pair->updates == pair->scene->max_updates;
   if (!pair->updates) AndersonStart(pair->mixing);
   pair->updates += window.outside > 0;
-  PetscCall(PetscMalloc1(pair->n, &pressure));
-  for (PetscInt c = 0; c < pair->n; c++) pressure[c] = TermPressure(pair, c);
-  if (*state == WINDOW_MISSED) PetscCall(AndersonNext(pair->mixing, pair->now.multiplier, pressure));
+  PetscCall(PetscMalloc2(n, &before, n, &next));
+  PetscCall(PetscArraycpy(before, pair->now.multiplier, pair->n));
+  for (PetscInt c = 0; c < pair->n; c++) next[c] = TermPressure(pair, c);
+  if (pair->friction) {
+    PetscCall(PetscArraycpy(before + pair->n, pair->friction->grip, 2 * pair->n));
+    PetscCall(FrictionGripNext(pair, next + pair->n));
+  }
+  if (*state == WINDOW_MISSED) PetscCall(AndersonNext(pair->mixing, before, next));
   for (PetscInt c = 0; c < pair->n; c++) {
     if (pair->now.status[c] == CONTACT_OPEN)
       pair->now.multiplier[c] = 0;
     else if (*state == WINDOW_MISSED)
-      pair->now.multiplier[c] = PetscMax(0, pressure[c]);
+      pair->now.multiplier[c] = PetscMax(0, next[c]);
   }
-  PetscCall(PetscFree(pressure));
+  if (pair->friction && *state == WINDOW_MISSED) PetscCall(FrictionGripTake(pair, next + pair->n));
+  PetscCall(PetscFree2(before, next));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -26,7 +26,8 @@ PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, PetscBool frict
     state->penalty[c] = penalty;
     state->gap[c]     = NAN;
   }
-  if (friction) PetscCall(PetscCalloc3(3 * n, &state->traction, n, &state->slid, n, &state->slips));
+  if (friction)
+    PetscCall(PetscCalloc4(3 * n, &state->traction, n, &state->slid, n, &state->slips, 3 * n, &state->grip));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -53,6 +54,7 @@ PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to)
     PetscCall(PetscArraycpy(to->traction, from->traction, 3 * from->n));
     PetscCall(PetscArraycpy(to->slid, from->slid, from->n));
     PetscCall(PetscArraycpy(to->slips, from->slips, from->n));
+    PetscCall(PetscArraycpy(to->grip, from->grip, 3 * from->n));
     to->stick      = from->stick;
     to->dissipated = from->dissipated;
     to->turned     = from->turned;
@@ -79,7 +81,7 @@ PetscErrorCode ContactStateDestroy(ContactState *state)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree5(state->penalty, state->status, state->gap, state->offset, state->multiplier));
-  PetscCall(PetscFree3(state->traction, state->slid, state->slips));
+  PetscCall(PetscFree4(state->traction, state->slid, state->slips, state->grip));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -96,6 +98,8 @@ static PetscErrorCode ArchiveFriction(ContactState *state, Archive archive, cons
   for (PetscInt c = 0; c < state->n; c++) slips[c] = state->slips[c];
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/traction", name));
   PetscCall(ArchiveRows(archive, path, nodes, 3, state->traction));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/grip", name));
+  PetscCall(ArchiveRows(archive, path, nodes, 3, state->grip));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/slid", name));
   PetscCall(ArchiveRows(archive, path, nodes, 1, state->slid));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/slips", name));

@@ -18,6 +18,7 @@ typedef struct {
   PetscBool  friction; /* there is room for these; without nodes they are NULL on a rank */
   PetscReal *traction, *slid;
   PetscBool *slips;
+  PetscReal *grip;       /* the traction where there is no elastic slip, as it is stored; 0 without augmentation */
   PetscReal  stick;      /* factor on the automatic penalty of what sticks, the same on all ranks */
   PetscReal  dissipated; /* energy that friction has taken so far on this rank */
   PetscReal  turned;     /* part of it that nodes took whose slip turned much within a step */

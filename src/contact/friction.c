@@ -34,6 +34,7 @@ PetscErrorCode FrictionCreate(ContactPair *pair)
   PetscCall(PetscCalloc1(pair->slaves->lever_ptr ? pair->slaves->lever_ptr[q] : 0, &f->lever_node));
   PetscCall(PetscCalloc7(n, &f->anchored, 2 * n, &f->kept, 2 * n, &f->heading, n, &f->began, n, &f->pressed, n,
                          &f->axis, n, &f->guide));
+  PetscCall(PetscCalloc1(2 * n, &f->grip));
   PetscCall(PetscCalloc5(3 * n, &f->nodal, n, &f->elastic, 3 * n, &f->traction, n, &f->status, n, &f->footless));
   for (PetscInt i = 0; i < q; i++) f->face[i] = f->facet[i] = f->at[i] = f->first[i] = -1;
   SearchKeepFaces(pair->search);
@@ -51,6 +52,7 @@ PetscErrorCode FrictionDestroy(Friction *friction)
   PetscCall(PetscFree5(f->foot, f->facet, f->known, f->first, f->lever));
   PetscCall(PetscFree(f->lever_node));
   PetscCall(PetscFree7(f->anchored, f->kept, f->heading, f->began, f->pressed, f->axis, f->guide));
+  PetscCall(PetscFree(f->grip));
   PetscCall(PetscFree5(f->nodal, f->elastic, f->traction, f->status, f->footless));
   PetscCall(PetscFree(f->turns));
   PetscCall(PetscFree(*friction));
@@ -458,12 +460,11 @@ static int LeastAlong(const ContactPair *pair, PetscReal t, const PetscReal norm
   return best;
 }
 
-/* The components of a term's accepted traction along its tangents. New lists may have turned the normal a little: the
-   traction turns with it and keeps its length. */
-static void AcceptedComponents(const ContactPair *pair, PetscInt c, const FrictionInput *in, PetscReal component[2])
+/* The components of an accepted traction or multiplier along the tangents of its term. New lists may have turned the
+   normal a little: the traction turns with it and keeps its length. */
+static void AcceptedComponents(const FrictionInput *in, const PetscReal traction[3], PetscReal component[2])
 {
-  const PetscReal *traction = &pair->accepted.traction[3 * c];
-  PetscReal        length   = 0, left;
+  PetscReal length = 0, left;
 
   FrictionComponents(in->normal, in->along, traction, component);
   left = PetscSqrtReal(PetscSqr(component[0]) + PetscSqr(component[1]));
@@ -481,10 +482,11 @@ static void KeepTraction(ContactPair *pair, PetscInt c, PetscReal t, FrictionInp
     f->axis[c] = LeastAlong(pair, t, in->normal);
     Along(pair, pair->term_point[pair->term_ptr[c]], f->axis[c], t, in->along);
   }
-  AcceptedComponents(pair, c, in, traction);
+  AcceptedComponents(in, &pair->accepted.traction[3 * c], traction);
+  AcceptedComponents(in, &pair->accepted.grip[3 * c], &f->grip[2 * c]);
   FrictionComponents(in->normal, in->along, in->slip, slip);
   for (int k = 0; k < 2; k++) {
-    f->kept[2 * c + k]    = traction[k] / f->stiffness - slip[k];
+    f->kept[2 * c + k]    = (traction[k] - f->grip[2 * c + k]) / f->stiffness - slip[k];
     f->heading[2 * c + k] = pair->accepted.slips[c] ? traction[k] : 0;
   }
 }
@@ -673,7 +675,10 @@ PetscErrorCode FrictionTermAsk(const ContactPair *pair, PetscInt c, PetscReal t,
   if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
   ContactTermLaw(pair, c, t, &value, NULL, &area);
   TermMaterial(pair, c, t, value.pressure, in);
-  for (int k = 0; k < 2; k++) in->kept[k] = f->kept[2 * c + k];
+  for (int k = 0; k < 2; k++) {
+    in->kept[k] = f->kept[2 * c + k];
+    in->grip[k] = f->grip[2 * c + k];
+  }
   in->rate  = value.stiffness;
   in->began = f->began[c];
   PetscCall(TermSlip(pair, c, t, in, found));
@@ -836,6 +841,21 @@ static PetscErrorCode TermLacksFeet(const ContactPair *pair, PetscInt c, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The multiplier of a term at the last projection (force per area). in: of FrictionTermAsk(); NULL: no friction acts.
+ */
+static void TermGrip(const ContactPair *pair, const FrictionInput *in, PetscReal grip[3])
+{
+  static const PetscReal unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  PetscReal              part[2];
+
+  for (int d = 0; d < 3; d++) grip[d] = 0;
+  if (!in || !pair->scene->augment) return;
+  for (int d = 0; d < 3; d++) {
+    FrictionComponents(in->normal, in->along, unit[d], part);
+    for (int k = 0; k < 2; k++) grip[d] += in->grip[k] * part[k];
+  }
+}
+
 /*@
   FrictionResidual - computes the tractions of a pair, which become its present state, and adds their forces.
 
@@ -874,6 +894,7 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
       for (int d = 0; d < 3; d++) pair->friction->force[3 * q + d] += weight * out.traction[d];
     }
     for (int d = 0; d < 3; d++) now->traction[3 * c + d] = acts ? out.traction[d] : 0;
+    TermGrip(pair, acts ? &in : NULL, &now->grip[3 * c]);
     pair->friction->elastic[c] = acts ? out.elastic : 0;
     now->slips[c]              = (PetscBool)(acts && out.state == FRICTION_SLIPS);
     now->slid[c]               = accepted->slid[c] + (acts ? out.slipped : 0);

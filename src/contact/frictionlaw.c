@@ -134,25 +134,27 @@ double FrictionCountedShare(const FrictionInput *in, double pressure)
   return CountedShare(&at, &rate);
 }
 
-/* Elastic slip e of a node that only sticks, and its derivatives. */
-static void ElasticSlip(const FrictionInput *in, double e[3], FrictionTraction *by)
+/* Elastic slip e of a node that only sticks, with that of its grip, and its derivatives. gripped: the latter. */
+static void ElasticSlip(const FrictionInput *in, double e[3], double gripped[3], FrictionTraction *by)
 {
-  double   rate, share = CountedShare(in, &rate), across;
+  double   rate, share = CountedShare(in, &rate), across, kept[2];
   Tangents x;
   Matrix   by_n, P, turn;
 
+  for (int k = 0; k < 2; k++) kept[k] = in->kept[k] + in->grip[k] / in->stiffness;
   VaryTangents(in->along, MakeTangents(in->normal, in->along, &x), &x);
   across = Dot(x.n, in->slip);
   Projector(1, x.n, P);
   Projector(1 / x.length, x.n, turn);
   for (int i = 0; i < 3; i++) {
-    e[i]          = in->kept[0] * x.t[0][i] + in->kept[1] * x.t[1][i] + in->slip[i] - across * x.n[i];
+    gripped[i]    = (in->grip[0] * x.t[0][i] + in->grip[1] * x.t[1][i]) / in->stiffness;
+    e[i]          = kept[0] * x.t[0][i] + kept[1] * x.t[1][i] + in->slip[i] - across * x.n[i];
     by->by_gap[i] = rate * e[i];
     e[i] *= share;
     for (int j = 0; j < 3; j++) {
-      by_n[i][j]         = share * (in->kept[0] * x.by_n[0][i][j] + in->kept[1] * x.by_n[1][i][j] - across * (i == j) -
-                            x.n[i] * in->slip[j]);
-      by->by_along[i][j] = share * (in->kept[0] * x.by_along[0][i][j] + in->kept[1] * x.by_along[1][i][j]);
+      by_n[i][j] =
+        share * (kept[0] * x.by_n[0][i][j] + kept[1] * x.by_n[1][i][j] - across * (i == j) - x.n[i] * in->slip[j]);
+      by->by_along[i][j] = share * (kept[0] * x.by_along[0][i][j] + kept[1] * x.by_along[1][i][j]);
       by->by_slip[i][j]  = share * P[i][j];
     }
   }
@@ -221,11 +223,11 @@ double FrictionBound(const FrictionInput *in, double pressure)
 @*/
 void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
 {
-  double       slope, rate, e[3], length, bound = Bound(in, &slope);
+  double       slope, rate, e[3], gripped[3], rest[3], length, bound = Bound(in, &slope);
   const double share = CountedShare(in, &rate);
   Matrix       m;
 
-  ElasticSlip(in, e, out);
+  ElasticSlip(in, e, gripped, out);
   length     = sqrt(Dot(e, e));
   out->state = in->state;
   if (in->state == FRICTION_DECIDES) out->state = in->stiffness * length > bound ? FRICTION_SLIPS : FRICTION_STICKS;
@@ -234,9 +236,10 @@ void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
     memset(m, 0, sizeof(m));
     for (int i = 0; i < 3; i++) m[i][i] = in->stiffness;
     ApplyMatrix(m, out);
+    for (int i = 0; i < 3; i++) rest[i] = e[i] - gripped[i];
     for (int i = 0; i < 3; i++) out->traction[i] = in->stiffness * e[i];
-    for (int i = 0; i < 3; i++) out->by_stiffness[i] = share * out->traction[i]; /* beta falls as the stiffness grows */
-    out->elastic = length;
+    for (int i = 0; i < 3; i++) out->by_stiffness[i] = share * in->stiffness * rest[i]; /* beta falls as that grows */
+    out->elastic = sqrt(Dot(rest, rest));
     out->slipped = 0;
     return;
   }
@@ -244,10 +247,11 @@ void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
   Projector(bound > 0 ? bound / length : 0, e, m);
   ApplyMatrix(m, out);
   for (int i = 0; i < 3; i++) {
+    rest[i]              = bound / in->stiffness * e[i] - gripped[i];
     out->traction[i]     = bound * e[i];
-    out->by_stiffness[i] = 0; /* all of e turns with beta, and |t| is the bound */
+    out->by_stiffness[i] = -share * Dot(m[i], gripped); /* beta turns nothing, and |t| is the bound */
     out->by_gap[i] -= slope * in->rate * e[i];
   }
-  out->elastic = bound / in->stiffness;
-  out->slipped = length - out->elastic;
+  out->elastic = sqrt(Dot(rest, rest));
+  out->slipped = length - bound / in->stiffness;
 }

@@ -194,12 +194,12 @@ PetscErrorCode FrictionStepTerm(const ContactPair *pair, PetscInt c, PetscReal t
   }
   FrictionComponents(in.normal, in.along, in.slip, slip);
   friction->law         = in;
-  friction->law.kept[0] = friction->law.kept[1] = 0;
-  friction->law.steepness                       = 0; /* the coefficient stays in the step */
+  friction->law.kept[0] = friction->law.kept[1] = friction->law.grip[0] = friction->law.grip[1] = 0;
+  friction->law.steepness = 0; /* the coefficient stays in the step */
   for (int d = 0; d < 3; d++) {
     friction->law.normal[d] = unit[2][d];
     friction->law.along[d]  = unit[0][d];
-    friction->law.slip[d]   = d < 2 ? in.kept[d] + slip[d] : 0;
+    friction->law.slip[d]   = d < 2 ? in.kept[d] + in.grip[d] / in.stiffness + slip[d] : 0;
   }
   PetscCall(FrictionTerm(pair, c, t, &held, &out, &acts));
   if (acts) TakeToTangents(&out, tangent, friction);

@@ -331,13 +331,14 @@ const SchemaKey SchemaKeys[] = {
    .help = "of adjust; step: the new penalty is used from the next step on; converged: each step is solved again "
            "until the penetrations are in the window"},
   {"contact.*.penalty.augment", BOOLEAN, .preset = "false",
-   .help = "true: the penalty is kept, contact forces become multipliers, and each step is solved again until no "
-           "node in contact is beyond g_max; needs g_max and unit"},
+   .help = "true: the penalty is kept, pressures and tractions of friction become multipliers, and each step is solved "
+           "again until no node in contact is beyond g_max; needs g_max and unit"},
   {"contact.*.penalty.max_updates", INTEGER, .range = "[1, 1000]", .preset = "10",
    .help = "largest number of multiplier updates of augment in one step; the step is then accepted as it is, and the "
            "report counts such steps"},
   {"contact.*.penalty.g_min|g_max", REAL, .range = "(0, inf)", .unit = "unit",
-   .help = "window of the penetration; for augment, g_max bounds the penetration on either side"},
+   .help = "window of the penetration; for augment, g_max bounds the penetration on either side, and the elastic slip "
+           "of nodes that stick"},
   {"contact.*.penalty.unit", CHOICE, .values = "length | spacing",
    .help = "unit of g_min and g_max; spacing is the slave node's face size"},
   {"contact.*.penalty.clamp", REAL, .range = "(1, inf)", .preset = "100", .help = "largest factor of one adjustment"},

@@ -101,6 +101,10 @@ CASES["point contact about the axis, surface to surface, order 1, slips"] = (RUN
     "geometry=axisymmetric", "kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk",
     "mesh.parameters={h: 1, growth: 0.5}", "loads.0.pressure=20", "stepping.initial=0.5"
 ] + DIFFUSE + ["contact.0.friction.mu=0.01"])
+CASES["line contact, multipliers of friction"] = (RUNS / "hertz_line.yaml", [
+    "mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.5", "contact.0.friction.mu=0.01",
+    "contact.0.penalty={scale: 1, augment: true, g_max: 1e-3, unit: length}"
+] + DIFFUSE)
 CASES["belt on a turning analytic drum"] = (SCENES / "belt.yaml", [
     "mesh.parameters.n=12", "stepping.initial=0.1", "contact.0.penalty={initial: 100, scale: 1}"
 ])

@@ -506,6 +506,9 @@ STATES = {  # scene and what makes it short; a checkpoint lies before the last s
                                                 "contact.0.penalty.when=step"]),
     "multipliers": ("cup_flattening", 3, ["stepping={control: fixed, initial: 0.125}",
                                           "contact.0.penalty={scale: 1, augment: true, g_max: 1e-4, unit: length}"]),
+    "multipliers of friction": ("cup_flattening", 3, [
+        "stepping={control: fixed, initial: 0.125}", "contact.0.friction.mu=0.2",
+        "contact.0.penalty={scale: 1, augment: true, g_max: 1e-3, unit: length}"]),
     "offsets": ("slide_facets", 4, ["stepping.initial=0.1", "contact.0.smoother=diffuse",
                                     "contact.0.formulation=surface_to_surface",
                                     "probes=[{name: force, contact_force: sole, component: y}]"]),

@@ -94,6 +94,7 @@ typedef struct {
   ContactState now, accepted;
   PetscReal   *before;  /* gaps of the iterate before, where the penalty is adjusted */
   Anderson     mixing;  /* of the multipliers of one step; NULL: the pair is not augmented */
+  PetscReal   *weight;  /* of their entries there (area) */
   PetscInt     updates; /* of penalties or multipliers in this step */
 
   NeighbourLists lists, next;          /* in force; fresh ones for the next step, or NULL */
@@ -271,6 +272,10 @@ PetscErrorCode FrictionTermAsk(const ContactPair *, PetscInt term, PetscReal t, 
 PetscErrorCode FrictionResidual(ContactPair *, PetscReal t, PetscReal *values);
 PetscErrorCode FrictionNodalForces(const ContactPair *, const PetscReal *force, PetscReal *on_node);
 PetscErrorCode FrictionShow(const ContactPair *, const PetscReal *area, ContactNodes *);
+/* frictiongrip.c */
+PetscReal      FrictionTermBeyond(const ContactPair *, PetscInt term);
+PetscErrorCode FrictionGripNext(const ContactPair *, PetscReal *grip);
+PetscErrorCode FrictionGripTake(ContactPair *, const PetscReal *grip);
 /* frictionstep.c */
 PetscErrorCode FrictionTermSlide(const ContactPair *, PetscInt term, FrictionSlide *);
 PetscErrorCode FrictionSlideFree(FrictionSlide *);

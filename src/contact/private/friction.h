@@ -6,8 +6,8 @@
    a node is the weighted sum over its points of their other distances to their anchors, so that it is 0 then, and stays
    so where slave and master turn together, whatever the fit makes of the normal. Anchors stay in a step, also through
    new lists, in which their faces are found by tags. What the accepted tractions say besides is kept as lengths, see
-   FrictionInput. So the accepted state of friction is the tractions alone, and a step that is taken back, or goes on
-   after a restart on other ranks, begins with the same anchors. */
+   FrictionInput. So the accepted state of friction is the tractions and their multipliers alone, and a step that is
+   taken back, or goes on after a restart on other ranks, begins with the same anchors. */
 #pragma once
 #include "base/petsccompat.h"
 #include "frictionfoot.h"
@@ -36,6 +36,7 @@ typedef struct {
   /* Of each term, since the step began. */
   PetscBool *anchored;  /* some of its points have anchors */
   PetscReal *kept;      /* 2 lengths */
+  PetscReal *grip;      /* 2 components of the multiplier (force per area) */
   PetscReal *heading;   /* 2 components of the slip's direction then; 0 where the node did not slip */
   PetscReal *began;     /* its opening, where it was open (length) */
   PetscReal *pressed;   /* its normal force then */
