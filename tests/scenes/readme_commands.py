@@ -145,6 +145,8 @@ FULL = {
     f"{PYTHON} scripts/wish_table.py --record runs/records/wish.csv": printed("wish_table", "wish"),
     f"{PYTHON} scripts/deck_table.py --record runs/records/decks.csv": printed("deck_table", "decks"),
     f"{PYTHON} scripts/all_table.py --record runs/records/all.csv": printed("all_table", "all"),
+    f"{PYTHON} scripts/overhead_table.py --record runs/records/all_overhead.csv": printed("overhead_table",
+                                                                                      "all_overhead"),
     f"{PYTHON} tests/hard/run.py --group guards":
     f"{PYTHON} tests/hard/run.py {BURNISH} --out $WORK/out/hard --case 'corner of two walls' --ranks 1",
     f"{PYTHON} tests/hard/run.py --record runs/records/hard.csv":
