@@ -17,7 +17,9 @@ static PetscReal DepthThatCounts(const ContactPair *pair, PetscInt c, PetscInt q
 
 /* Says whether the search has lost slave point q of a term. That is so where the present lists find it behind the
    master by more than counts, the next lists find it away from the master or in front of it, and it has
-   not left past a free edge. Its term would vanish, and nothing would hold the bodies apart. */
+   not left past a free edge. Its term would vanish, and nothing would hold the bodies apart. A term that does not press
+   holds nothing: in surface to surface contact it has points on faces that slide around an edge of the master, and the
+   lists of the step's start find these behind the side from which they come. */
 static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, ContactLost *lost)
 {
   const NeighbourLists next   = pair->next;
@@ -25,7 +27,7 @@ static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, Pets
   PetscBool            found  = PETSC_FALSE;
 
   *lost = (ContactLost){offset - pair->point_gap[q], NAN, pair->size[c], pair->node[c]};
-  if (!(lost->depth > DepthThatCounts(pair, c, q))) return PETSC_FALSE;
+  if (pair->force[c] == 0 || !(lost->depth > DepthThatCounts(pair, c, q))) return PETSC_FALSE;
   if (pair->master && next->facet_ptr[q] == next->facet_ptr[q + 1]) return PETSC_TRUE;
   if (pair->next_factor[q] == 0) return PETSC_FALSE;
   if (!ContactPointEvaluate(pair, pair->facets, next, q, -1, SMOOTHER_GAP, &found) && found)
