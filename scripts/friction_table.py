@@ -243,20 +243,21 @@ def mindlin_loop(result, _):
 
 def shallow_ironing(result, _):
     """Against the limit of the two finest meshes, which differ by 0.4 % in V and 0.2 % in H in the middle of the slide.
-    There a parabola over t takes away the trend."""
+    There a cubic over t takes away the trend."""
     t, middle = result.steps["t"], (result.steps["t"] > 0.65) & (result.steps["t"] < 0.85)
     found = []
     for name, limits in (("V", {0.5: 442.1, 0.75: 530.2}), ("H", {0.5: 78.2, 0.75: 192.2})):
         force = result.steps[name]
         found += [deviation(f"{name} at t = {at}", numpy.interp(at, t, force), limit, 1) for at, limit in limits.items()]
-        rest = force[middle] - numpy.polyval(numpy.polyfit(t[middle], force[middle], 2), t[middle])
+        rest = force[middle] - numpy.polyval(numpy.polyfit(t[middle], force[middle], 3), t[middle])
         found.append((f"{name}, rms of its swing", force[middle].mean(), force[middle].mean(),
                       100 * rest.std() / force[middle].mean(), 0.5))
     return found
 
 
 def twisted_hemisphere(result, _):
-    """Against the mean of two published moments at each angle, with half their difference and 2 % as the bound."""
+    """Against the mean of two published moments at each angle, with half their difference and 2 % as the bound. The
+    digitised curves do not begin at 0, where there is no moment: what they have there is taken off."""
     angle = 150 * (result.steps["t"] - 0.25) / 0.75
     moment, force = (numpy.interp((0, 15, 30, 45, 60, 90, 120, 150), angle, result.steps[name])
                      for name in ("moment", "force"))
@@ -264,6 +265,7 @@ def twisted_hemisphere(result, _):
     for k, (at, one, other) in enumerate(
         ((15, 0.1113, 0.1081), (30, 0.2087, 0.2117), (45, 0.2926, 0.2968), (60, 0.3545, 0.3578), (90, 0.3991, 0.4017),
          (120, 0.4026, 0.4098), (150, 0.4061, 0.4073))):
+        one, other = one - 0.0011, other - 0.0009
         mean = (one + other) / 2
         found.append(deviation(f"moment at {at} degrees", moment[k + 1], mean,
                                round(100 * abs(one - other) / (2 * mean) + 2, 1)))
@@ -329,11 +331,19 @@ BENCHMARKS = {
     "shallow_ironing": (RUNS / "shallow_ironing.yaml", shallow_ironing, [
         (f"order {order}, {n} per length", None, [f"mesh.order={order}", f"mesh.parameters.n={n}"], PLAIN)
         for order, n in ((1, 4), (2, 4), (2, 6), (1, 8))
-    ]),
+    ] + [("order 1, 4 per length, foundation as the slave", None, [
+        "contact.0.slave=foundation_top", "contact.0.master=punch_skin", "stepping.dt_max=0.005"
+    ], (("surface_to_surface", "facet"),))]),
     "twisted_hemisphere": (RUNS / "twisted_hemisphere.yaml", twisted_hemisphere, [
-        (f"order 1, {m} along the cube", None, [
-            f"mesh.parameters={{n: {n}, n_side: {n_side}, m: {m}, m_depth: {m_depth}}}"
-        ], ways) for n, n_side, m, m_depth, ways in ((4, 3, 8, 5, ALL), (6, 4, 12, 7, PLAIN))
+        (f"order {order}, {m} along the cube", None, [
+            f"mesh.order={order}", f"mesh.parameters={{n: {n}, n_side: {n_side}, m: {m}, m_depth: {m_depth}}}"
+        ], ways) for order, n, n_side, m, m_depth, ways in ((1, 4, 3, 8, 5, ALL), (1, 6, 4, 12, 7, PLAIN),
+                                                            (2, 4, 3, 8, 5, PLAIN))
+    ] + [
+        ("order 2, 10 along the cube, tenth of the elastic slip", None, [
+            "mesh.order=2", "mesh.parameters={n: 5, n_side: 4, m: 10, m_depth: 6}",
+            "contact.0.friction.stick.penalty=3000"
+        ], PLAIN)
     ]),
     "plate_greco": (RUNS / "plate_greco.yaml", plate_greco, [(f"{n} elements", None, [
         f"mesh.parameters.n={n}", f"mesh.parameters.m={n}"

@@ -10,7 +10,7 @@ sys.path.insert(0, str(SCENES.parent.parent / "scripts"))
 import friction_table
 
 # scene, overrides of a cheap variant, ways of contact
-RUNS, BOTH, ALL = friction_table.RUNS, friction_table.BOTH, friction_table.ALL
+RUNS, PLAIN, BOTH, ALL = friction_table.RUNS, friction_table.PLAIN, friction_table.BOTH, friction_table.ALL
 CASES = {
     "wedge": (RUNS / "wedge.yaml", [], ALL),
     "pad": (RUNS / "pad.yaml", [
@@ -28,6 +28,10 @@ CASES = {
         "mesh.parameters={n: 12, m: 12}", "probes=[{name: u_0, displacement: [0, 0], component: x}]"
     ], BOTH),
     "punch_rounded": (RUNS / "punch_rounded.yaml", ["mesh.parameters.h=4", "solver.tolerance=1e-11"], ALL),
+    "twisted_hemisphere": (RUNS / "twisted_hemisphere.yaml", [
+        "mesh.parameters={n: 2, n_side: 2, n_wall: 1, m: 4, m_depth: 3}", "loads.0.uz=-0.6*min(1,t/0.25)",
+        "stepping.initial=0.125", "stepping.at=[0.25]", "contact.0.friction.stick={}", "contact.0.penalty={}"
+    ], PLAIN),
     "die": (SCENES / "die.yaml", ["stepping.initial=0.125"], ALL),
 }
 TOLERANCE = 1e-8
