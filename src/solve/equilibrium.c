@@ -523,7 +523,7 @@ static PetscErrorCode ModelSolveStiffened(Model model, PetscReal factor[], Petsc
   PetscCall(VecCopy(model->x, x));
   for (int attempt = 0; attempt < EQUILIBRIUM_RAISES && *window == WINDOW_HOLDS; attempt++) {
     if (attempt) PetscCall(ModelStiffenLess(model, factor, forecast));
-    PetscCall(ModelPredictStiffer(model, factor, report));
+    PetscCall(ModelPredictStiffer(model, factor, (PetscBool)(forecast && !attempt), report));
     PetscCall(ModelRaise(model, factor));
     PetscCall(ModelSolveHeld(model, report));
     if (report->result == SOLVE_CONVERGED)

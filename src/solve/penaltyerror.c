@@ -476,25 +476,34 @@ PetscErrorCode ModelStiffenLess(Model model, PetscReal factor[], PetscBool forec
    not in force yet, have their solution to first order: displacements are linear in compliances. Contact then presses
    as before. At the solution itself it would press factor[] times as much. Where a surface is strongly curved, such
    pressures outweigh the stiffness of rubber in the tangent, and Newton's method leaves for another equilibrium: an
-   O-ring squeezed by 30 % takes 19 instead of 53 iterations. */
-PetscErrorCode ModelPredictStiffer(Model model, const PetscReal factor[], SolveReport *report)
+   O-ring squeezed by 30 % takes 18 instead of 53 iterations. What sticks would pull factor[] times as much, and slip: a
+   rubber foot on a corner takes 52 instead of 151. Pressures of pairs with friction are left out: where all slips, jobs
+   take up to 3 iterations more. estimated: ModelEstimatePenalty() has just been called, and the linear solver has its
+   tangent. */
+PetscErrorCode ModelPredictStiffer(Model model, const PetscReal factor[], PetscBool estimated, SolveReport *report)
 {
+  PetscBool ok, sticks = PETSC_FALSE;
   Vec       forces, x;
   KSP       ksp;
   PetscInt  its;
-  PetscBool ok;
 
   PetscFunctionBeginUser;
+  for (int p = 0; p < ContactPairs(model->contact); p++)
+    sticks = (PetscBool)(sticks || factor[BY_SLIP * ContactPairs(model->contact) + p] != 1);
+  if (ContactHasFriction(model->contact) && !sticks) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(model->x, &forces));
   PetscCall(VecDuplicate(model->x, &x));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
-  PetscCall(ModelLinearise(model, &ksp));
-  PetscCall(ModelReleaseTangent(model));
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  if (!estimated) {
+    PetscCall(ModelLinearise(model, &ksp));
+    PetscCall(ModelReleaseTangent(model));
+    report->newton++;
+  }
   PetscCall(ModelRaisedForces(model, factor, forces));
   PetscCall(KSPSolve(ksp, forces, x));
   PetscCall(KSPGetIterationNumber(ksp, &its));
-  report->newton++;
   report->krylov += its;
   PetscCall(ModelStepFromSolved(model, model->problem->trial));
   if (!LinearCheckLost(model->linear)) {

@@ -160,7 +160,7 @@ PetscErrorCode ModelArchivePenaltyError(Model, Archive);
 PetscErrorCode ModelEstimatePenalty(Model);
 PetscErrorCode ModelStiffenDeep(Model, PetscReal factor[], PetscBool *stiffened);
 PetscErrorCode ModelStiffen(Model, PetscReal factor[], PetscBool *stiffened);
-PetscErrorCode ModelPredictStiffer(Model, const PetscReal factor[], SolveReport *);
+PetscErrorCode ModelPredictStiffer(Model, const PetscReal factor[], PetscBool estimated, SolveReport *);
 PetscErrorCode ModelRaise(Model, const PetscReal factor[]);
 PetscErrorCode ModelUnstiffen(Model, const PetscReal factor[], PetscBool forecast);
 PetscErrorCode ModelStiffenLess(Model, PetscReal factor[], PetscBool forecast);
