@@ -26,9 +26,9 @@ BEAMS = {3: (8.89, -7.55), 6: (13.37, -13.39), 9: (15.12, -17.56), 12: (16.00, -
          18: (17.20, -28.23), 21: (16.72, -32.73), 24: (11.12, -38.77), 27: (-2.09, -26.51), 30: (-1.49, -5.72)}
 BILLET = {0.1: 245261, 0.2: 270257, 0.3: 298239, 0.4: 330615, 0.5: 367790, 0.6: 406405, 0.7: 469336, 0.8: 552340,
           0.9: 663023, 1: 828794}  # tests/jobs/forming_calculix.py, CAX8, 100 increments
-NECK, NECK_LARGEST = 6.297566, (76725.8, 5.81)  # tests/jobs/plastic_calculix.py, CAX8R, 200 increments
-NECKS = {3: (73613, 6.1133), 5: (76387, 5.9111), 7: (73395, 5.5277), 8: (69326, 5.2039), 9: (64401, 4.8379),
-         10: (57949, 4.4187)}
+NECK, NECK_LARGEST = 6.297566, (76721, 5.775)  # tests/jobs/plastic_calculix.py, CAX8R, 400 increments, FLAT
+NECKS = {3: (73609, 6.1133), 5: (76384, 5.9109), 7: (73402, 5.5296), 8: (69340, 5.2068), 9: (64431, 4.8419),
+         10: (58005, 4.4243), 11: (50181, 3.9474), 12: (41019, 3.4069), 13: (30634, 2.7964), 14: (19573, 2.1122)}
 HILL = {"young": 21000, "yield": 24, "inner": 1, "outer": 2, "bore": 0.02}  # of plastic_cylinder.yaml
 
 
@@ -95,12 +95,12 @@ def billet_way(steps):
 
 
 def bar(steps):
-    way, largest = 10.2 * steps["t"], numpy.argmax(steps["force"])
+    way, largest = 14 * steps["t"], numpy.argmax(steps["force"])
     yield steps["t"][largest], "largest force", steps["force"][largest], NECK_LARGEST[0], "CalculiX"
     yield steps["t"][largest], "its elongation", way[largest], NECK_LARGEST[1], "CalculiX"
     for at, (force, radius) in NECKS.items():
-        yield at / 10.2, f"force at {at} mm", numpy.interp(at, way, steps["force"]), force, "CalculiX"
-        yield at / 10.2, f"neck at {at} mm", NECK + numpy.interp(at, way, steps["neck"]), radius, "CalculiX"
+        yield at / 14, f"force at {at} mm", numpy.interp(at, way, steps["force"]), force, "CalculiX"
+        yield at / 14, f"neck at {at} mm", NECK + numpy.interp(at, way, steps["neck"]), radius, "CalculiX"
 
 
 def hill(bore):
@@ -188,20 +188,26 @@ CASES += [("curved beams", f"smooth, {name}", SCENES / "curved_beams.yaml", own,
               ("mu 0.3, hardening 420.5", [f"bodies.{k}.material.hardening.linear=420.5" for k in (0, 1)]),
               ("mu 0.3, full integration", [f"bodies.{k}.formulation=full" for k in (0, 1)]),
               ("mu 0.3, 48 x 4", grid(48, 4, 1)), ("mu 0.3, 48 x 4, gap 0.06 at the start", grid(48, 4, 1, 0.06)))]
-FINE_BAR = "mesh.parameters={nr: 16, nl: 48, progression: 1.04}"
-CASES += [("necking bar", name, SCENES / "necking.yaml", ["loads.0.uy=5.1", "stepping.dt_max=0.00686", *own], bar)
-          for name, own in (
-              ("full, second order, 8 x 24", ["mesh.order=2", "bodies.0.formulation=full"]),
-              ("mixed, second order, 8 x 24", ["mesh.order=2", "bodies.0.formulation=mixed"]),
-              ("full, triangles of second order",
-               ["mesh.order=2", "bodies.0.formulation=full", "mesh.parameters.simplex=1"]),
-              ("mixed, triangles of second order",
-               ["mesh.order=2", "bodies.0.formulation=mixed", "mesh.parameters.simplex=1"]),
-              ("fbar, 16 x 48", [FINE_BAR]), ("enhanced, 16 x 48", [FINE_BAR, "bodies.0.formulation=enhanced"]),
-              ("mixed, 16 x 48", [FINE_BAR, "bodies.0.formulation=mixed"]),
-              ("mixed, second order, 16 x 48", [FINE_BAR, "mesh.order=2", "bodies.0.formulation=mixed"]),
-              ("full, second order, half the step",
-               ["mesh.order=2", "bodies.0.formulation=full", "stepping.dt_max=0.00343"]))]
+FLAT = (8, 60, 1.06)  # elements along the radius and the length, ratio of neighbours; second order
+
+
+def bar_mesh(nr, nl, progression, order=2, simplex=0):
+    return [f"mesh.order={order}",
+            f"mesh.parameters={{nr: {nr}, nl: {nl}, progression: {progression}, simplex: {simplex}}}"]
+
+
+CASES += [("necking bar", f"{name}, {mesh[0]} x {mesh[1]}", SCENES / "necking.yaml",
+           [f"stepping.dt_max={dt}", f"bodies.0.formulation={kind}", *bar_mesh(*mesh)], bar)
+          for name, kind, mesh, dt in (
+              ("full, second order", "full", FLAT, 0.0025),
+              ("full, triangles of second order", "full", (*FLAT, 2, 1), 0.0025),
+              ("enhanced, first order", "enhanced", (16, 120, 1.03, 1), 0.0025),
+              ("mixed, second order", "mixed", (32, 80, 1.03), 0.0025),
+              ("mixed, triangles of second order", "mixed", (24, 64, 1.04, 2, 1), 0.0025),
+              ("fbar, first order", "fbar", (48, 144, 1.02, 1), 0.0025),
+              ("mixed, first order", "mixed", (48, 144, 1.02, 1), 0.0025),
+              ("full, second order, finer", "full", (16, 72, 1.06), 0.0025),
+              ("full, second order, half the step", "full", FLAT, 0.00125))]
 ROUND = ["supports=[{surface: symmetry_x, ux: 0}, {surface: symmetry_y, uy: 0}]", "geometry=plane_strain", "probes=[]",
          "loads=[{surface: inner, ux: \"0.02*cos(theta)\", uy: \"0.02*sin(theta)\"}]", "bodies.0.material.nu=0.4999"]
 CASES += [("thick cylinder", f"{name}, order {order}", SCENES / "plastic_cylinder.yaml",
