@@ -3,6 +3,8 @@
 DefineConstant[
   h = {3e-4, Name "size of elements at the lowest point, of the radius"},
   growth = {0.06, Name "of the size with the distance"},
+  near = {2, Name "distance from which on the size grows faster"},
+  far = {0, Name "growth from there on, 0: the same"},
   quads = {0, Name "1: quadrilaterals"},
   plate = {0, Name "radius and height of a plate below the ball, 0: none"}
 ];
@@ -16,6 +18,10 @@ Curve Loop(1) = {1, 2, 3};
 Plane Surface(1) = {1};
 Field[1] = MathEval;
 Field[1].F = Sprintf("%g + %g * Sqrt(x^2 + y^2)", h, growth);
+If (far > 0)
+  Field[1].F = Sprintf("%g + %g * Sqrt(x^2 + y^2) + %g * (Sqrt(x^2 + y^2) - %g + Abs(Sqrt(x^2 + y^2) - %g))", h, growth,
+                       (far - growth) / 2, near, near);
+EndIf
 If (plate > 0)
   Point(11) = {0, -plate, 0};
   Point(12) = {plate, -plate, 0};
