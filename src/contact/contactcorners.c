@@ -123,15 +123,6 @@ static PetscErrorCode FacesAround(const SlavePoints slaves, PetscInt **out_ptr, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Do the sides of sharp edges have terms of their own? In node to surface contact a node is one point. A master that is
-   softer than the slave bends around the slave's edges: both sides of an edge then see the same part of it, and one
-   mean over both holds the edge less stiffly. A rigid or a stiffer master keeps its own shape, with its own corners. */
-static PetscBool CornersServe(const ContactPair *pair)
-{
-  if (!pair->formulation.surface) return PETSC_FALSE;
-  return (PetscBool)(!pair->master || pair->master->rigid || pair->master->stiffness >= pair->slave->stiffness);
-}
-
 /*@
   ContactCornersAdd - adds the terms of the sides of sharp edges to those of nodes.
 
@@ -154,7 +145,7 @@ PetscErrorCode ContactCornersAdd(ContactPair *pair)
   PetscCall(PetscMalloc2(pair->n_nodes + 1, &pair->first_side, pair->n_nodes, &pair->whole));
   PetscCall(PetscArraycpy(pair->whole, pair->area, pair->n_nodes));
   for (PetscInt c = 0; c <= pair->n_nodes; c++) pair->first_side[c] = pair->n;
-  if (!CornersServe(pair)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ContactSidesServe(pair)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(slaves->n_faces * FACE_MAX_NODES, &pair->corner));
   for (PetscInt i = 0; i < slaves->n_faces * FACE_MAX_NODES; i++) pair->corner[i] = -1;
   PetscCall(FacesAround(slaves, &ptr, &face));

@@ -217,6 +217,7 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
 
   PetscFunctionBeginUser;
   if (pair->formulation.surface) {
+    PetscCall(ContactEndsFind(pair, scene));
     PetscCall(SlavePointsCreateQuadrature(pair->slave, scene->geometry, finer, HasLevers(pair), &pair->slaves));
     PetscCall(PairChooseNodes(mesh, scene, pair));
     PetscCall(OffsetsCreate(mesh, scene, loads, pair->slave, pair->n_images, pair->images, pair->fit.feature_angle,

@@ -6,11 +6,11 @@
    have a term for each further side of the edge (contactcorners.c). Faces may have terms besides (contactfaces.c).
    Both press and have stiffness as others do, but what is counted and shown is that of the nodes.
 
-   The files call each other downwards in this order: contactwork (room), contactpair, contactcorners, contactfaces and
-   contactterm (a pair, the terms of its sharp edges and faces, one of its terms), contacttool (a tool with unknowns),
-   contactpoint (one slave point), contactvariation (first variations that are kept), contactprojection (gaps of all
-   points), contactvectors (first variations over dofs), frictiontravel, frictionenergy, friction, frictionstep,
-   frictiontangent, contactresidual, contacttangent, contactlists, contact. */
+   The files call each other downwards in this order: contactwork (room), contactpair, contactends, contactcorners,
+   contactfaces and contactterm (a pair, its ends, the terms of its sharp edges and faces, one of its terms),
+   contacttool (a tool with unknowns), contactpoint (one slave point), contactvariation (first variations that are
+   kept), contactprojection (gaps of all points), contactvectors (first variations over dofs), frictiontravel,
+   frictionenergy, friction, frictionstep, frictiontangent, contactresidual, contacttangent, contactlists, contact. */
 #pragma once
 #include "matrix/blockmatrix.h"
 #include "contact/activeset.h"
@@ -181,6 +181,9 @@ void ContactPairHold(Contact, const ContactPair *, PetscReal t, const PetscReal 
 PetscErrorCode ContactNodePressures(Contact, int pair, const PetscReal *u, const PetscReal *force,
                                     const PetscReal *reaction, PetscReal *area, PetscReal *pressure);
 PetscErrorCode ContactPairPressing(const ContactPair *, ContactPressing *);
+/* contactends.c */
+PetscBool      ContactSidesServe(const ContactPair *);
+PetscErrorCode ContactEndsFind(ContactPair *, Scene);
 /* contactcorners.c */
 PetscErrorCode ContactCornersAdd(ContactPair *);
 void           ContactCornersTake(const ContactPair *, PetscInt term[]);
