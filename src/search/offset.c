@@ -1,6 +1,7 @@
 /* Offsets of quadrature points: a nodal fit of the surface about each point, and its sagitta as a vector or as a
    combination of nodes. */
 #include "search/offset.h"
+#include "search/surfaceends.h"
 #include "searchimpl.h"
 
 /* Offsets that a solve turns back are damped where what is left of their change is more than this part of the change
@@ -212,7 +213,7 @@ static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, c
     const Candidate *own   = SearchFieldOwn(&fits.field, facet);
     OffsetFace       face  = {.candidate = own - fits.field.candidates,
                               .facet     = facet,
-                              .rule      = FaceRuleGet(facet->type, o->finer),
+                              .rule      = SurfaceRule(o->surface, f, o->finer),
                               .rung      = AtEnd(o, f) ? OFFSET_END_RUNG : RUNG_PLAIN};
     double           area[FACE_RULE_POINTS];
 

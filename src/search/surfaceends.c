@@ -194,3 +194,20 @@ PetscErrorCode SurfaceFindEnds(ContactSurface surface, PetscReal angle, int n_im
   PetscCall(GatherTableDestroy(&table));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  SurfaceRule - returns the quadrature rule of a face of a surface.
+
+  Not collective
+
+  Input Parameters:
++ surface - the surface
+. face    - the face
+- finer   - how fine the rule is, see FaceRuleGet()
+@*/
+const FaceRule *SurfaceRule(ContactSurface surface, PetscInt face, int finer)
+{
+  const ElementType type = surface->faces[face].type;
+
+  return FaceRuleOf(type, finer, surface->face_ends ? surface->face_ends[face] : 0);
+}

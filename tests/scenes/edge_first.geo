@@ -1,4 +1,5 @@
 // A square block of side 10, turned by 30 degrees, with its lowest edge above a plate (edge_first.yaml)
+DefineConstant[ refine = 1 ];
 w = 10;
 c = w*Cos(Pi/6);
 s = w*Sin(Pi/6);
@@ -6,7 +7,7 @@ Point(1) = {0, 0, 0};  Point(2) = {c, s, 0};  Point(3) = {c - s, s + c, 0};  Poi
 Line(1) = {1, 2};  Line(2) = {2, 3};  Line(3) = {3, 4};  Line(4) = {4, 1};
 Curve Loop(1) = {1, 2, 3, 4};
 Plane Surface(1) = {1};
-Transfinite Curve{1:4} = 9;
+Transfinite Curve{1:4} = 8*refine + 1;
 Transfinite Surface{1};
 Recombine Surface{1};
 
