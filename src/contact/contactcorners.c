@@ -6,13 +6,6 @@
    each smooth part of the faces around such a node has a term of its own, with the mean gap over this part. */
 #include "contactimpl.h"
 
-/* A face around a node: the face, and the node's number in it. */
-typedef struct {
-  PetscInt  face;
-  int       at;
-  PetscReal normal[3];
-} CornerFace;
-
 /* Unit normal of a face at one of its nodes, in the reference configuration. */
 static void NormalAt(const SlavePoints slaves, PetscInt f, int at, PetscReal normal[3])
 {
@@ -44,7 +37,7 @@ static PetscBool ShareEdge(const SlavePoints slaves, PetscInt f, PetscInt g)
 }
 
 /* Gives the n faces around a node the numbers of their sides: that of the first face of the side, by ascending tag. */
-static void FindSides(const ContactPair *pair, PetscInt n, const CornerFace face[], PetscInt side[])
+static void FindSides(const ContactPair *pair, PetscInt n, const ContactCornerFace face[], PetscInt side[])
 {
   const PetscReal cosine  = PetscCosReal(pair->fit.feature_angle);
   PetscBool       changed = PETSC_TRUE;
@@ -67,7 +60,7 @@ static void FindSides(const ContactPair *pair, PetscInt n, const CornerFace face
 }
 
 /* Gives a face's node to a term, with its part of the area, which the node's own term loses. */
-static void TakeFace(ContactPair *pair, PetscInt c, PetscInt term, const CornerFace *face)
+static void TakeFace(ContactPair *pair, PetscInt c, PetscInt term, const ContactCornerFace *face)
 {
   const SlavePoints slaves = pair->slaves;
   PetscReal         area   = 0;
@@ -80,28 +73,22 @@ static void TakeFace(ContactPair *pair, PetscInt c, PetscInt term, const CornerF
 }
 
 /* Adds the terms of a node's sides beside the first one, which has the node's own term. term[n] is room. */
-static void AddSides(ContactPair *pair, PetscInt c, PetscInt n, const CornerFace face[], PetscInt side[],
+static void AddSides(ContactPair *pair, PetscInt c, PetscInt n, const ContactCornerFace face[], PetscInt side[],
                      PetscInt term[])
 {
   FindSides(pair, n, face, side);
   for (PetscInt i = 0; i < n; i++) {
     if (side[i] == 0) continue;
-    if (side[i] == i) {
-      term[i]             = pair->n++;
-      pair->node[term[i]] = pair->node[c];
-      pair->area[term[i]] = 0;
-      pair->size[term[i]] = pair->size[c];
-      pair->turn[term[i]] = pair->turn[c];
-    }
+    if (side[i] == i) term[i] = ContactSideAdd(pair, c);
     TakeFace(pair, c, term[side[i]], &face[i]);
   }
 }
 
 /* Lists the faces around the nodes of the slave points by ascending tag: those of node i are ptr[i] to ptr[i+1]-1. */
-static PetscErrorCode FacesAround(const SlavePoints slaves, PetscInt **out_ptr, CornerFace **out)
+static PetscErrorCode FacesAround(const SlavePoints slaves, PetscInt **out_ptr, ContactCornerFace **out)
 {
-  PetscInt   *ptr, n = 0;
-  CornerFace *face;
+  PetscInt          *ptr, n = 0;
+  ContactCornerFace *face;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(slaves->n_nodes + 2, &ptr));
@@ -112,9 +99,10 @@ static PetscErrorCode FacesAround(const SlavePoints slaves, PetscInt **out_ptr, 
   PetscCall(PetscMalloc1(n, &face));
   for (PetscInt f = 0; f < slaves->n_faces; f++) {
     for (int a = 0; a < ElementGet(slaves->faces[f].type)->nodes; a++) {
-      CornerFace *next = &face[ptr[slaves->faces[f].nodes[a] + 1]++]; /* after the loop the start of the next node */
+      ContactCornerFace *next =
+        &face[ptr[slaves->faces[f].nodes[a] + 1]++]; /* after the loop the start of the next node */
 
-      *next = (CornerFace){.face = f, .at = a};
+      *next = (ContactCornerFace){.face = f, .at = a};
       NormalAt(slaves, f, a, next->normal);
     }
   }
@@ -123,22 +111,13 @@ static PetscErrorCode FacesAround(const SlavePoints slaves, PetscInt **out_ptr, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Do the sides of sharp edges have terms of their own? In node to surface contact a node is one point. A master that is
-   softer than the slave bends around the slave's edges: both sides of an edge then see the same part of it, and one
-   mean over both holds the edge less stiffly. A rigid or a stiffer master keeps its own shape, with its own corners. */
-static PetscBool CornersServe(const ContactPair *pair)
-{
-  if (!pair->formulation.surface) return PETSC_FALSE;
-  return (PetscBool)(!pair->master || pair->master->rigid || pair->master->stiffness >= pair->slave->stiffness);
-}
-
 /*@
-  ContactCornersAdd - adds the terms of the sides of sharp edges to those of nodes.
+  ContactCornersAdd - adds the terms of the sides of sharp edges, and of ends, to those of nodes.
 
   Not collective
 
   Input Parameter:
-. pair - the pair, with the terms of its nodes, and room for one term for each node of each face behind them
+. pair - the pair, with the terms of its nodes, and room for three terms for each node of each face behind them
 
   Note:
   The faces of the slave points are by ascending tag, so sides do not depend on the ranks. Normals are compared at the
@@ -146,23 +125,25 @@ static PetscBool CornersServe(const ContactPair *pair)
 @*/
 PetscErrorCode ContactCornersAdd(ContactPair *pair)
 {
-  const SlavePoints slaves = pair->slaves;
-  CornerFace       *face   = NULL;
-  PetscInt         *ptr    = NULL, *side, *term;
+  const SlavePoints  slaves = pair->slaves;
+  ContactCornerFace *face   = NULL;
+  PetscInt          *ptr    = NULL, *side, *term;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(pair->n_nodes + 1, &pair->first_side, pair->n_nodes, &pair->whole));
   PetscCall(PetscArraycpy(pair->whole, pair->area, pair->n_nodes));
   for (PetscInt c = 0; c <= pair->n_nodes; c++) pair->first_side[c] = pair->n;
-  if (!CornersServe(pair)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ContactSidesServe(pair)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(slaves->n_faces * FACE_MAX_NODES, &pair->corner));
   for (PetscInt i = 0; i < slaves->n_faces * FACE_MAX_NODES; i++) pair->corner[i] = -1;
   PetscCall(FacesAround(slaves, &ptr, &face));
   PetscCall(PetscMalloc2(slaves->n_faces, &side, slaves->n_faces, &term));
+  PetscCall(ContactEndsBegin(pair));
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
     const PetscInt i = NodeKeysFind(slaves->n_nodes, slaves->nodes, pair->mesh->node_id[pair->node[c]]);
 
     AddSides(pair, c, ptr[i + 1] - ptr[i], &face[ptr[i]], side, term);
+    ContactEndsAdd(pair, c, ptr[i + 1] - ptr[i], &face[ptr[i]], term);
     pair->first_side[c + 1] = pair->n;
   }
   PetscCall(PetscFree2(side, term));
@@ -233,6 +214,8 @@ PetscInt ContactNodeTerm(const ContactPair *pair, const ContactState *state, Pet
   PetscInt least = c;
 
   for (PetscInt i = pair->first_side[c]; i < pair->first_side[c + 1]; i++)
-    if (state->gap[i] < state->gap[least] || PetscIsNanReal(state->gap[least])) least = i;
+    if (state->gap[i] + ContactEndDepth(pair, i) < state->gap[least] + ContactEndDepth(pair, least) ||
+        PetscIsNanReal(state->gap[least]))
+      least = i;
   return least;
 }

@@ -122,7 +122,7 @@ static void OverlapPoints(Contact contact, const ContactPair *pair, PetscInt *n,
   for (PetscInt c = 0; c < pair->n_sides; c++) {
     const PetscReal *X = &mesh->coords[pair->node[c] * dim];
 
-    if (!(pair->now.gap[c] < -ContactTouchTolerance(pair, c))) continue;
+    if (!(pair->now.gap[c] + ContactEndDepth(pair, c) < -ContactTouchTolerance(pair, c))) continue;
     for (int m = 0; m < pair->n_images; m++, (*n)++) {
       PetscReal deeper[3];
 
@@ -215,7 +215,8 @@ PetscErrorCode ContactRefuseImmersed(Contact contact, int p)
     PetscCall(PetscCalloc1(mesh->n_nodes, &overlaps));
     for (PetscInt c = 0; c < pair->n_nodes; c++)
       overlaps[pair->node[c]] = pair->now.gap[ContactNodeTerm(pair, &pair->now, c)] < 0;
-    for (PetscInt c = 0; c < pair->n_sides; c++) any = any || pair->now.gap[c] < -ContactTouchTolerance(pair, c);
+    for (PetscInt c = 0; c < pair->n_sides; c++)
+      any = any || pair->now.gap[c] + ContactEndDepth(pair, c) < -ContactTouchTolerance(pair, c);
     PetscCall(MeshSumNodes(mesh, 1, overlaps));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, mesh->comm));
     PetscCall(FindImmersed(mesh, scene->n_bodies, master, pair->slave, PETSC_FALSE, overlaps, X, &found));

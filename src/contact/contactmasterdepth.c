@@ -14,9 +14,9 @@ static PetscErrorCode AllowOverlap(Contact contact, const ContactPair *pair, Pet
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc2(mesh->n_nodes, &offset, mesh->n_nodes, &terms));
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
-    offset[pair->node[c]] = ContactTermOffset(pair, c, t);
+    offset[pair->node[c]] = ContactTermOverlap(pair, c, t);
     for (PetscInt i = pair->first_side[c]; i < pair->first_side[c + 1]; i++)
-      offset[pair->node[c]] = PetscMin(offset[pair->node[c]], ContactTermOffset(pair, i, t));
+      offset[pair->node[c]] = PetscMin(offset[pair->node[c]], ContactTermOverlap(pair, i, t));
     terms[pair->node[c]] = 1;
   }
   PetscCall(MeshSumNodes(mesh, 1, offset));

@@ -98,7 +98,7 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
   const MeshGroup *group = pair->slave->group;
   const PetscBool  hats  = pair->formulation.surface;
   const PetscInt   faces = pair->slaves ? pair->slaves->n_faces : 0,
-                 room    = group->n_nodes + (1 + FACE_MAX_NODES) * faces; /* for terms of sides and faces, too */
+                 room = group->n_nodes + (1 + 3 * FACE_MAX_NODES) * faces; /* for terms of sides, ends and faces, too */
   PetscReal  *area, *size, *turn, *share, sum[2] = {0, 0};
   PetscMPIInt rank;
 
@@ -160,6 +160,11 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
     pair->term_ptr[of[k] + 2]++;
     n++;
   }
+  for (PetscInt k = 0; pair->at_end && k < slaves->ptr[slaves->n]; k++) {
+    if (pair->at_end[k] < 0) continue;
+    pair->term_ptr[pair->at_end[k] + 2]++;
+    n++;
+  }
   for (PetscInt c = pair->n_sides; c < pair->n; c++) {
     const PetscInt f = pair->face[c - pair->n_sides];
 
@@ -180,6 +185,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
         pair->formulation.surface ? share * pair->scene->share * slaves->weight[q] * slaves->hat[k] : pair->area[c];
     }
   }
+  ContactEndsPoints(pair);
   ContactFacesPoints(pair);
   PetscCall(PetscFree(of));
   PetscCall(PetscCalloc5(pair->n, &pair->force, 3 * pair->n, &pair->normal, pair->n, &pair->pressure, pair->n,
@@ -217,6 +223,7 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
 
   PetscFunctionBeginUser;
   if (pair->formulation.surface) {
+    PetscCall(ContactEndsFind(pair, scene));
     PetscCall(SlavePointsCreateQuadrature(pair->slave, scene->geometry, finer, HasLevers(pair), &pair->slaves));
     PetscCall(PairChooseNodes(mesh, scene, pair));
     PetscCall(OffsetsCreate(mesh, scene, loads, pair->slave, pair->n_images, pair->images, pair->fit.feature_angle,
@@ -431,6 +438,8 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree2(pair->first_side, pair->whole));
   PetscCall(PetscFree2(pair->shown_gap, pair->shown_normal));
   PetscCall(PetscFree(pair->corner));
+  PetscCall(PetscFree(pair->at_end));
+  PetscCall(PetscFree(pair->below));
   PetscCall(PetscFree(pair->face));
   PetscCall(PetscFree(pair->term_ptr));
   PetscCall(PetscFree2(pair->term_point, pair->term_weight));

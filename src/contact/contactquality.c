@@ -400,7 +400,7 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
       if (pair->scene->initial_overlap != OVERLAP_REFUSE && pair->scene->initial_overlap != OVERLAP_ADD) continue;
       if (!(pair->now.gap[c] < 0) || pair->now.gap[c] >= worst) continue;
       PetscCall(TermOverlapExplained(pair, c, &explained));
-      if (pair->now.gap[c] >= -explained) continue;
+      if (pair->now.gap[c] >= -explained - ContactEndDepth(pair, c)) continue;
       worst = pair->now.gap[c];
       at    = c;
     }

@@ -85,7 +85,7 @@ PetscErrorCode ContactPairOverlap(Contact contact, int p, PetscReal t, PetscReal
 
   PetscFunctionBeginUser;
   *overlap = 0;
-  for (PetscInt c = 0; c < pair->n_sides; c++) *overlap = PetscMax(*overlap, -ContactTermOffset(pair, c, t));
+  for (PetscInt c = 0; c < pair->n_sides; c++) *overlap = PetscMax(*overlap, -ContactTermOverlap(pair, c, t));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, overlap, 1, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

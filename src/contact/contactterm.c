@@ -38,7 +38,7 @@ PetscReal ContactTermAddedOverlap(const ContactPair *pair, PetscInt c, PetscReal
 }
 
 /*@
-  ContactTermOffset - returns g_0 of a term: what is left at t of the gap that the surfaces had before any load.
+  ContactTermOverlap - returns what is left at t of the gap that the surfaces had at a term before any load.
 
   Not collective
 
@@ -51,10 +51,28 @@ PetscReal ContactTermAddedOverlap(const ContactPair *pair, PetscInt c, PetscReal
   All of an ignored overlap is left, and a shrinking part of a ramped one (length). An overlap that the scene adds is a
   gap at which the surfaces touch.
 @*/
-PetscReal ContactTermOffset(const ContactPair *pair, PetscInt c, PetscReal t)
+PetscReal ContactTermOverlap(const ContactPair *pair, PetscInt c, PetscReal t)
 {
   if (pair->scene->initial_overlap == OVERLAP_ADD) return ContactTermAddedOverlap(pair, c, t);
   return pair->now.offset[c] * (pair->scene->initial_overlap == OVERLAP_RAMP ? 1 - t : 1);
+}
+
+/*@
+  ContactTermOffset - returns g_0 of a term: the gap at which it begins to press (length).
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+. c    - the term
+- t    - load parameter
+
+  Note:
+  The terms of ends begin to press at a depth.
+@*/
+PetscReal ContactTermOffset(const ContactPair *pair, PetscInt c, PetscReal t)
+{
+  return ContactTermOverlap(pair, c, t) - ContactEndDepth(pair, c);
 }
 
 /*@

@@ -3,13 +3,24 @@
 #include <string.h>
 #include "search/facequadrature.h"
 
-static FaceRule rules[FACE_RULES][ELEMENT_TYPES];
+/* A point lies on an edge if twice the area of the triangle between them, in reference coordinates, is below this. It
+   is the rounding of points and nodes, which are of size 1. */
+#define ON_EDGE 1e-12
 
-/* Gauss-Legendre points and weights on [-1, 1], indexed by the number of points. */
+/* Points in each direction of a face with ends: their square is FACE_RULE_POINTS. Degree 5 is that of 3 points of
+   Gauss' rule. */
+enum { ENDS_LINE = 4 };
+
+static FaceRule rules[FACE_RULES][ELEMENT_TYPES], ends[FACE_RULES][ELEMENT_TYPES];
+
+/* Points and weights on [-1, 1]. */
+typedef struct {
+  double x[6], w[6];
+} LineRule;
+
 // clang-format off
-static const struct {
-  double x[5], w[5];
-} gauss[6] = {
+/* Gauss' rules, indexed by the number of points */
+static const LineRule gauss[6] = {
   [2] = {{-0.57735026918962576451, 0.57735026918962576451},
          {1, 1}},
   [3] = {{-0.77459666924148337704, 0, 0.77459666924148337704},
@@ -18,6 +29,18 @@ static const struct {
          {0.34785484513745385737, 0.65214515486254614263, 0.65214515486254614263, 0.34785484513745385737}},
   [5] = {{-0.90617984593866399280, -0.53846931010568309104, 0, 0.53846931010568309104, 0.90617984593866399280},
          {0.23692688505618908751, 0.47862867049936646804, 128. / 225, 0.47862867049936646804, 0.23692688505618908751}}
+};
+/* Lobatto's rules, which have both ends among their points: n of them are exact up to degree 2 n - 3. */
+static const LineRule lobatto[7] = {
+  [3] = {{-1, 0, 1},
+         {1. / 3, 4. / 3, 1. / 3}},
+  [4] = {{-1, -0.44721359549995793928, 0.44721359549995793928, 1},
+         {1. / 6, 5. / 6, 5. / 6, 1. / 6}},
+  [5] = {{-1, -0.65465367070797714380, 0, 0.65465367070797714380, 1},
+         {0.1, 49. / 90, 32. / 45, 49. / 90, 0.1}},
+  [6] = {{-1, -0.76505532392946469285, -0.28523151648064509631, 0.28523151648064509631, 0.76505532392946469285, 1},
+         {1. / 15, 0.37847495629784698032, 0.55485837703548635302, 0.55485837703548635302, 0.37847495629784698032,
+          1. / 15}}
 };
 // clang-format on
 
@@ -34,6 +57,12 @@ static const Orbit triangle12[] = {{0.24928674517091042129, 0.249286745170910421
                                    {0.06308901449150222834, 0.06308901449150222834, 0.05084490637020681692},
                                    {0.05314504984481694735, 0.31035245103378440542, 0.08285107561837357519},
                                    {0, 0, 0}};
+/* With the corners and two points on each edge, degree 5: the points of Cohen, Joly, Roberts and Tordjman, SIAM J.
+   Numer. Anal. 38 (2001), 2047; figures from the five moments that they leave. */
+static const Orbit triangle_ends[] = {{0, 0, 0.01487291302482058169},
+                                      {0.29346955590904019039, 0.70653044409095980961, 0.04884168123405100656},
+                                      {0.20734517566359092426, 0.20734517566359092426, 0.22077705784041073852},
+                                      {0, 0, 0}};
 
 static void AddPoint(FaceRule *rule, double x, double y, double weight)
 {
@@ -55,19 +84,48 @@ static void AddOrbits(FaceRule *rule, const Orbit *orbit)
   }
 }
 
-/* Adds the n points of Gauss' rule in each direction of a face that is not a triangle, or on each of some equal parts
-   of an edge. */
-static void AddGauss(int dim, int n, int parts, FaceRule *rule)
+/* Adds the n points of a line's rule in each direction of a face that is not a triangle, or on each of some equal parts
+   of an edge. A point at which two parts meet is one point. */
+static void AddLines(int dim, const LineRule *line, int n, int parts, FaceRule *rule)
 {
-  for (int part = 0; part < parts; part++)
+  for (int part = 0; part < parts; part++) {
+    const int meet = part > 0 && line->x[0] == -1;
+
+    if (meet) rule->weight[rule->n - 1] += line->w[0] / parts;
     for (int j = 0; j < (dim > 1 ? n : 1); j++)
-      for (int i = 0; i < n; i++)
-        AddPoint(rule, (gauss[n].x[i] + 2 * part + 1 - parts) / parts, dim > 1 ? gauss[n].x[j] : 0,
-                 gauss[n].w[i] / parts * (dim > 1 ? gauss[n].w[j] : 1));
+      for (int i = meet; i < n; i++)
+        AddPoint(rule, (line->x[i] + 2 * part + 1 - parts) / parts, dim > 1 ? line->x[j] : 0,
+                 line->w[i] / parts * (dim > 1 ? line->w[j] : 1));
+  }
 }
 
-/* Tabulates the points of a rule with shape functions, derivatives and hat functions. Edges have one more point,
-   because points cost little there and the additional one leaves a third of the noise of curved second-order edges. */
+/* Does a point lie on an edge of a face, in 2D at an end? The tables' points do, or are far from it. */
+static int OnEdge(const Element *e, const double *xi, int edge)
+{
+  const double *a = e->node[e->dim == 1 ? edge : e->edge_corners[edge][0]], *b;
+
+  if (e->dim == 1) return xi[0] == a[0];
+  b = e->node[e->edge_corners[edge][1]];
+  return fabs((b[0] - a[0]) * (xi[1] - a[1]) - (b[1] - a[1]) * (xi[0] - a[0])) < ON_EDGE;
+}
+
+/* Completes the points of a rule with shape functions, derivatives, hat functions and the edges on which they lie. */
+static void Tabulate(const Element *e, FaceRule *rule)
+{
+  for (int q = 0; q < rule->n; q++) {
+    double dN[FACE_MAX_NODES * 2];
+
+    ElementShape(e->type, rule->xi[q], rule->N[q], dN, NULL);
+    for (int a = 0; a < e->nodes; a++)
+      for (int k = 0; k < e->dim; k++) rule->dN[q][a][k] = dN[a * e->dim + k];
+    FaceHat(e->type, rule->xi[q], rule->hat[q]);
+    for (int edge = 0; edge < (e->dim == 1 ? 2 : e->edges); edge++)
+      rule->edges[q] |= OnEdge(e, rule->xi[q], edge) << edge;
+  }
+}
+
+/* Makes the points of a rule. Edges have one more point, because points cost little there and the additional one leaves
+   a third of the noise of curved second-order edges. */
 static void MakeRule(const Element *e, int finer, FaceRule *rule)
 {
   const int more = e->dim > 1 && e->order == 1 && finer == FACE_RULE_FINEST;
@@ -76,15 +134,22 @@ static void MakeRule(const Element *e, int finer, FaceRule *rule)
   if (e->corners == 3)
     AddOrbits(rule, n == 2 ? triangle3 : n == 3 ? triangle6 : triangle12);
   else
-    AddGauss(e->dim, n, e->dim == 1 && finer == FACE_RULE_FINEST ? 2 : 1, rule);
-  for (int q = 0; q < rule->n; q++) {
-    double dN[FACE_MAX_NODES * 2];
+    AddLines(e->dim, &gauss[n], n, e->dim == 1 && finer == FACE_RULE_FINEST ? 2 : 1, rule);
+  Tabulate(e, rule);
+}
 
-    ElementShape(e->type, rule->xi[q], rule->N[q], dN, NULL);
-    for (int a = 0; a < e->nodes; a++)
-      for (int k = 0; k < e->dim; k++) rule->dN[q][a][k] = dN[a * e->dim + k];
-    FaceHat(e->type, rule->xi[q], rule->hat[q]);
-  }
+/* Makes the points of a rule with ends: on lines as exact as the other one, with one point more, but on faces no more
+   than have room. */
+static void MakeRuleWithEnds(const Element *e, int finer, FaceRule *rule)
+{
+  const int n = e->order + 2 + (finer > FACE_RULE_PLAIN) + (e->dim == 1), most = e->dim == 1 ? n : ENDS_LINE;
+
+  if (e->corners == 3)
+    AddOrbits(rule, triangle_ends);
+  else
+    AddLines(e->dim, &lobatto[n < most ? n : most], n < most ? n : most,
+             e->dim == 1 && finer == FACE_RULE_FINEST ? 2 : 1, rule);
+  Tabulate(e, rule);
 }
 
 /*@
@@ -107,6 +172,46 @@ const FaceRule *FaceRuleGet(ElementType type, int finer)
 
   if (!rule->n) MakeRule(ElementGet(type), finer, rule);
   return rule;
+}
+
+/*@
+  FaceRuleWithEnds - returns the quadrature rule of a type of face whose outer points lie on its edges and corners, in
+2D at its ends. It is tabulated on first use.
+
+  Not collective
+
+  Input Parameters:
++ type  - of the face
+- finer - as for FaceRuleGet()
+
+  Note:
+  All weights are positive. Number of points, plain | finer | finest: EDGE2 4 | 5 | 9, EDGE3 5 | 6 | 11, triangles 12,
+  QUAD4 9 | 16 | 16, QUAD9 16. Plain C.
+@*/
+const FaceRule *FaceRuleWithEnds(ElementType type, int finer)
+{
+  FaceRule *rule = &ends[finer][type];
+
+  if (!rule->n) MakeRuleWithEnds(ElementGet(type), finer, rule);
+  return rule;
+}
+
+/*@
+  FaceRuleOf - returns the quadrature rule of a face of a slave.
+
+  Not collective
+
+  Input Parameters:
++ type  - of the face
+. finer - as for FaceRuleGet()
+- ends  - bit e: the surface ends at edge e of the face, see surfaceends.h; 0: nowhere
+
+  Note:
+  Plain C.
+@*/
+const FaceRule *FaceRuleOf(ElementType type, int finer, int ends)
+{
+  return ends ? FaceRuleWithEnds(type, finer) : FaceRuleGet(type, finer);
 }
 
 /* Hat functions of a 6-node triangle, which is split into four small triangles by the barycentric coordinates l.

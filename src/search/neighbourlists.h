@@ -25,7 +25,8 @@ typedef struct _n_ContactSearch *ContactSearch; /* in search.h */
 
 /* The rung of the ladder of fall-backs on which a slave point's fit was found: fits of decreasing quality, then the
    facets. */
-enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_DEGREE_2 = 6, RUNG_LINEAR = 7, RUNGS = 8 };
+enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_QUADRATIC = 5, RUNG_DEGREE_2 = 6, RUNG_LINEAR = 7 };
+enum { RUNGS = 8 };
 
 /* Contact nodes are the nodes that the terms of the pair touch. Nodes with unknowns come first (leaves of sf, whose
    roots are the local nodes of their owners), then nodes of a rigid tool. Points are what a smoother sees: a fixed

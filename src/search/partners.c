@@ -321,7 +321,7 @@ PetscErrorCode SearchPartnersFaces(ContactSearch s, const PetscReal *u, PetscRea
   PetscCall(TestPoints(s, u, t, &sight, normal, s->partners.possible, possible));
   for (PetscInt f = 0; f < points->n_faces; f++) {
     at_points[f] = 0;
-    for (int q = 0; q < FaceRuleGet(points->faces[f].type, points->finer)->n; q++)
+    for (int q = 0; q < FaceRuleOf(points->faces[f].type, points->finer, points->ends[f])->n; q++)
       at_points[f] = at_points[f] || possible[points->first[f] + q];
   }
   PetscCall(PetscSFReduceBegin(points->face_sf, MPI_INT, at_points, at_faces, MPI_MAX));

@@ -36,7 +36,7 @@ PetscErrorCode SlaveLeversOnFaces(SlavePoints points)
   PetscCall(PetscArraycpy(points->lever_ptr, points->ptr, points->n + 1));
   PetscCall(PetscArraycpy(points->lever_node, points->node, points->ptr[points->n]));
   for (PetscInt f = 0; f < points->n_faces; f++) {
-    const FaceRule *rule = FaceRuleGet(points->faces[f].type, points->finer);
+    const FaceRule *rule = FaceRuleOf(points->faces[f].type, points->finer, points->ends[f]);
 
     for (PetscInt q = points->first[f]; q < points->first[f + 1]; q++)
       for (PetscInt k = points->ptr[q]; k < points->ptr[q + 1]; k++)

@@ -1,5 +1,6 @@
 /* Slave points of both formulations: where they are, their normals, weights and offsets. */
 #include "search/slavepoints.h"
+#include "search/surfaceends.h"
 #include "slavelevers.h"
 
 /* Makes the star forest from the owners to the nodes, whose keys are complete. */
@@ -118,7 +119,7 @@ static PetscErrorCode TakeRecords(SlavePoints points, PetscInt n_records, FaceRe
 
   PetscFunctionBeginUser;
   points->n_faces = n_records;
-  PetscCall(PetscMalloc2(n_records, &points->faces, n_records + 1, &points->first));
+  PetscCall(PetscMalloc3(n_records, &points->faces, n_records + 1, &points->first, n_records, &points->ends));
   PetscCall(PetscMalloc1(n_records * FACE_MAX_NODES, &points->nodes));
   for (PetscInt f = 0; f < n_records; f++) {
     FaceRecordKeys(&records[f], &points->nodes[points->n_nodes]);
@@ -128,6 +129,7 @@ static PetscErrorCode TakeRecords(SlavePoints points, PetscInt n_records, FaceRe
   PetscCall(PetscMalloc1(n_records, &remote));
   for (PetscInt f = 0; f < n_records; f++) {
     points->faces[f] = records[f].facet;
+    points->ends[f]  = records[f].ends;
     for (int a = 0; a < ElementGet(records[f].facet.type)->nodes; a++)
       points->faces[f].nodes[a] = NodeKeysFind(points->n_nodes, points->nodes, records[f].id[a]);
     remote[f] = (PetscSFNode){records[f].home, records[f].home_face};
@@ -174,8 +176,8 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
   PetscCall(TakeRecords(points, n_records, records));
   for (PetscInt f = 0; f < n_records; f++) {
     points->first[f] = n;
-    n += FaceRuleGet(records[f].facet.type, finer)->n;
-    entries += FaceRuleGet(records[f].facet.type, finer)->n * ElementGet(records[f].facet.type)->nodes;
+    n += FaceRuleOf(points->faces[f].type, finer, points->ends[f])->n;
+    entries += FaceRuleOf(points->faces[f].type, finer, points->ends[f])->n * ElementGet(records[f].facet.type)->nodes;
   }
   points->first[n_records] = points->n = n;
   PetscCall(PetscMalloc6(n + 1, &points->ptr, entries, &points->node, entries, &points->S, entries, &points->hat, n,
@@ -185,7 +187,7 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
   entries = 0;
   for (PetscInt f = 0; f < n_records; f++) {
     const Facet    *facet = &points->faces[f];
-    const FaceRule *rule  = FaceRuleGet(facet->type, finer);
+    const FaceRule *rule  = FaceRuleOf(facet->type, finer, points->ends[f]);
     const int       nodes = ElementGet(facet->type)->nodes;
     double          X[FACE_MAX_NODES * 3];
 
@@ -249,7 +251,7 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *points)
   if (p->face_sf) {
     PetscCall(PetscSFDestroy(&p->face_sf));
     PetscCallMPI(MPI_Type_free(&p->face_block));
-    PetscCall(PetscFree2(p->faces, p->first));
+    PetscCall(PetscFree3(p->faces, p->first, p->ends));
     PetscCall(FaceMapsDestroy(&p->maps));
     PetscCall(PetscFree(p->normal));
   }
@@ -329,7 +331,7 @@ static PetscErrorCode HatNormals(SlavePoints points, int n_images, const Surface
   PetscCall(PetscCalloc2(mesh->n_nodes * dim, &sum, points->n_nodes * dim, &at));
   for (PetscInt f = 0; f < points->surface->n_faces; f++) {
     const Facet    *facet = &points->surface->faces[f];
-    const FaceRule *rule  = FaceRuleGet(facet->type, points->finer);
+    const FaceRule *rule  = SurfaceRule(points->surface, f, points->finer);
     const int       nodes = ElementGet(facet->type)->nodes;
     double          x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS], normal[FACE_RULE_POINTS * 3];
 
@@ -385,7 +387,7 @@ PetscErrorCode SlavePointsNormals(SlavePoints points, int n_images, const Surfac
     for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
       for (int d = 0; d < dim; d++)
         x[a * dim + d] = points->nodes[facet->nodes[a]].X[d] + points->u[facet->nodes[a] * dim + d];
-    FaceRuleAreas(FaceRuleGet(facet->type, points->finer), facet->type, dim, GEOMETRY_SOLID, x, area,
+    FaceRuleAreas(FaceRuleOf(facet->type, points->finer, points->ends[f]), facet->type, dim, GEOMETRY_SOLID, x, area,
                   &normals[3 * points->first[f]]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -481,7 +483,7 @@ PetscErrorCode SlavePointsHatAreas(SlavePoints points, Geometry geometry, const 
   PetscCall(PetscArrayzero(area, mesh->n_nodes));
   for (PetscInt f = 0; f < points->surface->n_faces; f++) {
     const Facet    *facet = &points->surface->faces[f];
-    const FaceRule *rule  = FaceRuleGet(facet->type, points->finer);
+    const FaceRule *rule  = SurfaceRule(points->surface, f, points->finer);
     const int       nodes = ElementGet(facet->type)->nodes;
     double          x[FACE_MAX_NODES * 3], parts[FACE_RULE_POINTS];
 

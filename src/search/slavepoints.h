@@ -25,14 +25,15 @@ typedef struct {
   PetscReal     *offset;           /* n*dim, along the normal at the time when it was taken (length) */
   /* Where friction needs them: the nodes around each point with two slopes each, so that sum slope x are tangents of
      the slave's surface at the point. NULL: not asked for. */
-  PetscInt      *lever_ptr, *lever_node;
-  PetscReal     *lever_slope;
-  PetscReal     *end;              /* n_nodes*dim: SurfaceNodeEnds() at the last SlavePointsFindEnds(), of any length */
+  PetscInt  *lever_ptr, *lever_node;
+  PetscReal *lever_slope;
+  PetscReal *end; /* n_nodes*dim: SurfaceNodeEnds() at the last SlavePointsFindEnds(), of any length */
   /* The following members are for surface-to-surface contact only. */
   PetscReal   *normal; /* n_nodes*3: mean normal around each node after SlavePointsNormals(), of any length */
   PetscInt     n_faces;
   Facet       *faces;      /* nodes: positions in nodes[] */
   PetscInt    *first;      /* first point of each face */
+  int         *ends;       /* of each face, see surfaceends.h; the rule of a face with an end has points on it */
   int          finer;      /* how fine the quadrature is, see FaceRuleGet() */
   PetscSF      face_sf;    /* roots: faces where they live */
   MPI_Datatype face_block; /* FACE_RULE_POINTS*dim reals */

@@ -200,6 +200,7 @@ PetscErrorCode SurfaceDestroy(ContactSurface *surface)
   if (!*surface) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree3((*surface)->faces, (*surface)->face_size, (*surface)->face_height));
   PetscCall(PetscFree((*surface)->face_marks));
+  PetscCall(PetscFree((*surface)->face_ends));
   PetscCall(PetscFree(*surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -42,9 +42,10 @@ typedef struct {
   PetscReal        mean_size, max_size; /* mean and largest face size, over all ranks */
   PetscReal        max_extent;          /* longest distance between two corners of a face */
   /* Area-weighted mean of E over element height, over all ranks; 0 for a rigid tool. */
-  PetscReal stiffness;
+  PetscReal  stiffness;
   FaceMarks *face_marks; /* of each face; NULL: there are none */
-  PetscInt  turned; /* faces of a rigid tool whose normals were turned */
+  int       *face_ends;  /* of each face, bit e: edge e is an end, see surfaceends.h; NULL: none was sought */
+  PetscInt   turned;     /* faces of a rigid tool whose normals were turned */
 } *ContactSurface;
 
 PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const char *key, const char *name,

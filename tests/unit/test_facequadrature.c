@@ -79,6 +79,44 @@ static void test_hats(void **state)
   }
 }
 
+/* Degree up to which a rule with ends is exact: on lines as the other one, in space up to 5. */
+static int DegreeWithEnds(const Element *e, int finer)
+{
+  const int line = 2 * (e->order + 1 + (finer > 0) + (e->dim == 1)) - 1;
+
+  return e->corners == 3 || (e->dim == 2 && line > 5) ? 5 : line;
+}
+
+/* Rules with ends are exact up to their degree, have positive weights, and give all corners and edges a point. */
+static void test_ends(void **state)
+{
+  (void)state;
+  for (int k = 0; k < FACE_RULES * TYPES; k++) {
+    const Element  *e     = ElementGet(types[k / FACE_RULES]);
+    const int       finer = k % FACE_RULES, degree = DegreeWithEnds(e, finer), edges = e->dim == 1 ? 2 : e->edges;
+    const FaceRule *rule   = FaceRuleWithEnds(e->type, finer);
+    int             at_two = 0, seen = 0;
+
+    assert_true(rule->n <= FACE_RULE_POINTS && FaceRuleOf(e->type, finer, 1) == rule);
+    assert_true(FaceRuleOf(e->type, finer, 0) == FaceRuleGet(e->type, finer));
+    for (int i = 0; i <= degree; i++) {
+      for (int j = 0; j <= (e->dim == 1 ? 0 : e->corners == 3 ? degree - i : degree); j++) {
+        double sum = 0;
+
+        for (int q = 0; q < rule->n; q++) sum += rule->weight[q] * pow(rule->xi[q][0], i) * pow(rule->xi[q][1], j);
+        assert_true(fabs(sum - Exact(e, i, j)) < 1e-14);
+      }
+    }
+    for (int q = 0; q < rule->n; q++) {
+      assert_true(rule->weight[q] > 0);
+      seen |= rule->edges[q];
+      at_two += (rule->edges[q] & (rule->edges[q] - 1)) != 0;
+    }
+    assert_int_equal(seen, (1 << edges) - 1);
+    assert_int_equal(at_two, e->dim == 1 ? 0 : e->corners);
+  }
+}
+
 /* The values for the element's quadrature points are shares of 1 and keep the hats' products with shape functions, as
    the finer rule has them; in second-order triangles those with linear functions. */
 static void test_hats_around(void **state)
@@ -156,7 +194,7 @@ static void test_areas(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_degree), cmocka_unit_test(test_hats),
-                                     cmocka_unit_test(test_hats_around), cmocka_unit_test(test_kink),
-                                     cmocka_unit_test(test_areas)};
+                                     cmocka_unit_test(test_ends),   cmocka_unit_test(test_hats_around),
+                                     cmocka_unit_test(test_kink),   cmocka_unit_test(test_areas)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

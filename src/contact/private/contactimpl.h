@@ -3,14 +3,15 @@
    A term is a slave node with area. Its gap is the weighted mean over its slave points, and its pressure acts on all of
    them. Node to surface: a term has one slave point, the node itself. Surface to surface: its slave points are the
    quadrature points of the faces around the node, which it shares with its neighbours. A node on a sharp edge may
-   have a term for each further side of the edge (contactcorners.c). Faces may have terms besides (contactfaces.c).
+   have a term for each further side of the edge (contactcorners.c), and where the surface ends one more for the end
+   itself (contactends.c). Faces may have terms besides (contactfaces.c).
    Both press and have stiffness as others do, but what is counted and shown is that of the nodes.
 
-   The files call each other downwards in this order: contactwork (room), contactpair, contactcorners, contactfaces and
-   contactterm (a pair, the terms of its sharp edges and faces, one of its terms), contacttool (a tool with unknowns),
-   contactpoint (one slave point), contactvariation (first variations that are kept), contactprojection (gaps of all
-   points), contactvectors (first variations over dofs), frictiontravel, frictionenergy, friction, frictionstep,
-   frictiontangent, contactresidual, contacttangent, contactlists, contact. */
+   The files call each other downwards in this order: contactwork (room), contactpair, contactends, contactcorners,
+   contactfaces and contactterm (a pair, its ends, the terms of its sharp edges and faces, one of its terms),
+   contacttool (a tool with unknowns), contactpoint (one slave point), contactvariation (first variations that are
+   kept), contactprojection (gaps of all points), contactvectors (first variations over dofs), frictiontravel,
+   frictionenergy, friction, frictionstep, frictiontangent, contactresidual, contacttangent, contactlists, contact. */
 #pragma once
 #include "matrix/blockmatrix.h"
 #include "contact/activeset.h"
@@ -71,12 +72,15 @@ typedef struct {
   ContactSearch       search;
   FaceMarks          *marks; /* of each slave point, where other pairs treat some of its partners; else NULL */
 
-  /* Terms: the first n_nodes are those of nodes, up to n_sides those of further sides of sharp edges, the others those
-     of faces. */
+  /* Terms: the first n_nodes are those of nodes, up to n_sides those of further sides of sharp edges and of ends, the
+     others those of faces. */
   PetscInt   n, n_nodes, n_sides;
   PetscInt  *corner; /* FACE_MAX_NODES for each face of the slave points: term of a further side, or -1; NULL: none */
-  PetscInt  *first_side; /* of each node: its further sides have the terms first_side[c] to first_side[c + 1] - 1 */
-  PetscReal *whole;      /* reference area of each node, all sides together */
+  PetscInt  *at_end; /* of each node of each slave point: its term of an end, or -1; NULL: there are no ends */
+  PetscReal *below;  /* of each term before n_sides: it presses where it is deeper than this (length); NULL: all 0 */
+  /* Of each node: its further sides and ends have the terms first_side[c] to first_side[c + 1] - 1. */
+  PetscInt  *first_side;
+  PetscReal *whole;                    /* reference area of each node, all sides together */
   PetscReal *shown_gap, *shown_normal; /* what ContactGetNodes() shows of nodes: of the side with the least gap */
   PetscInt  *node, *face;           /* local node of each term, of a face its first one; face of each term of a face */
   PetscReal *area, *size, *turn;    /* reference area; size of the faces around (length); turn of their normals */
@@ -162,6 +166,13 @@ struct _n_Contact {
   PetscLogEvent   event_fit, event_offset, event_adjust, event_touch; /* only where the scene calls for the effect */
 };
 
+/* A face of the slave points around a node, the node's number in it, and the face's reference normal at the node. */
+typedef struct {
+  PetscInt  face;
+  int       at;
+  PetscReal normal[3];
+} ContactCornerFace;
+
 /* What of a pair is in contact: closed nodes, or closed faces where no node is closed. */
 typedef struct {
   PetscInt  n;
@@ -182,6 +193,14 @@ void ContactPairHold(Contact, const ContactPair *, PetscReal t, const PetscReal 
 PetscErrorCode ContactNodePressures(Contact, int pair, const PetscReal *u, const PetscReal *force,
                                     const PetscReal *reaction, PetscReal *area, PetscReal *pressure);
 PetscErrorCode ContactPairPressing(const ContactPair *, ContactPressing *);
+/* contactends.c */
+PetscBool      ContactSidesServe(const ContactPair *);
+PetscInt       ContactSideAdd(ContactPair *, PetscInt c);
+PetscErrorCode ContactEndsFind(ContactPair *, Scene);
+PetscErrorCode ContactEndsBegin(ContactPair *);
+void           ContactEndsAdd(ContactPair *, PetscInt c, PetscInt n, const ContactCornerFace face[], PetscInt made[]);
+void           ContactEndsPoints(ContactPair *);
+PetscReal      ContactEndDepth(const ContactPair *, PetscInt term);
 /* contactcorners.c */
 PetscErrorCode ContactCornersAdd(ContactPair *);
 void           ContactCornersTake(const ContactPair *, PetscInt term[]);
@@ -205,6 +224,7 @@ PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const Pet
                          PetscReal *area);
 PetscReal ContactTermForce(const ContactPair *, PetscInt term);
 PetscReal ContactTermAddedOverlap(const ContactPair *, PetscInt term, PetscReal t);
+PetscReal ContactTermOverlap(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermOffset(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermOnsetGap(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermBound(const ContactPair *, PetscInt term);
