@@ -32,10 +32,10 @@ PAIRS = {
     2: ((6, 7), (7, 6), (6, 12), (12, 6))
 }  # faces per side, master/slave
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
-WAYS = {"pair": ("slave: upper_bottom, master: lower_top", ""), "symmetric": ("surfaces: [upper_bottom, lower_top]", ""),
-        "augmented": ("surfaces: [upper_bottom, lower_top]", ", augment: true, g_max: 1e-7, unit: spacing")}
-CONTACT = ("contact=[{{name: joint, {0}, smoother: diffuse, formulation: {2}, symmetry: [wall_x_low, wall_x_high, "
-           "wall_z_low, wall_z_high], penalty: {{initial: auto, scale: 100{1}}}}}]")
+# What a list of surfaces has besides the settings of the scene's pair, and more of its penalty. A pair is the scene's.
+WAYS = {"pair": None, "symmetric": "", "augmented": ", augment: true, g_max: 1e-7, unit: spacing"}
+LIST = ("contact=[{{name: joint, surfaces: [upper_bottom, lower_top], smoother: diffuse, formulation: {}, symmetry: "
+        "[wall_x_low, wall_x_high, wall_z_low, wall_z_high], penalty: {{initial: auto, scale: 100{}}}}}]")
 SIDES = ("joint", "joint.upper_bottom.lower_top", "joint.lower_top.upper_bottom")  # of a pair; of a list
 COLUMNS = ("strain", "elements", "order", "master", "slave", "jitter", "formulation", "way", "status", "iterations",
            "fall_backs", "wall_s", "pressure_max", "pressure_rms", "stress_master", "stress_slave", "point_master",
@@ -116,10 +116,13 @@ def layer_stress(directory, finite):
 def overrides(strain, elements, order, pair, jitter, formulation, way):
     load, how = STRAINS[strain]
     lower, upper = FORMS[elements]
+    contact = [f"contact.0.formulation={formulation}"]
+    if way != "pair":
+        contact = [LIST.format(formulation, WAYS[way]), "probes=[]"]
     return [
         f"mesh.order={order}", f"mesh.parameters.n_lower={pair[0]}", f"mesh.parameters.n_upper={pair[1]}",
         f"mesh.parameters.jitter={jitter}", f"mesh.parameters.lower={lower}", f"mesh.parameters.upper={upper}",
-        CONTACT.format(*WAYS[way], formulation), "probes=[]", f"loads.0.pressure={load}", *how
+        f"loads.0.pressure={load}", *contact, *how
     ]
 
 

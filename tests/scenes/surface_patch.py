@@ -15,7 +15,7 @@ COARSE_STRESS = 3  # where a slave face spans two of the master's
 args = arguments(("strain", "kinematics", patch_table.STRAINS), ("order", "of the elements", ["1", "2"]),
                  ("pair", "faces per side, master-slave"), ("jitter", "in face sizes", ["0", "0.125", "0.25"]))
 pair = [int(n) for n in args.pair.split("-")]
-case = (args.strain, "bricks", int(args.order), pair, args.jitter, "surface_to_surface")
+case = (args.strain, "bricks", int(args.order), pair, args.jitter, "surface_to_surface", "pair")
 finished = run(args, ROOT / "runs/patch_blocks.yaml", overrides=patch_table.overrides(*case))
 load, figures = patch_table.STRAINS[args.strain][0], patch_table.deviations(finished.directory, args.strain)
 check = Check()
