@@ -6,7 +6,7 @@ one record per run and prints the table; --print tables an existing record.
 import shutil
 import subprocess
 
-from launch import ROOT, command, environment, read_records, read_summary, table_parser, write_records
+from launch import ROOT, command, environment, fill_table, read_summary, table_parser
 
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
 # listed: the two surfaces of the pair by name. The pressure of `all` has the noise of faces that meet nothing in it.
@@ -93,12 +93,9 @@ def table(rows):
 
 
 def main():
-    args = table_parser(__doc__, "all").parse_args()
-    if not args.only_print:
-        args.out.mkdir(parents=True, exist_ok=True)
-        args.record.parent.mkdir(parents=True, exist_ok=True)
-        write_records(args.record, COLUMNS, lambda case: [solve(args, case)], cases(), 1)
-    table(read_records(args.record))
+    parser = table_parser(__doc__, "all")
+    parser.add_argument("--jobs", type=int, default=1, help="runs at the same time")
+    fill_table(parser.parse_args(), COLUMNS, lambda case, args: [solve(args, case)], cases(), table)
 
 
 if __name__ == "__main__":
