@@ -552,7 +552,7 @@ PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, PetscInt phase, Loads *out)
   loads->mesh  = mesh;
   loads->scene = scene;
   for (int l = 0; l < scene->n_loads; l++) loads->varies = (PetscBool)(loads->varies || LoadVaries(&scene->loads[l]));
-  for (int l = 0; l < scene->n_loads; l++) loads->shared = (PetscBool)(loads->shared || scene->loads[l].open);
+  loads->shared = SceneHasFluid(scene);
   PetscCall(LoadsCreatePrescribed(loads, phase));
   PetscCall(FoundationCreate(mesh, scene, &loads->foundation));
   PetscCall(LoadsCreateForces(loads));

@@ -77,9 +77,7 @@ PetscErrorCode ContactEndsFind(ContactPair *pair, Scene scene)
   int          n_images = pair->n_images;
 
   PetscFunctionBeginUser;
-  if (!ContactSidesServe(pair) || !SceneIsPlastic(scene)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int i = 0; i < scene->n_loads; i++)
-    if (scene->loads[i].open) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ContactSidesServe(pair) || !SceneIsPlastic(scene) || SceneHasFluid(scene)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(images, pair->images, SURFACE_MAX_IMAGES));
   if (pair->scene->find_symmetry)
     PetscCall(SurfaceImagesFromSupports(pair->mesh, scene, pair->slave, pair->master, &n_images, images));

@@ -36,10 +36,8 @@ PetscBool ContactFacesServe(const ContactPair *pair, Scene scene, int order)
 {
   const SceneContact *contact = pair->scene;
 
-  for (int i = 0; i < scene->n_loads; i++)
-    if (scene->loads[i].open) return PETSC_FALSE;
   return (PetscBool)(pair->formulation.surface && order == 1 && !contact->adjust && !contact->augment &&
-                     !contact->friction);
+                     !contact->friction && !SceneHasFluid(scene));
 }
 
 /*@

@@ -317,6 +317,7 @@ const char    *SceneWhere(Scene, const char *path, const char *key);
 void           SceneBodySkin(const SceneBody *, char *name, size_t size);
 PetscBool      SceneIsPlastic(Scene);
 PetscBool      SceneHasRoutine(Scene);
+PetscBool      SceneHasFluid(Scene);
 PetscBool      SceneBreaks(Scene, PetscReal t);
 const char    *SceneStepAt(Scene, PetscReal t);
 int            SceneStepFrom(Scene, PetscReal t);

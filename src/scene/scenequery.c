@@ -31,6 +31,21 @@ PetscBool SceneHasRoutine(Scene scene)
   return PETSC_FALSE;
 }
 
+/*@
+  SceneHasFluid - tells whether some load is the pressure of a fluid that enters between surfaces.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. scene - the scene
+@*/
+PetscBool SceneHasFluid(Scene scene)
+{
+  for (int l = 0; l < scene->n_loads; l++)
+    if (scene->loads[l].open) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 static PetscBool MotionBreaks(const Motion *motion, PetscReal t)
 {
   for (int m = 0; m < motion->n; m++)

@@ -100,9 +100,8 @@ static PetscErrorCode CheckPath(Scene scene)
     PetscCall(Refuse(scene, NULL,
                      "is not available where supports come and go, as the answer depends on the way to it; allowed: "
                      "supports that hold all the time"));
-  for (int l = 0; l < scene->n_loads; l++)
-    if (scene->loads[l].open)
-      PetscCall(Refuse(scene, NULL, "is not available where a fluid enters between surfaces; allowed: other loads"));
+  if (SceneHasFluid(scene))
+    PetscCall(Refuse(scene, NULL, "is not available where a fluid enters between surfaces; allowed: other loads"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
