@@ -26,9 +26,9 @@ enum { CORNER_ENDS = 2 };
 . pair - the pair
 
   Note:
-  In node to surface contact a node is one point. A master that is softer than the slave bends around the slave's edges:
-both sides of an edge then see the same part of it, and one mean over both holds the edge less stiffly. A rigid or a
-stiffer master keeps its own shape, with its own corners.
+  In node to surface contact a node is one point. A master that is softer than the slave bends around the slave's
+  edges: both sides of an edge then see the same part of it, and one mean over both holds the edge less stiffly. A rigid
+  or a stiffer master keeps its own shape, with its own corners.
 @*/
 PetscBool ContactSidesServe(const ContactPair *pair)
 {
@@ -67,9 +67,9 @@ PetscInt ContactSideAdd(ContactPair *pair, PetscInt c)
 
   Note:
   They serve where sides of sharp edges have terms and bodies yield. Elastic bodies are not crushed at their edges, and
-with friction between them such terms cost failed steps: a cone clutch fails 2 of 9. What a fluid between surfaces
-reaches is told by the means of nodes, and changes with them. On planes of symmetry faces go on, whether the pair has
-images beyond them or not.
+  with friction between them such terms cost failed steps: a cone clutch fails 2 of 9. What a fluid between surfaces
+  reaches is told by the means of nodes, and changes with them. On planes of symmetry faces go on, whether the pair has
+  images beyond them or not.
 @*/
 PetscErrorCode ContactEndsFind(ContactPair *pair, Scene scene)
 {

@@ -5,14 +5,17 @@
    the step began. Only its part in the tangent plane counts, with P = I - n n^T and n the unit vector along `normal`.
    What the traction was when the step began is kept as two components of a length, along two tangents that turn with
    the master's material: t_1 along P along, t_2 = n x t_1. So a rigid motion of both bodies together changes nothing.
-   With augmentation a multiplier, the grip, has two components in the same way. It is the traction without elastic
-   slip. e = beta (kept_1 t_1 + kept_2 t_2 + P v + grip/stiffness) t = stiffness e      as long as |t| <= b(p): the node
-   sticks t = b(p) e/|e|       else: it slips with the bound b = cohesion + mu p, or the limit where that is less. mu
-   may depend on p. Without pressure b is 0. beta is 1 where the node was in contact when the step began. Else slip
-   counts from the touch only: beta = depth/(depth + began) with depth = p/stiffness. So far the node would have gone on
-   without contact, were the surface as stiff across as it is along. Near the touch t = p v/began: a node that arrives
-   within the cone of friction sticks, any other one slips, whatever the penalty. In two dimensions all third components
-   are 0.
+   With augmentation a multiplier, the grip, has two components in the same way: the traction without elastic slip.
+       e = beta (kept_1 t_1 + kept_2 t_2 + P v + grip/stiffness)
+
+       t = stiffness e      as long as |t| <= b(p): the node sticks
+       t = b(p) e/|e|       else: it slips
+
+   with the bound b = cohesion + mu p, or the limit where that is less. mu may depend on p. Without pressure b is 0.
+   beta is 1 where the node was in contact when the step began. Else slip counts from the touch only: beta =
+   depth/(depth + began) with depth = p/stiffness. So far the node would have gone on without contact, were the surface
+   as stiff across as it is along. Near the touch t = p v/began: a node that arrives within the cone of friction sticks,
+   any other one slips, whatever the penalty. In two dimensions all third components are 0.
 
    Sources: Wriggers, Computational Contact Mechanics, 2006, ch. 5 and 10 (return map); Chamoret et al. (2004), eq. 17
    (beta, of a predicted penetration). */

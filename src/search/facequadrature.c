@@ -176,7 +176,7 @@ const FaceRule *FaceRuleGet(ElementType type, int finer)
 
 /*@
   FaceRuleWithEnds - returns the quadrature rule of a type of face whose outer points lie on its edges and corners, in
-2D at its ends. It is tabulated on first use.
+  2D at its ends. It is tabulated on first use.
 
   Not collective
 
@@ -303,8 +303,8 @@ static double PointPolynomial(const Element *e, int point, const double *xi)
 
   Note:
   Hat functions of second-order faces have edges, for which the element's rule is not made. With these values it gives
-the integrals of the hats, and of their products with shape functions (in triangles: with linear functions), that the
-rule of contact gives. Some values are a little below 0. First order: the hat functions at the point. Plain C.
+  the integrals of the hats, and of their products with shape functions (in triangles: with linear functions), that the
+  rule of contact gives. Some values are a little below 0. First order: the hat functions at the point. Plain C.
 @*/
 void FaceHatAround(ElementType type, int point, int finer, double *psi)
 {

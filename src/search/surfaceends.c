@@ -166,7 +166,7 @@ static PetscInt MarkWithin(const EndSearch *s, PetscInt n, PetscReal *rows)
 
   Note:
   Faces turn away from each other where they enclose the body. In a corner that the body encloses there is no end: what
-comes near meets the faces first.
+  comes near meets the faces first.
 @*/
 PetscErrorCode SurfaceFindEnds(ContactSurface surface, PetscReal angle, int n_images, const SurfaceImage *images)
 {
