@@ -315,6 +315,12 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Key of the point at a place in the list of slave point q. */
+static long ListKey(NeighbourLists lists, PetscInt q, PetscInt place)
+{
+  return lists->point_key[lists->list_point[lists->list_ptr[q] + place]];
+}
+
 /* Says whether every point that now lies inside the support of the old fit of slave point q is in its list, and
    whether the frame has stayed. */
 static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
@@ -333,16 +339,20 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
     PetscReal      x[3], y[2] = {0, 0};
     PetscBool      known = PETSC_FALSE;
 
+    if (n && ListKey(old, q, at) == key) { /* most points have the same place in the list as before */
+      at = (at + 1) % n;
+      continue;
+    }
     NeighbourListsRelative(fresh, q, p, x);
     for (int a = 0; a < dim - 1; a++)
       for (int d = 0; d < dim; d++) y[a] += frame[3 * a + d] * x[d];
     if (fresh->point_hoop) y[1] = fresh->point_hoop[p];
     if (FitDistance2(dim, old->degree[q], (const double(*)[2])metric, old->bend ? &old->bend[q] : NULL, y) >= 1)
       continue;
-    for (PetscInt k = 0; !known && k < n; k++) { /* most points have the same place in the list as before */
+    for (PetscInt k = 0; !known && k < n; k++) {
       const PetscInt place = (at + k) % n;
 
-      known = old->point_key[old->list_point[old->list_ptr[q] + place]] == key ? PETSC_TRUE : PETSC_FALSE;
+      known = ListKey(old, q, place) == key ? PETSC_TRUE : PETSC_FALSE;
       if (known) at = (place + 1) % n;
     }
     if (!known) return PETSC_FALSE;
