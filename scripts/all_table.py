@@ -95,7 +95,7 @@ def table(rows):
 def main():
     parser = table_parser(__doc__, "all")
     parser.add_argument("--jobs", type=int, default=1, help="runs at the same time")
-    fill_table(parser.parse_args(), COLUMNS, lambda case, args: [solve(args, case)], cases(), table)
+    fill_table(parser.parse_args(), COLUMNS, lambda case, args: solve(args, case), cases(), table)
 
 
 if __name__ == "__main__":

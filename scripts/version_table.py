@@ -55,7 +55,7 @@ def main():
     args.jobs = 1  # side by side, runs would disturb each other
     if not args.only_print and not args.before:
         parser.error("--before: the checkout of the older version is needed")
-    fill_table(args, COLUMNS, lambda scene, args: [solve(args, scene)], SCENES, table)
+    fill_table(args, COLUMNS, lambda scene, args: solve(args, scene), SCENES, table)
 
 
 if __name__ == "__main__":
