@@ -54,7 +54,7 @@ def overrides(scene, formulation, way):
             "output.every=0")
 
 
-def solve(args, case):
+def solve(case, args):
     out = args.out / "-".join(case)
     shutil.rmtree(out, ignore_errors=True)
     scene = ROOT / "runs" / f"{SCENES[case[0]][0]}.yaml"
@@ -95,7 +95,7 @@ def table(rows):
 def main():
     parser = table_parser(__doc__, "all")
     parser.add_argument("--jobs", type=int, default=1, help="runs at the same time")
-    fill_table(parser.parse_args(), COLUMNS, lambda case, args: solve(args, case), cases(), table)
+    fill_table(parser.parse_args(), COLUMNS, solve, cases(), table)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,6 @@ import argparse
 import csv
 import dataclasses
 import math
-import os
 import pathlib
 import shlex
 import shutil
@@ -21,7 +20,7 @@ import statistics
 import subprocess
 import sys
 
-from launch import environment, read_summary
+from launch import environment, read_summary, timed
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COLUMNS = ("scene", "code", "setting", "repeat", "status", "dofs", "steps", "steps_failed", "iterations", "cpu_s",
@@ -366,14 +365,10 @@ WHOLE = {
 # Runs
 
 
-def timed(args, command, directory):
+def timed_in(args, command, directory):
     """Exit status and CPU seconds of the one process; both codes have the same environment."""
     with open(directory / "output.txt", "w") as output:
-        process = subprocess.Popen([str(part) for part in command], cwd=directory, env=environment(args.burnish),
-                                   stdout=output, stderr=subprocess.STDOUT)
-        _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    return process.returncode, usage.ru_utime + usage.ru_stime
+        return timed(command, cwd=directory, env=environment(args.burnish), stdout=output, stderr=subprocess.STDOUT)
 
 
 def run_calculix(args, setting, directory):
@@ -381,7 +376,7 @@ def run_calculix(args, setting, directory):
     call("gmsh", make_mesh(setting, args.out), "-save", "-format", "inp", "-o", path.with_suffix(".abaqus"))
     mesh = AbaqusMesh(path.with_suffix(".abaqus"))
     path.with_suffix(".inp").write_text("\n".join(INPUTS[setting.scene](setting, mesh)) + "\n")
-    _, cpu = timed(args, [*args.launcher, args.ccx, "-i", "case"], directory)
+    _, cpu = timed_in(args, [*args.launcher, args.ccx, "-i", "case"], directory)
     return {**read_calculix(directory, setting, mesh), "cpu_s": cpu}
 
 
@@ -427,7 +422,7 @@ def run_burnish(args, setting, directory):
     mesh = "mesh={file: %s}" % make_mesh(setting, args.out)
     for override in (mesh, "output.every=0", *(part for part in setting.overrides if not part.startswith("mesh."))):
         command += ["-set", override]
-    returned, cpu = timed(args, command, directory)
+    returned, cpu = timed_in(args, command, directory)
     if returned not in (0, 2):  # 2: did not converge; the summary says how far it came
         sys.exit(f"{' '.join(str(part) for part in command)}\n{(directory / 'output.txt').read_text()}")
     summary = read_summary(directory / "results")

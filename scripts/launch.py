@@ -2,6 +2,7 @@
 any user needs: it starts runs and reads them."""
 import argparse
 import csv
+import os
 import pathlib
 import shutil
 import subprocess
@@ -49,6 +50,14 @@ def run_case(case, columns, scene, overrides, figures, args):
         print(case, finished.stdout)
     shutil.rmtree(directory, ignore_errors=True)
     return record
+
+
+def timed(line, **options):
+    """Exit status and CPU seconds of one process from its start to its end; options are those of subprocess.Popen."""
+    process = subprocess.Popen([str(word) for word in line], **options)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, usage.ru_utime + usage.ru_stime
 
 
 def fill_table(args, columns, solve, cases, print_table):

@@ -14,7 +14,6 @@ whose mesh is the cross-section. It writes runs/records/o_ring_3d.csv. All force
 import argparse
 import csv
 import math
-import os
 import pathlib
 import resource
 import subprocess
@@ -23,7 +22,7 @@ import tempfile
 import h5py
 import numpy
 
-from launch import environment, read_summary
+from launch import environment, read_summary, timed
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 YOUNG, CORD, MEAN, WAY = 5.5, 3.53, 53.53, 0.706
@@ -179,16 +178,13 @@ def rows_of(path):
     return [line.split() for line in path.read_text().splitlines() if line.split() and line.split()[0].isdigit()]
 
 
-def timed(command, directory, log, limit=resource.RLIM_INFINITY):
+def timed_in(command, directory, log, limit=resource.RLIM_INFINITY):
     def stop():
         resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
 
     with open(log, "w") as output:
-        process = subprocess.Popen([str(word) for word in command], cwd=directory, stdout=output,
-                                   stderr=subprocess.STDOUT, env=environment(args.burnish), preexec_fn=stop)
-        _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    return process.returncode, usage.ru_utime + usage.ru_stime
+        return timed(command, cwd=directory, stdout=output, stderr=subprocess.STDOUT, env=environment(args.burnish),
+                     preexec_fn=stop)
 
 
 def burnish(element, scene, overrides, law, nu, directory):
@@ -198,7 +194,7 @@ def burnish(element, scene, overrides, law, nu, directory):
     command = [args.burnish, ROOT / scene, "-o", results]
     for override in (*overrides, f"bodies.0.material={material}"):
         command += ["-set", override]
-    code, cpu = timed(command, directory, directory / "burnish.log")
+    code, cpu = timed_in(command, directory, directory / "burnish.log")
     summary = read_summary(results)
     return results, {"code": "Burnish", "element": f"{element} mixed", "nu": nu, "steps": summary["steps"],
                      "status": "done" if code == 0 else "not converged", "failed": summary["steps_failed"],
@@ -211,7 +207,7 @@ def calculix(lines, element, nu, increment, parts, directory):
     for old in directory.glob("ring.*"):
         old.unlink()
     (directory / "ring.inp").write_text("\n".join(lines) + "\n")
-    _, cpu = timed([args.ccx, "-i", "ring"], directory, directory / "ccx.log", args.limit)
+    _, cpu = timed_in([args.ccx, "-i", "ring"], directory, directory / "ccx.log", args.limit)
     accepted, iterations = rows_of(directory / "ring.sta"), rows_of(directory / "ring.cvg")
     done = bool(accepted) and abs(float(accepted[-1][4]) - 1) < 1e-9
     steps = len({line[1] for line in accepted})

@@ -22,7 +22,7 @@ def cases():
     return [(size, formulation, way) for size in SIZES for formulation in FORMULATIONS for way in WAYS]
 
 
-def solve(args, case):
+def solve(case, args):
     size, formulation, way = case
     out = args.out / "-".join(map(str, case))
     shutil.rmtree(out, ignore_errors=True)
@@ -59,7 +59,7 @@ def table(rows):
 def main():
     parser = table_parser(__doc__, "all_overhead")
     parser.add_argument("--jobs", type=int, default=1, help="runs at the same time")
-    fill_table(parser.parse_args(), COLUMNS, lambda case, args: solve(args, case), cases(), table)
+    fill_table(parser.parse_args(), COLUMNS, solve, cases(), table)
 
 
 if __name__ == "__main__":

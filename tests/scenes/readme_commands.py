@@ -132,6 +132,8 @@ FULL = {
     f"{PYTHON} scripts/surface_table.py --burnish build/burnish":
     f"{PYTHON} scripts/surface_table.py --table runs/records/surface.csv",
     f"{PYTHON} scripts/physics_table.py --record runs/records/physics.csv": printed("physics_table", "physics"),
+    f"{PYTHON} scripts/version_table.py --before ../before --record runs/records/versions.csv":
+    printed("version_table", "versions"),
     f"{PYTHON} scripts/augment_table.py --record runs/records/augment.csv": table("augment_table", "rings"),
     f"{PYTHON} scripts/paper.py -j 1 --record runs/records/paper":
     f"{PYTHON} scripts/paper.py cup_flattening -j 1 --quick {BURNISH} --out $WORK/out/paper",
