@@ -5,6 +5,7 @@
 #include "burnish.h"
 #include "base/explanation.h"
 #include "base/interruption.h"
+#include "base/loneprocess.h"
 #include "base/scripts.h"
 #include "scene/commandline.h"
 
@@ -130,6 +131,7 @@ int main(int argc, char **argv)
   if (command.mode == COMMAND_EVALUATE && !command.complaint[0])
     return BecomeScript("evaluate.py", command.results, command.scene);
   if (command.mode == COMMAND_RUN) InterruptionInstall(command.time_limit);
+  LoneProcessPrepare();
   if (PetscInitialize(&command.argc, &command.argv, NULL, NULL)) return BURNISH_FAILED;
   signal(SIGPIPE, SIG_IGN); /* a reader of the terminal's text may leave before its end */
   if (command.mode == COMMAND_RUN) InterruptionInstall(command.time_limit); /* PETSc has taken SIGTERM */

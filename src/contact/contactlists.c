@@ -39,6 +39,14 @@ static PetscReal EdgeFactor(const ContactPair *pair, NeighbourLists lists, Petsc
   return (1 - SmoothStep(past)) * (1 - SmoothStep(2 * past) * SmoothStep(depth / NEIGHBOUR_LISTS_DEEP));
 }
 
+/* May a slave point be past a free edge: does a facet of its list have one? */
+static PetscBool MayBePast(NeighbourLists lists, PetscInt q)
+{
+  for (PetscInt i = lists->facet_ptr[q]; i < lists->facet_ptr[q + 1]; i++)
+    if (lists->facet[i].free_edges) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Area factors of the slave points for these lists: less than 1 past a free edge, and where the normals do not oppose
    each other. */
 static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists, PetscReal *factor)
@@ -48,6 +56,10 @@ static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists,
     PetscBool found;
 
     factor[q] = 0;
+    if (pair->master && !MayBePast(lists, q)) { /* most points; their foot need not be found for this */
+      if (lists->facet_ptr[q + 1] > lists->facet_ptr[q]) factor[q] = lists->share[q];
+      continue;
+    }
     PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, lists->nearest[q], SMOOTHER_GAP, &found));
     if (found && !pair->master)
       factor[q] = NeighbourListsOpposed(lists, q, pair->work->result.normal);

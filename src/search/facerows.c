@@ -30,15 +30,16 @@ enum { UNKNOWNS = 3 /* of a row: place and slope at the foot, curvature */ };
 /* A face with its moments, in the present position. */
 typedef struct {
   PetscReal area, centre[3], covariance[3][3];
-  PetscReal along[3], length, width; /* longest direction in its plane; extents along and across it */
+  PetscReal along[3], across[3], length, width; /* longest direction in its plane, the other one; extents along them */
   PetscBool known;
 } FaceShape;
 
 /* A face that the walk has reached: sums over the ways to it until it is visited, then their mean. */
 typedef struct {
   PetscInt  stamp;
-  int       ways;
-  PetscReal s, t, along[3]; /* steps across and along the rows from the foot to its centre (length) */
+  int       ways, own; /* own: of those along its own longest direction, less those against it */
+  PetscReal s, t;      /* steps across and along the rows from the foot to its centre (length) */
+  PetscReal along[3], across[3], length, width; /* directions of the rows there, unit vectors; its extents along them */
 } FacePlace;
 
 struct _n_FaceRows {
@@ -103,9 +104,9 @@ static void FindLongest(const PetscReal *normal, FaceShape *shape)
       for (int i = 0; i < 9; i++) C[a][b] += e[a][i / 3] * shape->covariance[i / 3][i % 3] * e[b][i % 3];
   angle = 0.5 * PetscAtan2Real(2 * C[0][1], C[0][0] - C[1][1]);
   for (int d = 0; d < 3; d++) shape->along[d] = PetscCosReal(angle) * e[0][d] + PetscSinReal(angle) * e[1][d];
-  Cross(normal, shape->along, e[1]);
+  Cross(normal, shape->along, shape->across);
   shape->length = Extent(shape, shape->along);
-  shape->width  = Extent(shape, e[1]);
+  shape->width  = Extent(shape, shape->across);
 }
 
 /* The moments of a face, computed when they are asked for first. */
@@ -181,6 +182,25 @@ PetscErrorCode FaceRowsDestroy(FaceRows *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gives a face that lies along its own longest direction, or against it, its directions and extents. */
+static void PlaceOwn(const FaceShape *shape, PetscReal sign, FacePlace *place)
+{
+  for (int d = 0; d < 3; d++) {
+    place->along[d]  = sign * shape->along[d];
+    place->across[d] = sign * shape->across[d];
+  }
+  place->length = shape->length;
+  place->width  = shape->width;
+}
+
+/* Is a neighbour of the row that has the direction `along` at a face: is it long, and does its own direction turn from
+   that one, laid into its plane, by little? */
+static PetscBool OfRow(const FaceShape *shape, const PetscReal *normal, const PetscReal *along)
+{
+  return (PetscBool)(shape->length > ROWS_FROM * shape->width &&
+                     PetscSqr(Dot(along, shape->along)) > ROWS_TURN * ROWS_TURN * (1 - PetscSqr(Dot(along, normal))));
+}
+
 /* Adds the way from a face to a neighbour, which steps along the mean of their directions. */
 static void AddWay(FaceRows rows, PetscInt from, PetscInt to)
 {
@@ -188,36 +208,47 @@ static void AddWay(FaceRows rows, PetscInt from, PetscInt to)
   const FaceShape *shape  = Shape(rows, to);
   FacePlace       *next   = &rows->place[to];
   const PetscReal *normal = &rows->view->normals[3 * to];
-  PetscReal        along[3], across[2][3], step[3], mean[2][3];
+  FacePlace        there;
+  PetscReal        step[3], mean[2][3];
 
-  for (int d = 0; d < 3; d++) along[d] = at->along[d];
-  Flatten(normal, along);
-  if (shape->length > ROWS_FROM * shape->width && PetscAbsReal(Dot(along, shape->along)) > ROWS_TURN) {
-    const PetscReal sign = Dot(along, shape->along) > 0 ? 1 : -1;
+  if (OfRow(shape, normal, at->along)) {
+    const int sign = Dot(at->along, shape->along) > 0 ? 1 : -1;
 
-    for (int d = 0; d < 3; d++) along[d] = sign * shape->along[d];
+    PlaceOwn(shape, sign, &there);
+    next->own += sign;
+  } else {
+    for (int d = 0; d < 3; d++) there.along[d] = at->along[d];
+    Flatten(normal, there.along);
+    Cross(normal, there.along, there.across);
   }
-  Cross(&rows->view->normals[3 * from], at->along, across[0]);
-  Cross(normal, along, across[1]);
   for (int d = 0; d < 3; d++) {
     step[d]    = shape->centre[d] - rows->shape[from].centre[d];
-    mean[0][d] = across[0][d] + across[1][d];
-    mean[1][d] = at->along[d] + along[d];
+    mean[0][d] = at->across[d] + there.across[d];
+    mean[1][d] = at->along[d] + there.along[d];
+    next->along[d] += there.along[d];
   }
   next->s += at->s + Dot(step, mean[0]) / PetscSqrtReal(Dot(mean[0], mean[0]));
   next->t += at->t + Dot(step, mean[1]) / PetscSqrtReal(Dot(mean[1], mean[1]));
-  for (int d = 0; d < 3; d++) next->along[d] += along[d];
   next->ways++;
 }
 
 /* Takes the mean over the ways to a face. */
 static void TakePlace(FaceRows rows, PetscInt f)
 {
-  FacePlace *place = &rows->place[f];
+  const PetscReal *normal = &rows->view->normals[3 * f];
+  const FaceShape *shape  = &rows->shape[f];
+  FacePlace       *place  = &rows->place[f];
 
   place->s /= place->ways;
   place->t /= place->ways;
-  Flatten(&rows->view->normals[3 * f], place->along);
+  if (PetscAbsInt(place->own) == place->ways) {
+    PlaceOwn(shape, place->own > 0 ? 1 : -1, place);
+    return;
+  }
+  Flatten(normal, place->along);
+  Cross(normal, place->along, place->across);
+  place->length = Extent(shape, place->along);
+  place->width  = Extent(shape, place->across);
 }
 
 /* Adds a face to the sums, with its place seen from the foot along and across the row. */
@@ -227,14 +258,13 @@ static void AddFace(FaceRows rows, PetscInt f, PetscReal rho2, const PetscReal f
   const FaceShape *shape  = &rows->shape[f];
   const FacePlace *place  = &rows->place[f];
   const PetscReal *normal = &rows->view->normals[3 * f], weight = PetscSqr(1 - rho2 / ROWS_MARGIN);
-  PetscReal        e[3], x[3], t, power = weight;
+  PetscReal        x[3], t, power = weight;
 
-  Cross(normal, place->along, e);
   for (int d = 0; d < 3; d++) x[d] = shape->centre[d] - foot[d];
   t = Dot(x, along) / reach;
   sums->weight += weight;
-  sums->length2 += weight * PetscSqr(Extent(shape, place->along));
-  sums->width2 += weight * PetscSqr(Extent(shape, e));
+  sums->length2 += weight * PetscSqr(place->length);
+  sums->width2 += weight * PetscSqr(place->width);
   sums->area += weight * shape->area / SurfaceNodesPerFace(rows->view->facets[f].type);
   for (int d = 0; d < 3; d++) sums->normal[d] += weight * shape->area * normal[d];
   sums->turn -= weight * t * Dot(normal, along);
@@ -361,7 +391,7 @@ PetscErrorCode FaceRowsFollow(FaceRows rows, PetscInt start, const PetscReal foo
                   radius[2] = {size / PetscSqrtReal(aspect), size * PetscSqrtReal(aspect)};
   FacePlace *place          = &rows->place[start];
   RowSums    sums           = {0};
-  PetscReal  v[3], e[3], across[3], slope, length;
+  PetscReal  v[3], across[3], slope, length;
 
   PetscFunctionBeginUser;
   row->share = 0;
@@ -370,9 +400,8 @@ PetscErrorCode FaceRowsFollow(FaceRows rows, PetscInt start, const PetscReal foo
     v[d]          = shape->centre[d] - foot[d];
     row->along[d] = shape->along[d];
   }
-  Cross(&rows->view->normals[3 * start], shape->along, e);
-  *place = (FacePlace){.stamp = ++rows->stamp, .ways = 1, .s = Dot(v, e), .t = Dot(v, shape->along)};
-  for (int d = 0; d < 3; d++) place->along[d] = shape->along[d];
+  *place = (FacePlace){.stamp = ++rows->stamp, .ways = 1, .s = Dot(v, shape->across), .t = Dot(v, shape->along)};
+  PlaceOwn(shape, 1, place);
   Flatten(upright, row->along);
   Cross(upright, row->along, across);
   Walk(rows, start, foot, row->along, across, radius, &sums);

@@ -302,36 +302,14 @@ static void FollowRow(const FaceRow *row, const FitFoot *at, FitProblem *problem
   *area += row->share * (row->area - *area);
 }
 
-/* Largest distance to the fit of the points in the inner half of the support, which is the error of the smoothing
-   itself. dim is a constant where this is called. */
-static inline PetscReal FitResidual(const int dim, const FitProblem *problem, const FitResult *result)
-{
-  PetscReal most = 0;
-
-  for (int i = 0; i < problem->n; i++) {
-    double y[2] = {0, 0}, z = 0;
-
-    for (int d = 0; d < dim; d++) {
-      for (int a = 0; a < dim - 1; a++) y[a] += problem->frame[a][d] * problem->x[i * dim + d];
-      z += problem->frame[dim - 1][d] * problem->x[i * dim + d];
-    }
-    if (dim == 2) y[1] = problem->hoop[i];
-    if (FitDistance2(dim, problem->degree, problem->metric, &problem->bend, y) <= 0.25)
-      most = PetscMax(most, PetscAbsReal(z - FitSurfaceHeight(&result->surface, y, NULL)));
-  }
-  return most;
-}
-
 /* Does a fit miss the points through which it is made, by more than FIT_MISSES of their spacing, a linear one past a
    free edge by more than FIT_LINEAR_MISSES? area: of a point, in 2D its length. */
-static PetscBool FitMisses(FitSupport *fit, const FitFoot *at, const FitProblem *problem, const FitResult *result,
-                           PetscReal area)
+static PetscBool FitMisses(const FitFoot *at, const FitProblem *problem, const FitResult *result, PetscReal area)
 {
   const PetscReal part    = at->past && problem->degree % FIT_REVOLVED == 1 ? FIT_LINEAR_MISSES : FIT_MISSES;
   const PetscReal spacing = problem->dim == 3 ? PetscSqrtReal(area) : area;
 
-  fit->residual = problem->dim == 3 ? FitResidual(3, problem, result) : FitResidual(2, problem, result);
-  return (PetscBool)(fit->residual > part * spacing);
+  return (PetscBool)(result->missed > part * spacing);
 }
 
 /* Tries one rung of the ladder at a foot and writes points, frame and metric into fit and problem. *holds is true if
@@ -385,7 +363,7 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
     DiffuseFitEvaluate(problem, FIT_GAP, fit->workspace, result) && (result->guards & ~FIT_FEW_POINTS) == FIT_HOLDS
       ? PETSC_TRUE
       : PETSC_FALSE;
-  if (*holds && FitMisses(fit, at, problem, result, area)) *holds = PETSC_FALSE;
+  if (*holds && FitMisses(at, problem, result, area)) *holds = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -487,7 +465,7 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   lists->amplified[q] = result.amplified;
   lists->gap[q]       = result.gap;
   for (int d = 0; d < 3; d++) lists->normal[3 * q + d] = result.normal[d];
-  lists->residual[q] = fit->residual;
+  lists->residual[q] = result.missed;
   for (int i = 0; i < 9; i++) lists->frame[9 * q + i] = problem.frame[i / 3][i % 3];
   for (int i = 0; i < 4; i++) lists->metric[4 * q + i] = problem.metric[i / 2][i % 2];
   if (problem.degree > FIT_BENT) {

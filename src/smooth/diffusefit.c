@@ -19,6 +19,10 @@
 #include <math.h>
 #include <stdint.h>
 
+/* 1 - rho^2 of points in the inner half of the support. Points on its border, as regular meshes have them, still count,
+   so that round-off decides nothing. */
+#define FIT_INNER (0.75 - 1e-6)
+
 /* The surface at tangent coordinates y. Without a second tangent its components are 0. */
 typedef struct {
   Lanes  p[FIT_MAX_TERMS]; /* monomials of the scaled coordinates */
@@ -86,8 +90,8 @@ LANES_INLINE void Collect(const int dim, const int degree, const int terms, cons
                           double scale, FitArrays *a)
 {
   const double(*const G)[3] = s->G;
-  double *const z = (double *)(a->basis + terms * a->capacity);
-  int           n = 0;
+  double *const z           = (double *)(a->basis + terms * a->capacity);
+  int           n           = 0;
 
   for (int i = 0; i < in->n; i++) {
     const double *x = in->x + i * dim;
@@ -239,6 +243,21 @@ LANES_INLINE void Normalise(const int terms, FitArrays *a, FitState *s)
   }
 }
 
+/* Largest distance to the surface of the points in the inner half of the support, from the residuals. */
+LANES_INLINE double Missed(const int terms, const FitArrays *a)
+{
+  const double *const residual = (const double *)(a->basis + terms * a->capacity);
+  const double *const inside   = (const double *)a->inside;
+  double              most     = 0;
+
+  for (int i = 0; i < a->n; i++) {
+    const double missed = inside[i] >= FIT_INNER ? fabs(residual[i]) : 0;
+
+    most = missed > most ? missed : most;
+  }
+  return most;
+}
+
 /* Makes the polynomial through the points inside. Returns 0 if there is none. */
 LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, const FitProblem *in, FitArrays *a,
                              FitState *s, FitResult *out)
@@ -261,8 +280,7 @@ LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, c
   if (IsBent(degree)) {
     surface->bend = in->bend;
     BendAcross(&in->bend, (const double(*)[2])surface->scale, s->across);
-    for (int c = 0; c < 3; c++)
-      s->along[c] = in->bend.along[0] * in->frame[0][c] + in->bend.along[1] * in->frame[1][c];
+    for (int c = 0; c < 3; c++) s->along[c] = in->bend.along[0] * in->frame[0][c] + in->bend.along[1] * in->frame[1][c];
   }
   Collect(dim, degree, terms, in, s, surface->scale[0][0], a);
   out->n = a->n;
@@ -331,8 +349,8 @@ LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, cons
       at->h[c][d] =
         B[0][c] * (h[0][0] * B[0][d] + h[0][1] * B[1][d]) + B[1][c] * (h[1][0] * B[0][d] + h[1][1] * B[1][d]);
       if (IsBent(degree))
-        at->h[c][d] += (second[0] * gradient[0][0] + second[1] * gradient[1][0]) * surface->bend.along[c] *
-                       surface->bend.along[d];
+        at->h[c][d] +=
+          (second[0] * gradient[0][0] + second[1] * gradient[1][0]) * surface->bend.along[c] * surface->bend.along[d];
     }
   }
 }
@@ -479,6 +497,7 @@ LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, cons
   if (want < FIT_GAP) return 1;
   Normalise(terms, &a, &s);
   FootVariation(dim - 1, degree, terms, &at, out, &s);
+  out->missed    = Missed(terms, &a);
   out->amplified = Shapes(terms, &a, s.foot[0]);
   if (out->shape) memcpy(out->shape, a.scratch, a.n * sizeof(double));
   out->guards |= out->amplified <= FIT_AMPLIFIED ? 0 : FIT_HIGH_SUM;

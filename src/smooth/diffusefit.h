@@ -76,7 +76,7 @@ typedef enum {
 } FitGuard;
 
 /* What is computed. FIT_GAP_ONLY gives the gap without Lambda, its guard and the shape values, because solves do not
-   need them. */
+   need them, and without what the surface misses its points by. */
 typedef enum { FIT_SURFACE, FIT_GAP_ONLY, FIT_GAP, FIT_FIRST_VARIATION, FIT_SECOND_VARIATION } FitWant;
 
 /* FIT_DIFFUSE leaves the derivatives of the weights out of M ("diffuse derivatives"). It affects the tangent only:
@@ -146,6 +146,7 @@ typedef struct {
   double      reach;         /* rho of the foot */
   double      pivot;         /* smallest |R_kk| of the QR with unit columns */
   double      amplified;     /* Lambda */
+  double      missed;        /* largest |e_i| of the points in the inner half of the support (length) */
   int         n, *points;    /* the points inside the support, in the problem's order */
   double     *shape;         /* [n] dq(y*)/dz_i, sum 1 */
   double     *N;             /* [(1 + n)*dim], the slave point first */

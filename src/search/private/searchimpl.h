@@ -118,7 +118,6 @@ typedef struct {
   double   *x, *multiplier, *taper, *hoop, *workspace;
   int      *used;
   PetscReal plane[3]; /* normal of the single reference plane of a global frame */
-  PetscReal residual; /* of the last fit: largest distance to it of a point in the inner half of the support */
 } FitSupport;
 
 /* Fits that are made at this rank's own faces of the master. The lists have no slave points. */
