@@ -171,9 +171,11 @@ PetscBool FlankIsOwn(const Nearest *look, const Candidate *c)
  * partners. */
 static PetscBool IsHidden(const Nearest *look, const Candidate *c)
 {
-  Foot foot;
+  PetscBool hidden;
+  Foot      foot;
 
   if (!look->listed || !FlankFaces(look, c)) return PETSC_FALSE;
+  if (OwnBodyTells(look, c, &hidden)) return hidden;
   CandidateFoot(look, c, &foot);
   return (PetscBool)(OwnBodyHides(look, c, &foot) || (look->one_body && OwnBodyTurnsFrom(look, &foot)));
 }
