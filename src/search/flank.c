@@ -247,12 +247,14 @@ void FlankLeaveCorner(Nearest *look, int facing, const int *found)
 
   for (int i = 0; i < facing && opposed < 1; i++) {
     const Candidate *c = &look->candidates[found[i]];
-    PetscReal        distance, rank;
+    PetscReal        away, distance, rank;
     Foot             foot;
 
     if (!InFront(look, nearest, c) || !InFront(look, c, nearest)) continue;
+    away = look->size * (1 - NeighbourListsOpposed(look->lists, look->q, c->normal));
+    if (CandidateBoxDistance(look->lists->dim, c, look->x) + away > least + look->tie) continue;
     distance = CandidateFoot(look, c, &foot);
-    rank     = distance + look->size * (1 - NeighbourListsOpposed(look->lists, look->q, c->normal));
+    rank     = distance + away;
     if (rank >= least - look->tie) continue;
     least          = rank;
     look->best     = found[i];
