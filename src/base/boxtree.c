@@ -11,6 +11,8 @@
 enum { MAX_DIM = 3 };
 /* Size of the stack of a search. The depth of the tree is log2 n, and n is an int. */
 enum { MAX_DEPTH = 64 };
+/* Bits in a word of `found` */
+enum { WORD = 64 };
 
 /* A subtree: its node and its range of `order`. distance is the squared distance from the point of the search. */
 typedef struct {
@@ -24,6 +26,8 @@ struct _n_Tree {
   int    *order;  /* box numbers in the order of the leaves */
   Range  *queue;  /* [n + 1]: heap of BoxTreeClosest(), nearest first */
   double *facing; /* [2n-1][2][dim]: lower and upper components of the directions below each node; NULL: none */
+  /* [n/64 + 1]: a bit for each box that BoxTreeNear() has found; all 0 outside of it */
+  unsigned long long *found;
 };
 
 /* The boxes while the tree is built */
@@ -48,6 +52,17 @@ static int Before(const Boxes *boxes, int k, int a, int b)
   const double p = Centre(boxes, a, k), q = Centre(boxes, b, k);
 
   return p < q || (p == q && a < b);
+}
+
+/* fmax() and fmin() are calls of the library, which these are not. No box holds NaN. */
+static inline double Larger(double a, double b)
+{
+  return a > b ? a : b;
+}
+
+static inline double Smaller(double a, double b)
+{
+  return a < b ? a : b;
 }
 
 static void Swap(int *a, int *b)
@@ -101,8 +116,8 @@ static double Width(const Boxes *boxes, const int *order, int count, int k)
   for (int i = 0; i < count; ++i) {
     const double centre = Centre(boxes, order[i], k);
 
-    low  = fmin(low, centre);
-    high = fmax(high, centre);
+    low  = Smaller(low, centre);
+    high = Larger(high, centre);
   }
   return high - low;
 }
@@ -118,8 +133,8 @@ static void BuildRange(BoxTree tree, const Boxes *boxes, Range range)
     lower[k] = INFINITY;
     upper[k] = -INFINITY;
     for (int i = 0; i < range.count; ++i) {
-      lower[k] = fmin(lower[k], boxes->lower[(size_t)order[i] * dim + k]);
-      upper[k] = fmax(upper[k], boxes->upper[(size_t)order[i] * dim + k]);
+      lower[k] = Smaller(lower[k], boxes->lower[(size_t)order[i] * dim + k]);
+      upper[k] = Larger(upper[k], boxes->upper[(size_t)order[i] * dim + k]);
     }
   }
   for (int k = 0; k < (boxes->direction ? 2 : 1) * dim; ++k) {
@@ -151,8 +166,8 @@ static void SpanDirections(BoxTree tree, const double *direction, Range range)
 
     SpanDirections(tree, direction, half[i]);
     for (int k = 0; k < dim; ++k) {
-      mine[k]       = fmin(mine[k], below[k]);
-      mine[dim + k] = fmax(mine[dim + k], below[dim + k]);
+      mine[k]       = Smaller(mine[k], below[k]);
+      mine[dim + k] = Larger(mine[dim + k], below[dim + k]);
     }
   }
 }
@@ -213,13 +228,14 @@ int BoxTreeBuildFacing(int dim, int n, const double *lower, const double *upper,
   t->box   = malloc(sizeof(*t->box) * nodes * 2 * dim);
   t->order = malloc(sizeof(*t->order) * ((size_t)n + 1));
   t->queue = malloc(sizeof(*t->queue) * ((size_t)n + 1));
+  t->found = calloc((size_t)n / WORD + 1, sizeof(*t->found));
   if (direction) t->facing = malloc(sizeof(*t->facing) * nodes * 2 * dim);
-  if (!t->box || !t->order || !t->queue || (direction && !t->facing)) {
+  if (!t->box || !t->order || !t->queue || !t->found || (direction && !t->facing)) {
     BoxTreeDestroy(tree);
     return 1;
   }
   for (int i = 0; i < n; ++i) t->order[i] = i;
-  for (int k = 0; k < dim && n; ++k) boxes.turn = fmax(boxes.turn, Width(&boxes, t->order, n, k) / 2);
+  for (int k = 0; k < dim && n; ++k) boxes.turn = Larger(boxes.turn, Width(&boxes, t->order, n, k) / 2);
   if (n) BuildRange(t, &boxes, (Range){0, 0, 0, n});
   if (n && direction) SpanDirections(t, direction, (Range){0, 0, 0, n});
   return 0;
@@ -240,6 +256,7 @@ void BoxTreeDestroy(BoxTree *tree)
   free((*tree)->order);
   free((*tree)->queue);
   free((*tree)->facing);
+  free((*tree)->found);
   free(*tree);
   *tree = NULL;
 }
@@ -251,32 +268,22 @@ static double SquaredDistance(BoxTree tree, int node, const double *point)
   double        sum = 0;
 
   for (int k = 0; k < tree->dim; ++k) {
-    const double d = fmax(0, fmax(lower[k] - point[k], point[k] - upper[k]));
+    const double d = Larger(0, Larger(lower[k] - point[k], point[k] - upper[k]));
 
     sum += d * d;
   }
   return sum;
 }
 
-/* Puts a number into an ascending list of at most max numbers and returns the new length. The largest number is dropped
-   if the list is full. */
-static int InsertAscending(int value, int max, int n, int *list)
+/* Writes the numbers of the bits in some words in ascending order, the first max of them, and clears the words. */
+static void TakeFound(unsigned long long *words, int first, int last, int max, int *found)
 {
-  int low = 0, high = n;
+  int written = 0;
 
-  while (low < high) {
-    const int middle = low + (high - low) / 2;
-
-    if (list[middle] < value)
-      low = middle + 1;
-    else
-      high = middle;
+  for (int w = first; w <= last; ++w) {
+    for (; words[w] && written < max; words[w] &= words[w] - 1) found[written++] = w * WORD + __builtin_ctzll(words[w]);
+    words[w] = 0;
   }
-  if (low >= max) return n;
-  if (n == max) --n;
-  memmove(list + low + 1, list + low, sizeof(*list) * (n - low));
-  list[low] = value;
-  return n + 1;
 }
 
 /*@
@@ -299,7 +306,7 @@ static int InsertAscending(int value, int max, int n, int *list)
 int BoxTreeNear(BoxTree tree, const double *point, double radius, int max, int *found)
 {
   Range stack[MAX_DEPTH];
-  int   depth = 0, count = 0, written = 0;
+  int   depth = 0, count = 0, first = tree->n / WORD, last = 0;
 
   if (!tree->n || radius <= 0) return 0;
   stack[depth++] = (Range){0, 0, 0, tree->n};
@@ -308,13 +315,18 @@ int BoxTreeNear(BoxTree tree, const double *point, double radius, int max, int *
 
     if (SquaredDistance(tree, range.node, point) >= radius * radius) continue;
     if (range.count == 1) {
-      written = InsertAscending(tree->order[range.first], max, written, found);
+      const int box = tree->order[range.first], word = box / WORD;
+
+      tree->found[word] |= 1ull << box % WORD;
+      if (word < first) first = word;
+      if (word > last) last = word;
       ++count;
     } else {
       stack[depth++] = Right(&range);
       stack[depth++] = Left(&range);
     }
   }
+  TakeFound(tree->found, first, last, max, found);
   return count;
 }
 
@@ -382,7 +394,7 @@ static int MayOppose(BoxTree tree, int node, const BoxTreeSide *side)
   const double *own = side->own, *lower = tree->facing + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
   double        most = 0;
 
-  for (int k = 0; k < tree->dim; ++k) most += fmax(-own[k] * lower[k], -own[k] * upper[k]);
+  for (int k = 0; k < tree->dim; ++k) most += Larger(-own[k] * lower[k], -own[k] * upper[k]);
   return most > side->opposed;
 }
 
@@ -392,10 +404,11 @@ static int IsBehind(BoxTree tree, int node, const double *point, const BoxTreeSi
   const double *own = side->own, *lower = tree->box + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
   double        most = 0, square = 0;
 
+  for (int k = 0; k < tree->dim; ++k) most += own[k] * ((own[k] > 0 ? upper[k] : lower[k]) - point[k]);
+  if (!(most < -side->shift) || side->lean == 0) return most < -side->shift;
   for (int k = 0; k < tree->dim; ++k) {
-    const double farther = fmax(fabs(lower[k] - point[k]), fabs(upper[k] - point[k]));
+    const double farther = Larger(fabs(lower[k] - point[k]), fabs(upper[k] - point[k]));
 
-    most += own[k] * ((own[k] > 0 ? upper[k] : lower[k]) - point[k]);
     square += farther * farther;
   }
   return most < -side->shift - side->lean * sqrt(square);

@@ -3,8 +3,8 @@
    BoxTreeBuild() makes the tree, BoxTreeBuildFacing() one whose boxes have directions; BoxTreeDestroy() frees it.
    BoxTreeNear() gives all boxes around a point, BoxTreeMeet() all that a box meets. BoxTreeClosest() is for a search
    in which each box that was seen may make the rest superfluous, such as that for the closest facet; with
-   directions it leaves out what faces away, and what lies behind. The tree keeps the queue of
-   BoxTreeClosest(), so that one such search runs in it at a time. */
+   directions it leaves out what faces away, and what lies behind. The tree keeps what
+   BoxTreeNear() and BoxTreeClosest() work with, so that one search runs in it at a time. */
 #pragma once
 
 typedef struct _n_Tree *BoxTree;

@@ -70,6 +70,26 @@ void CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *c)
 }
 
 /*@
+  CandidateHull - computes the hull of a candidate from positions of its nodes.
+
+  Not collective
+
+  Input Parameters:
++ dim - dimension
+- x   - positions of the facet's nodes (length), dim components each
+
+  Input/Output Parameter:
+. c - the candidate, whose facet is set
+@*/
+void CandidateHull(int dim, const PetscReal *x, Candidate *c)
+{
+  Facet facet = c->facet;
+
+  for (int a = 0; a < ElementGet(facet.type)->nodes; a++) facet.nodes[a] = a;
+  FacetHullOf(dim, &facet, x, &c->hull);
+}
+
+/*@
   CandidateBoxDistance - returns the distance (length) of a place to the bounding box of a candidate. The candidate is
   not nearer than that.
 

@@ -171,9 +171,11 @@ PetscBool FlankIsOwn(const Nearest *look, const Candidate *c)
  * partners. */
 static PetscBool IsHidden(const Nearest *look, const Candidate *c)
 {
-  Foot foot;
+  PetscBool hidden;
+  Foot      foot;
 
   if (!look->listed || !FlankFaces(look, c)) return PETSC_FALSE;
+  if (OwnBodyTells(look, c, &hidden)) return hidden;
   CandidateFoot(look, c, &foot);
   return (PetscBool)(OwnBodyHides(look, c, &foot) || (look->one_body && OwnBodyTurnsFrom(look, &foot)));
 }
@@ -245,12 +247,14 @@ void FlankLeaveCorner(Nearest *look, int facing, const int *found)
 
   for (int i = 0; i < facing && opposed < 1; i++) {
     const Candidate *c = &look->candidates[found[i]];
-    PetscReal        distance, rank;
+    PetscReal        away, distance, rank;
     Foot             foot;
 
     if (!InFront(look, nearest, c) || !InFront(look, c, nearest)) continue;
+    away = look->size * (1 - NeighbourListsOpposed(look->lists, look->q, c->normal));
+    if (CandidateBoxDistance(look->lists->dim, c, look->x) + away > least + look->tie) continue;
     distance = CandidateFoot(look, c, &foot);
-    rank     = distance + look->size * (1 - NeighbourListsOpposed(look->lists, look->q, c->normal));
+    rank     = distance + away;
     if (rank >= least - look->tie) continue;
     least          = rank;
     look->best     = found[i];

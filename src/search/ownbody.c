@@ -49,6 +49,57 @@ PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot
   return (PetscBool)(wall > OWN_BODY_TOUCHES * look->size && depth > SEARCH_ENTERED * wall);
 }
 
+/* On which side of the slave point's own face a facet lies: 1 before it, -1 behind it, 0 where its hull does not
+   tell. */
+static int OwnSide(const Nearest *look, const FacetHull *hull, PetscReal tolerance)
+{
+  PetscReal along = 0;
+
+  for (int d = 0; d < 3; d++) along += look->outward[d] * (hull->centre[d] - look->x[d]);
+  return along > hull->radius + tolerance ? 1 : along < -hull->radius - tolerance ? -1 : 0;
+}
+
+/* Is a facet farther from the slave point than what can have been entered of its body? */
+static PetscBool BeyondEntered(const Nearest *look, const FacetHull *hull, PetscReal tolerance)
+{
+  const PetscReal reach  = hull->radius + SEARCH_ENTERED * look->height + tolerance;
+  PetscReal       square = 0;
+
+  for (int d = 0; d < 3; d++) square += PetscSqr(hull->centre[d] - look->x[d]);
+  return (PetscBool)(square > PetscSqr(reach));
+}
+
+/*@
+  OwnBodyTells - says whether the hull of a candidate tells that the slave point's own body hides it, or that it does
+  not, so that the foot on it need not be known.
+
+  Not collective
+
+  Input Parameters:
++ look - the slave point
+- c    - the candidate, whose normal opposes that of the point
+
+  Output Parameter:
+. hidden - what OwnBodyHides() and, where slave and master have faces of one body, OwnBodyTurnsFrom() say
+
+  Note:
+  Returns PETSC_FALSE where the hull does not tell.
+@*/
+PetscBool OwnBodyTells(const Nearest *look, const Candidate *c, PetscBool *hidden)
+{
+  const PetscReal tolerance = OWN_BODY_TOUCHES * look->size;
+  const int       side      = FacetHullSide(&c->hull, look->x, tolerance),
+            own             = look->one_body ? OwnSide(look, &c->hull, tolerance) : 1;
+
+  if (own == 0) return PETSC_FALSE;
+  *hidden = PETSC_FALSE;
+  if (own > 0 && side > 0) return PETSC_TRUE;
+  *hidden = PETSC_TRUE;
+  if (own < 0 && side > 0) return PETSC_TRUE;
+  if (look->one_body && own > 0 && side < 0) return PETSC_TRUE;
+  return (PetscBool)((own < 0 || side < 0) && BeyondEntered(look, &c->hull, tolerance));
+}
+
 /*@
   OwnBodyBehind - returns the distance (length) beyond which no candidate that lies wholly behind the plane of the slave
   point's face counts: OwnBodyHides() or OwnBodyTurnsFrom() leaves it out, and it is not averse.

@@ -214,6 +214,15 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes the unit normal of the slave point. */
+static void TakeOutward(Nearest *look)
+{
+  const PetscReal *own    = &look->lists->slave_normal[3 * look->q];
+  const PetscReal  length = PetscSqrtReal(own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
+
+  for (int d = 0; d < 3; d++) look->outward[d] = length > 0 ? own[d] / length : 0;
+}
+
 /* Fills the lists of all slave points. fit is NULL where the facets are used. */
 static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, const SearchField *field,
                                          FitSupport *fit, PetscReal motion)
@@ -246,6 +255,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                     .tie        = FACET_TIE * (s->reach + motion)};
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
+    TakeOutward(&look);
     PetscCall(FillSlave(lists, field, tree, fit, motion, s->partners.possible, &look, found, ends, &buffer));
   }
   lists->list_ptr[lists->n_slaves]  = buffer.n_points;

@@ -40,7 +40,9 @@ static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, cons
         own[d]     = c->lower[d];
         own[3 + d] = c->upper[d];
       }
-      if (SearchBoxesMeet(own, box, dim, distance)) field->n_candidates++;
+      if (!SearchBoxesMeet(own, box, dim, distance)) continue;
+      if (s->listed) CandidateHull(dim, x, c);
+      field->n_candidates++;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

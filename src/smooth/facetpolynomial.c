@@ -68,6 +68,43 @@ int FacetPolynomialGather(int dim, const Facet *facet, const double *x, double X
 }
 
 /*@
+  FacetPolynomialControl - computes the control points of a facet as a Bezier patch.
+
+  Not collective
+
+  Input Parameters:
++ type - of the facet
+- X    - positions of its nodes (length)
+
+  Output Parameter:
+. control - one for each node
+
+  Note:
+  Their convex hull holds the patch. Plain C.
+@*/
+void FacetPolynomialControl(ElementType type, double (*X)[3], double (*control)[3])
+{
+  const Element *element = ElementGet(type);
+
+  for (int k = 0; k < 3; ++k) {
+    double sum = 0, middles = 0;
+
+    for (int a = 0; a < element->corners; ++a) sum += control[a][k] = X[a][k];
+    for (int a = element->corners; a < element->nodes; ++a) {
+      const int e = a - element->corners;
+
+      if (type == ELEMENT_EDGE3)
+        control[a][k] = 2 * X[a][k] - 0.5 * (X[0][k] + X[1][k]);
+      else if (e < element->corners)
+        control[a][k] = 2 * X[a][k] - 0.5 * (X[e][k] + X[(e + 1) % element->corners][k]);
+      else
+        control[a][k] = 4 * X[a][k] - middles + 0.25 * sum;
+      middles += X[a][k];
+    }
+  }
+}
+
+/*@
   FacetPolynomialBound - computes a sphere that holds a facet, also between its nodes.
 
   Not collective
@@ -80,29 +117,19 @@ int FacetPolynomialGather(int dim, const Facet *facet, const double *x, double X
 . sphere - centre and radius
 
   Note:
-  The sphere holds the control points of the facet as a Bezier patch. Their convex hull holds the patch. Plain C.
+  The sphere holds the control points. Plain C.
 @*/
 void FacetPolynomialBound(ElementType type, double (*X)[3], FacetPolynomialSphere *sphere)
 {
   const Element *element = ElementGet(type);
   double         control[FACE_MAX_NODES][3], radius2 = 0;
 
+  FacetPolynomialControl(type, X, control);
   for (int k = 0; k < 3; ++k) {
-    double sum = 0, middles = 0;
+    double sum = 0;
 
-    for (int a = 0; a < element->corners; ++a) sum += control[a][k] = X[a][k];
+    for (int a = 0; a < element->corners; ++a) sum += X[a][k];
     sphere->centre[k] = sum / element->corners;
-    for (int a = element->corners; a < element->nodes; ++a) {
-      const int e = a - element->corners;
-
-      if (type == ELEMENT_EDGE3)
-        control[a][k] = 2 * X[a][k] - 0.5 * (X[0][k] + X[1][k]);
-      else if (e < element->corners)
-        control[a][k] = 2 * X[a][k] - 0.5 * (X[e][k] + X[(e + 1) % element->corners][k]);
-      else
-        control[a][k] = 4 * X[a][k] - middles + 0.25 * sum;
-      middles += X[a][k];
-    }
   }
   for (int a = 0; a < element->nodes; ++a) {
     const double d[3] = {control[a][0] - sphere->centre[0], control[a][1] - sphere->centre[1],

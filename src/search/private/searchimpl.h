@@ -8,6 +8,7 @@
 #pragma once
 #include "base/boxtree.h"
 #include "facerows.h"
+#include "smooth/facethull.h"
 #include "search/search.h"
 
 /* A node whose distance to a plane of symmetry is below this fraction of the model's size lies on it and has no
@@ -55,6 +56,7 @@ typedef struct {
   Facet     facet;        /* nodes: contact nodes until the points are numbered, then points */
   PetscInt  first, count; /* fit points of its quadrature rule */
   PetscReal centre[3], normal[3], lower[3], upper[3];
+  FacetHull hull; /* set where any side of the bodies may meet any other one */
 } Candidate;
 
 /* The master's faces that a rank holds temporarily, with their mirror images. */
@@ -71,6 +73,7 @@ typedef struct {
   SlavePoints      slaves;
   const Candidate *candidates;
   PetscReal        x[3], size, height; /* of the slave's face, and of the element below it (length) */
+  PetscReal        outward[3];         /* unit normal out of the slave's body; 0 where it has none */
   PetscBool        listed, one_body;   /* as in the search */
   /* The slave point, and the number of nodes of its own face: a face with one of these nodes is not its master. */
   PetscInt  q, own;
@@ -129,6 +132,7 @@ typedef struct {
 
 /* candidate.c */
 void           CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *);
+void           CandidateHull(int dim, const PetscReal *x, Candidate *);
 PetscReal      CandidateBulge(const Candidate *, PetscReal size);
 PetscReal      CandidateBoxDistance(int dim, const Candidate *, const PetscReal *x);
 PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, PetscBool facing, BoxTree *);

@@ -52,6 +52,7 @@ static inline double Dot(const double a[3], const double b[3])
 }
 
 int    FacetPolynomialGather(int dim, const Facet *, const double *x, double X[FACE_MAX_NODES][3]);
+void   FacetPolynomialControl(ElementType, double (*X)[3], double (*control)[3]);
 void   FacetPolynomialBound(ElementType, double (*X)[3], FacetPolynomialSphere *);
 void   FacetPolynomialCreate(ElementType, double (*X)[3], double size, FacetPolynomial *);
 void   FacetPolynomialOfFacet(int dim, const Facet *, const double *x, FacetPolynomial *);
