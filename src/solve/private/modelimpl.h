@@ -4,12 +4,13 @@
    problem.c is below all of them, and freebodies.c and rigidsearch.c below it. tangent.c makes the tangent and prepares
    its linear solver. linearcontact.c finds the contact that is right at the end of a linear step. linecuts.c says why a
    line search shortened its step. slopesearch.c finds how far a step of bodies that yield leads to balance,
-   relaxedsearch.c is the line search, linesearch.c chooses what it compares, and corrects steps for contact. newton.c
-   runs SNES once with the present contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on
-   softened penalties, dampedsolve.c follows the bodies in pseudo-time where Newton's method finds no equilibrium.
-   penaltyerror.c estimates what penetration leaves of error and stiffens penalties, jump.c tells an equilibrium that
-   was reached by a jump, adjoint.c weighs errors of a solution. equilibrium.c goes from an accepted state to the next
-   one. model.c holds the accepted state. Each file calls only those named before it. */
+   softmotion.c finds the softest motion in a step, relaxedsearch.c is the line search, linesearch.c chooses what it
+   compares, and corrects steps for contact. newton.c runs SNES once with the present contact lists. prediction.c
+   finds a first iterate, penaltyramp.c improves it on softened penalties, dampedsolve.c follows the bodies in
+   pseudo-time where Newton's method finds no equilibrium. penaltyerror.c estimates what penetration leaves of error
+   and stiffens penalties, jump.c tells an equilibrium that was reached by a jump, adjoint.c weighs errors of a
+   solution. equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file
+   calls only those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "extrapolation.h"
@@ -97,7 +98,7 @@ typedef struct _n_ModelWork {
   PetscReal *solved;    /* local displacements (length) at the last equilibrium; NULL: no stresses are extrapolated */
   PetscReal *from;      /* those from which the last step led to the iterate */
   PetscBool  shortened; /* that step was shortened */
-  PetscBool  uphill;    /* it led uphill and was turned round: the next tangent is the derivative of the residual */
+  PetscBool  uphill;    /* all of it was turned round: the next tangent is the derivative of the residual */
 
   /* One solve by SNES */
   Objective   objective;
@@ -124,6 +125,8 @@ PetscErrorCode ModelLinearise(Model, KSP *);
 PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
 /* linecuts.c */
 PetscErrorCode ModelCountCut(Model, Vec x);
+/* softmotion.c */
+PetscErrorCode ModelSoftPart(Model, Vec y, Vec soft, PetscReal *stiffness);
 /* slopesearch.c */
 PetscErrorCode ModelSearchSlope(Model, SNESLineSearch, PetscReal slope, PetscReal first, PetscReal *part);
 /* relaxedsearch.c */
