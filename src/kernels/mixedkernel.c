@@ -234,7 +234,7 @@ LANES_INLINE void EvaluateChunk(const BatchCall *call, const int modes, const in
     Lanes       P[9], G[9], D[9], dilatation, energy, geometric;
 
     Dilatation(call, x->H[q], &dilatation);
-    PointLaw(call, q, x->H[q], &dilatation, call->W ? &energy : NULL, P, tangent ? x->c.A[at] : NULL);
+    MixedLaw(call, q, x->H[q], &dilatation, call->W ? &energy : NULL, P, tangent ? x->c.A[at] : NULL);
     if (call->W) *W += x->volume[q] * energy;
     DilatationGradient(call, x->H[q], G);
     for (int r = 0; r < 9; r++) P[r] = x->volume[q] * (P[r] + pressure * G[r]);
@@ -288,6 +288,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int bubble, co
   for (int i = 0; i < n * dim && call->f; i++) LANE(call->f, i) = LANE(f, i);
   if (K) AddDilatationTangent(dofs, modes, &x, t, K);
   if (K && bubble) Condense(n * dim, dim, full, call->K);
+  for (int k = 0; k < modes; k++) x.p[k] += HoldModulus(call) * x.theta[k]; /* results have the volume's alone */
   for (int k = 0; k < modes && call->theta; k++) LANE(call->theta, k) = (x.p[k] - Multiplier(call, k)) / call->kappa;
   if (call->H) StoreOutput(call, n, bubble, modes, dim, hoop, &x);
 }

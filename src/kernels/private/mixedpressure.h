@@ -3,6 +3,7 @@
 #pragma once
 #include "elementbatch.h"
 #include "mixedrule.h"
+#include "volumehold.h"
 
 enum { MAX_BUBBLE = 3 /* displacements of the inner node */ };
 
@@ -105,9 +106,12 @@ LANES_INLINE Lanes PressureAt(const int modes, const Lanes p[MIXED_PRESSURES], c
 }
 
 /* Computes the pressures from theta, their derivatives by theta, and the energy of the volume. With small strains it is
-   a square of theta. */
+   a square of theta. What holds J at the points (volumehold.h) is c/2 int (J - 1)^2 dV, which MixedLaw() adds there,
+   less c/2 times the square of theta. */
 LANES_INLINE void Pressures(const BatchCall *call, const int points, const int modes, Mixed *x, Lanes *W)
 {
+  const double hold = HoldModulus(call);
+
   *W = (Lanes){0};
   for (int k = 0; k < modes; k++) {
     x->p[k] = Multiplier(call, k);
@@ -117,6 +121,11 @@ LANES_INLINE void Pressures(const BatchCall *call, const int points, const int m
     x->p[k] += call->kappa * x->theta[k];
     x->C[k][k] = call->kappa;
     *W += 0.5 * call->kappa * x->theta[k] * x->theta[k];
+  }
+  for (int k = 0; k < modes && hold > 0; k++) {
+    x->p[k] -= hold * x->theta[k];
+    x->C[k][k] -= hold;
+    *W -= 0.5 * hold * x->theta[k] * x->theta[k];
   }
   for (int q = 0; q < points && call->finite; q++) {
     const Lanes dilatation = PressureAt(modes, x->theta, x->shape[q]), log_j = LogVolume(dilatation);
@@ -149,4 +158,23 @@ LANES_INLINE void AddGeometry(const Lanes *pressure, const Lanes H[9], Lanes A[M
         A[MATERIAL_TANGENT_INDEX(r, s)] -= *pressure * (H[rest] + (double)(rest % 4 == 0));
     }
   }
+}
+
+/* Evaluates the law at a point, as PointLaw(), and what holds J there. */
+LANES_INLINE void MixedLaw(const BatchCall *call, int q, const Lanes H[9], const Lanes *dilatation, Lanes *W,
+                           Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  const double hold = HoldModulus(call);
+  const Lanes  pull = hold * *dilatation;
+  Lanes        G[9];
+
+  PointLaw(call, q, H, dilatation, W, P, A);
+  if (!(hold > 0)) return;
+  Cofactors(H, G);
+  if (W) *W += pull * *dilatation / 2;
+  for (int r = 0; r < 9; r++) P[r] += pull * G[r];
+  if (!A) return;
+  AddGeometry(&pull, H, A);
+  for (int r = 0, k = 0; r < 9; r++)
+    for (int s = r; s < 9; s++, k++) A[k] += hold * G[r] * G[s];
 }
