@@ -110,11 +110,11 @@ LANES_INLINE void PointTangent(const Lanes F[9], const Lanes G[9], const Lanes *
   }
 }
 
-/* Adds the part of the tangent at a point that holds J there, whose distance from the mean is `off`. */
-LANES_INLINE void AddHold(double hold, const Lanes *off, const Lanes *J, const Lanes G[9],
+/* Adds the part of the tangent at a point that holds J there with a modulus and a stress. */
+LANES_INLINE void AddHold(const Lanes *hold, const Lanes *stress, const Lanes *J, const Lanes G[9],
                           Lanes A[MATERIAL_TANGENT_SIZE])
 {
-  const Lanes pull = hold * *off * *J, both = hold * *J * *J + pull;
+  const Lanes pull = *stress * *J, both = *hold * *J * *J + pull;
 
   for (int r = 0, k = 0; r < 9; r++)
     for (int m = r; m < 9; m++, k++)
@@ -182,8 +182,8 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   const Lanes  zero     = {0};
   double       m[MAX_NODES * 3 * KERNEL_LANES],
     q_force[MAX_NODES * 3 * KERNEL_LANES]; /* m: variation of ln J'; q_force: what it is coupled to */
-  const double   hold     = HoldModulus(call);
-  Lanes          pressure = {0}, deformed = {0}, square = {0}, factor[MAX_POINTS], geometric;
+  const Lanes    hold     = HoldModulus(call, points);
+  Lanes          pressure = {0}, deformed = {0}, square = {0}, factor[MAX_POINTS], off[MAX_POINTS], geometric;
   MeanDilatation x;
 
   if (W) LANE(W, 0) = zero;
@@ -194,13 +194,14 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   StartLeastJ(call);
   Prepare(call, n, points, dim, hoop, &x);
   for (int q = 0; q < points; q++) {
-    const Lanes off = x.dilatation[q] - x.mean;
-    Lanes       H[9], F[9], G[9], J, dilatation, energy;
+    Lanes H[9], F[9], G[9], J, dilatation, energy;
 
+    off[q] = x.dilatation[q] - x.mean;
+    if (call->off) LANE(call->off, q) = off[q];
     MeanGradient(call, q, &x, H, &factor[q]);
     MaterialDilatation(H, &dilatation);
     PointLaw(call, q, H, &dilatation, W ? &energy : NULL, x.P[q], K ? x.c.A[q] : NULL);
-    if (W) LANE(W, 0) += (energy + hold / 2 * off * off) * x.volume[q];
+    if (W) LANE(W, 0) += (energy + HoldEnergy(call, q, &hold, &off[q])) * x.volume[q];
     if (call->H) StorePoint(call, q, H);
     if (!f && !K) continue;
     PointMotion(call, q, &x, F, G, &J);
@@ -212,16 +213,16 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   geometric = pressure;
   if (K && call->u_0) ExtrapolatePressure(call, n, points, dim, hoop, &x, &deformed, &geometric);
   for (int q = 0; q < points; q++) {
-    const Lanes off = x.dilatation[q] - x.mean;
+    const Lanes stress = HoldStress(call, q, &hold, &off[q]);
     Lanes       F[9], G[9], P[9], Q[9], J, square_q, pull;
 
     PointMotion(call, q, &x, F, G, &J);
-    pull = (1 + factor[q]) * Contract(x.P[q], F) / 3 - (pressure + hold * off) * J;
+    pull = (1 + factor[q]) * Contract(x.P[q], F) / 3 - (pressure + stress) * J;
     for (int r = 0; r < 9; r++) P[r] = x.volume[q] * ((1 + factor[q]) * x.P[q][r] - pull * G[r]);
     if (f) AddForce(n, dim, hoop, q, &x.c, P, f);
     if (!K) continue;
     PointTangent(F, G, &J, &factor[q], &geometric, geometry, x.P[q], x.c.A[q], Q, &square_q);
-    if (hold > 0) AddHold(hold, &off, &J, G, x.c.A[q]);
+    if (call->hold) AddHold(&hold, &stress, &J, G, x.c.A[q]);
     for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x.c.A[q][k] *= x.volume[q];
     for (int r = 0; r < 9; r++) {
       Q[r] *= x.volume[q];

@@ -20,6 +20,7 @@ typedef struct {
   Lanes       L[MIXED_PRESSURES][MIXED_PRESSURES];        /* L L^T: matrix of their products before; 1/L_kk at k k */
   Lanes       theta[MIXED_PRESSURES], p[MIXED_PRESSURES]; /* of J - 1 and of the pressure */
   Lanes       C[MIXED_PRESSURES][MIXED_PRESSURES];        /* derivatives of p by theta */
+  Lanes       hold;                                       /* modulus of volumehold.h */
   Lanes       geometric[MIXED_PRESSURES];                 /* of the pressure in the tangent's geometric part */
   Lanes       b[MAX_BUBBLE];
 } Mixed;
@@ -110,8 +111,6 @@ LANES_INLINE Lanes PressureAt(const int modes, const Lanes p[MIXED_PRESSURES], c
    less c/2 times the square of theta. */
 LANES_INLINE void Pressures(const BatchCall *call, const int points, const int modes, Mixed *x, Lanes *W)
 {
-  const double hold = HoldModulus(call);
-
   *W = (Lanes){0};
   for (int k = 0; k < modes; k++) {
     x->p[k] = Multiplier(call, k);
@@ -122,10 +121,10 @@ LANES_INLINE void Pressures(const BatchCall *call, const int points, const int m
     x->C[k][k] = call->kappa;
     *W += 0.5 * call->kappa * x->theta[k] * x->theta[k];
   }
-  for (int k = 0; k < modes && hold > 0; k++) {
-    x->p[k] -= hold * x->theta[k];
-    x->C[k][k] -= hold;
-    *W -= 0.5 * hold * x->theta[k] * x->theta[k];
+  for (int k = 0; k < modes && call->hold; k++) {
+    x->p[k] -= x->hold * x->theta[k];
+    x->C[k][k] -= x->hold;
+    *W -= 0.5 * x->hold * x->theta[k] * x->theta[k];
   }
   for (int q = 0; q < points && call->finite; q++) {
     const Lanes dilatation = PressureAt(modes, x->theta, x->shape[q]), log_j = LogVolume(dilatation);
@@ -161,20 +160,19 @@ LANES_INLINE void AddGeometry(const Lanes *pressure, const Lanes H[9], Lanes A[M
 }
 
 /* Evaluates the law at a point, as PointLaw(), and what holds J there. */
-LANES_INLINE void MixedLaw(const BatchCall *call, int q, const Lanes H[9], const Lanes *dilatation, Lanes *W,
-                           Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
+LANES_INLINE void MixedLaw(const BatchCall *call, const Lanes *hold, int q, const Lanes H[9], const Lanes *dilatation,
+                           Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
-  const double hold = HoldModulus(call);
-  const Lanes  pull = hold * *dilatation;
-  Lanes        G[9];
+  Lanes G[9], stress;
 
   PointLaw(call, q, H, dilatation, W, P, A);
-  if (!(hold > 0)) return;
+  if (!call->hold) return;
   Cofactors(H, G);
-  if (W) *W += pull * *dilatation / 2;
-  for (int r = 0; r < 9; r++) P[r] += pull * G[r];
+  stress = HoldStress(call, q, hold, dilatation);
+  if (W) *W += HoldEnergy(call, q, hold, dilatation);
+  for (int r = 0; r < 9; r++) P[r] += stress * G[r];
   if (!A) return;
-  AddGeometry(&pull, H, A);
+  AddGeometry(&stress, H, A);
   for (int r = 0, k = 0; r < 9; r++)
-    for (int s = r; s < 9; s++, k++) A[k] += hold * G[r] * G[s];
+    for (int s = r; s < 9; s++, k++) A[k] += *hold * G[r] * G[s];
 }
