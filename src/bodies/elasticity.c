@@ -95,7 +95,7 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
 @*/
 size_t ElasticityCellStates(const CellGroup *g)
 {
-  return g->kernel.plastic ? (size_t)(ElementStatePoints(&g->kernel) * ElementStates(&g->plastic)) : 0;
+  return g->kernel.plastic ? (size_t)(ElementStatePoints(&g->kernel) * ElementStates(&g->kernel)) : 0;
 }
 
 static PetscErrorCode AllocateGroup(CellGroup *g, int dim)

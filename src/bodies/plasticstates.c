@@ -92,7 +92,7 @@ static PetscReal CellState(const CellGroup *g, const PetscReal *state, PetscInt 
 {
   const size_t first = (size_t)(slot / KERNEL_LANES) * KERNEL_LANES * ElasticityCellStates(g) + slot % KERNEL_LANES;
 
-  return state ? state[first + ((size_t)p * ElementStates(&g->plastic) + k) * KERNEL_LANES] : 0;
+  return state ? state[first + ((size_t)p * ElementStates(&g->kernel) + k) * KERNEL_LANES] : 0;
 }
 
 /*@
@@ -132,7 +132,7 @@ PetscReal ElasticityPointWork(const CellGroup *g, const PetscReal *state, PetscI
   if (g->plastic.umat)
     return CellState(g, state, slot, p, UMAT_ENERGY + 1) + CellState(g, state, slot, p, UMAT_ENERGY + 2);
   (void)HardeningStress(g->plastic.hardening, CellState(g, state, slot, p, PLASTIC_STRAIN), &slope, &density);
-  if (ElementStates(&g->plastic) > PLASTIC_WORK) density += CellState(g, state, slot, p, PLASTIC_WORK);
+  if (PlasticStates(g->plastic.hardening) > PLASTIC_WORK) density += CellState(g, state, slot, p, PLASTIC_WORK);
   return density;
 }
 

@@ -59,7 +59,7 @@ static void PlasticStress(const KernelCase *kernel, const double *X, const doubl
                           const double H[9], double P[9])
 {
   const PlasticBatch *plastic = kernel->plastic;
-  const int           states  = ElementStates(plastic);
+  const int           states  = ElementStates(kernel);
   const int           at      = ElementStatePoints(kernel) - ElementGet(kernel->type)->points + p;
   const Lanes         bulk = (Lanes){0} + constants[0], shear = (Lanes){0} + constants[1];
   Lanes               lanes_H[9], lanes_P[9], state[PLASTIC_MAX_STATE], dilatation;

@@ -1,6 +1,7 @@
 /* Batched element kernels: full integration, and the choice of the kernel for every formulation. */
 #include "elementbatch.h"
 #include "planestress.h"
+#include "volumehold.h"
 #include <math.h>
 #include <stddef.h>
 
@@ -99,8 +100,8 @@ static BatchFn *const full_batches[ELEMENT_TYPES][2] = {
   [ELEMENT_HEX27] = {BatchHex27, NULL},
 };
 
-/* The kernels of mixed elements whose nodes have pressures, NULL where there are none. Elements of second order condense
-   their pressures with plastic laws, and where the case says so. */
+/* The kernels of mixed elements whose nodes have pressures, NULL where there are none. Elements of second order
+   condense their pressures with plastic laws, and where the case says so. */
 static BatchFn *const *NodalPressureBatches(const KernelCase *kernel)
 {
   if (kernel->formulation != FORMULATION_MIXED) return NULL;
@@ -138,14 +139,24 @@ int ElementKernelExists(const KernelCase *kernel)
   return GetBatch(kernel) != NULL;
 }
 
+/* Are there numbers of volumehold.h? */
+static int HoldsVolume(const KernelCase *kernel)
+{
+  return kernel->plastic && !kernel->plastic->umat && kernel->kinematics == KINEMATICS_FINITE &&
+         (kernel->formulation == FORMULATION_FBAR || kernel->formulation == FORMULATION_MIXED);
+}
+
 /*@
   ElementStates - counts the numbers of the state of a point.
 
   Not collective
 @*/
-int ElementStates(const PlasticBatch *plastic)
+int ElementStates(const KernelCase *kernel)
 {
-  return plastic->umat ? UmatStates(plastic->umat) : PlasticStates(plastic->hardening);
+  const PlasticBatch *plastic = kernel->plastic;
+
+  if (plastic->umat) return UmatStates(plastic->umat);
+  return PlasticStates(plastic->hardening) + (HoldsVolume(kernel) ? PLASTIC_HOLD : 0);
 }
 
 /*@
@@ -195,7 +206,8 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
                      .length      = kernel->length,
                      .component   = kernel->component,
                      .thin        = kernel->thin,
-                     .states      = kernel->plastic ? ElementStates(kernel->plastic) : 0,
+                     .states      = kernel->plastic ? ElementStates(kernel) : 0,
+                     .hold        = HoldsVolume(kernel) ? PlasticStates(kernel->plastic->hardening) : 0,
                      .constants   = constants};
 }
 
@@ -332,6 +344,9 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
 /* Takes the state of all points of a part of a batch on to the displacement gradients H. */
 static void AcceptPoints(const BatchCall *call, int points, const double *H, double *state)
 {
+  const int   inner = call->hold ? MixedPoints(call->e) : 0;
+  const Lanes hold  = HoldModulus(call, inner);
+
   for (int p = 0; p < points; p++) {
     Lanes lanes_H[9], lanes_state[PLASTIC_MAX_STATE], dilatation;
 
@@ -346,6 +361,7 @@ static void AcceptPoints(const BatchCall *call, int points, const double *H, dou
                 call->plastic->dt, lanes_state, NULL, NULL, NULL, lanes_state);
     for (int k = 0; k < call->states; k++) LANE(state, p * call->states + k) = lanes_state[k];
   }
+  if (call->hold) HoldAccept(call, inner, &hold, call->off, state);
 }
 
 /*@
@@ -367,10 +383,11 @@ accepted.
 void ElementAcceptState(const KernelCase *kernel, const double *X, const double *u, const double *constants,
                         const double *multiplier)
 {
-  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS] = {{0}};
   BatchCall call = StartCall(kernel, lanes_constants);
-  double    H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], J[LANES];
+  double    H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], off[ELEMENT_MAX_POINTS * KERNEL_LANES], J[LANES];
 
+  call.off = off;
   call.J   = J;
   call.H   = H;
   call.all = 1;
@@ -441,7 +458,7 @@ int ElementNodes(const KernelCase *kernel)
 void ElementDilatation(const KernelCase *kernel, const double *X, const double *u, const double *constants,
                        const double *multiplier, double *theta)
 {
-  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS] = {{0}};
   BatchCall call = StartCall(kernel, lanes_constants);
   double    J[LANES];
 
@@ -462,7 +479,7 @@ void ElementDilatation(const KernelCase *kernel, const double *X, const double *
 static void Follow(const KernelCase *kernel, const double *X, const double *u, const StressReference *reference,
                    const double *constants, const double *multiplier, double *pressure)
 {
-  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS] = {{0}};
   BatchCall call = StartCall(kernel, lanes_constants);
   double    J[LANES];
 
@@ -573,7 +590,7 @@ void ElementYield(const KernelCase *kernel, const double *X, const double *u, co
 void ElementPointState(const KernelCase *kernel, const double *X, const double *u, const double *constants,
                        const double *multiplier, double *H, double *pressure)
 {
-  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS] = {{0}};
   BatchCall call = StartCall(kernel, lanes_constants);
   const int dofs = ElementNodes(kernel) * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],

@@ -71,7 +71,7 @@ void   ElementKernel(const KernelCase *, const double *X, const double *u, const
 void   ElementAcceptState(const KernelCase *, const double *X, const double *u, const double *constants,
                           const double *multiplier);
 int    ElementKernelExists(const KernelCase *);
-int    ElementStates(const PlasticBatch *);
+int    ElementStates(const KernelCase *);
 int    ElementStatePoints(const KernelCase *);
 void   ElementStateVolumes(const KernelCase *, const double *X, double *volume);
 int    ElementExtrapolates(const KernelCase *);

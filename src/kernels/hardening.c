@@ -66,6 +66,34 @@ double HardeningStress(const Hardening *h, double strain, double *slope, double 
 }
 
 /*@
+  HardeningMost - returns the largest equivalent stress that slow flow can reach: yield stress and backstresses.
+
+  Not collective
+
+  Input Parameters:
++ h      - the hardening
+- strain - equivalent plastic strain, >= 0
+
+  Output Parameter:
+. slope - its derivative by the strain (stress)
+
+  Note:
+  The backstresses are those of a straight path from no strain.
+@*/
+double HardeningMost(const Hardening *h, double strain, double *slope)
+{
+  double work, sum = HardeningStress(h, strain, slope, &work);
+
+  for (int k = 0; k < h->terms; k++) {
+    const double C = h->backstress[k][0], gamma = h->backstress[k][1];
+
+    sum += gamma > 0 ? -C / gamma * expm1(-gamma * strain) : C * strain;
+    *slope += C * exp(-gamma * strain);
+  }
+  return sum;
+}
+
+/*@
   HardeningOverstress - returns what the rate of the plastic strain adds to the yield stress.
 
   Not collective

@@ -30,5 +30,6 @@ typedef struct {
 } Hardening;
 
 double HardeningStress(const Hardening *, double strain, double *slope, double *work);
+double HardeningMost(const Hardening *, double strain, double *slope);
 double HardeningOverstress(const Hardening *, double increment, double dt, double *slope, double *work);
 double HardeningReturn(const Hardening *, double strain, double dt, double trial, double stiffness);

@@ -6,9 +6,12 @@
    Analysis", section 8.6.5). In small strains it is the B-bar element (Hughes 1980). The F-bar element of de Souza Neto
    et al. (1996) uses the same F' without its variation and has no energy.
 
+   Plastic elements have an energy of what J is at the points besides its mean, see volumehold.h.
+
    St. Venant-Kirchhoff's law is nearly incompressible in small strains only. It resists the trace of Green's strain
    instead of J, and locks a little at large strains. */
 #include "elementbatch.h"
+#include "volumehold.h"
 #include <math.h>
 #include <stddef.h>
 
@@ -107,6 +110,17 @@ LANES_INLINE void PointTangent(const Lanes F[9], const Lanes G[9], const Lanes *
   }
 }
 
+/* Adds the part of the tangent at a point that holds J there with a modulus and a stress. */
+LANES_INLINE void AddHold(const Lanes *hold, const Lanes *stress, const Lanes *J, const Lanes G[9],
+                          Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  const Lanes pull = *stress * *J, both = *hold * *J * *J + pull;
+
+  for (int r = 0, k = 0; r < 9; r++)
+    for (int m = r; m < 9; m++, k++)
+      A[k] += both * G[r] * G[m] - pull * G[3 * (r / 3) + m % 3] * G[3 * (m / 3) + r % 3];
+}
+
 /* Makes the element's pressure that which its volume extrapolates to. `deformed` is its volume now. */
 LANES_INLINE void ExtrapolatePressure(const BatchCall *call, const int n, const int points, const int dim,
                                       const int hoop, const MeanDilatation *x, const Lanes *deformed, Lanes *pressure)
@@ -168,7 +182,8 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   const Lanes  zero     = {0};
   double       m[MAX_NODES * 3 * KERNEL_LANES],
     q_force[MAX_NODES * 3 * KERNEL_LANES]; /* m: variation of ln J'; q_force: what it is coupled to */
-  Lanes          pressure = {0}, deformed = {0}, square = {0}, factor[MAX_POINTS], geometric;
+  const Lanes    hold     = HoldModulus(call, points);
+  Lanes          pressure = {0}, deformed = {0}, square = {0}, factor[MAX_POINTS], off[MAX_POINTS], geometric;
   MeanDilatation x;
 
   if (W) LANE(W, 0) = zero;
@@ -181,10 +196,12 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   for (int q = 0; q < points; q++) {
     Lanes H[9], F[9], G[9], J, dilatation, energy;
 
+    off[q] = x.dilatation[q] - x.mean;
+    if (call->off) LANE(call->off, q) = off[q];
     MeanGradient(call, q, &x, H, &factor[q]);
     MaterialDilatation(H, &dilatation);
     PointLaw(call, q, H, &dilatation, W ? &energy : NULL, x.P[q], K ? x.c.A[q] : NULL);
-    if (W) LANE(W, 0) += energy * x.volume[q];
+    if (W) LANE(W, 0) += (energy + HoldEnergy(call, q, &hold, &off[q])) * x.volume[q];
     if (call->H) StorePoint(call, q, H);
     if (!f && !K) continue;
     PointMotion(call, q, &x, F, G, &J);
@@ -196,14 +213,16 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   geometric = pressure;
   if (K && call->u_0) ExtrapolatePressure(call, n, points, dim, hoop, &x, &deformed, &geometric);
   for (int q = 0; q < points; q++) {
-    Lanes F[9], G[9], P[9], Q[9], J, square_q, pull;
+    const Lanes stress = HoldStress(call, q, &hold, &off[q]);
+    Lanes       F[9], G[9], P[9], Q[9], J, square_q, pull;
 
     PointMotion(call, q, &x, F, G, &J);
-    pull = (1 + factor[q]) * Contract(x.P[q], F) / 3 - pressure * J;
+    pull = (1 + factor[q]) * Contract(x.P[q], F) / 3 - (pressure + stress) * J;
     for (int r = 0; r < 9; r++) P[r] = x.volume[q] * ((1 + factor[q]) * x.P[q][r] - pull * G[r]);
     if (f) AddForce(n, dim, hoop, q, &x.c, P, f);
     if (!K) continue;
     PointTangent(F, G, &J, &factor[q], &geometric, geometry, x.P[q], x.c.A[q], Q, &square_q);
+    if (call->hold) AddHold(&hold, &stress, &J, G, x.c.A[q]);
     for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x.c.A[q][k] *= x.volume[q];
     for (int r = 0; r < 9; r++) {
       Q[r] *= x.volume[q];
@@ -215,6 +234,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   }
   if (!K) return;
   AddTangent(n, dim, hoop, points, 1, 1, &x.c, K);
+  square -= hold * deformed * deformed / x.total;
   AddMeanTangent(n * dim, q_force, m, &square, K);
   if (call->skew) AddMeanSkew(call, n, points, dim, hoop, &x, factor, m);
 }

@@ -90,6 +90,7 @@ LANES_INLINE void Prepare(const BatchCall *call, const MixedRule *rule, const in
     Monomials(nodes, modes, dim, rule->N[q], x, x->shape[q]);
   }
   PressureShapes(points, modes, x);
+  x->hold = HoldModulus(call, points);
 }
 
 /* Extrapolates the pressures of the geometric part from the state u_0. x has displacement gradients without the
@@ -100,6 +101,7 @@ LANES_INLINE void ReferencePressures(const BatchCall *call, const MixedRule *rul
   Mixed y;
   Lanes change[MIXED_PRESSURES], W;
 
+  y.hold = x->hold;
   for (int i = 0; i < MAX_BUBBLE; i++) y.b[i] = (Lanes){0};
   for (int q = 0; q < points; q++) {
     PointGradients(n + bubble, dim, hoop, rule->N[q], rule->dN[q], rule->weight[q], 0, x->X, &y.c, &y.volume[q]);
@@ -194,6 +196,17 @@ LANES_INLINE void Condense(const int dofs, const int dim, double *full, double *
   }
 }
 
+/* Stores J less its projection at the points. */
+LANES_INLINE void StoreOff(const BatchCall *call, const int points, const int modes, const Mixed *x)
+{
+  for (int q = 0; q < points; q++) {
+    Lanes dilatation;
+
+    Dilatation(call, x->H[q], &dilatation);
+    LANE(call->off, q) = dilatation - PressureAt(modes, x->theta, x->shape[q]);
+  }
+}
+
 /* Stores displacement gradient and pressure at the points of the element's table, and the gradients at the points of
    integration before them where all points of the state are asked for. */
 LANES_INLINE void StoreOutput(const BatchCall *call, const int n, const int bubble, const int modes, const int dim,
@@ -234,7 +247,7 @@ LANES_INLINE void EvaluateChunk(const BatchCall *call, const int modes, const in
     Lanes       P[9], G[9], D[9], dilatation, energy, geometric;
 
     Dilatation(call, x->H[q], &dilatation);
-    PointLaw(call, q, x->H[q], &dilatation, call->W ? &energy : NULL, P, tangent ? x->c.A[at] : NULL);
+    MixedLaw(call, &x->hold, q, x->H[q], &dilatation, call->W ? &energy : NULL, P, tangent ? x->c.A[at] : NULL);
     if (call->W) *W += x->volume[q] * energy;
     DilatationGradient(call, x->H[q], G);
     for (int r = 0; r < 9; r++) P[r] = x->volume[q] * (P[r] + pressure * G[r]);
@@ -288,7 +301,9 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int bubble, co
   for (int i = 0; i < n * dim && call->f; i++) LANE(call->f, i) = LANE(f, i);
   if (K) AddDilatationTangent(dofs, modes, &x, t, K);
   if (K && bubble) Condense(n * dim, dim, full, call->K);
+  for (int k = 0; k < modes; k++) x.p[k] += x.hold * x.theta[k]; /* results have the volume's alone */
   for (int k = 0; k < modes && call->theta; k++) LANE(call->theta, k) = (x.p[k] - Multiplier(call, k)) / call->kappa;
+  if (call->off) StoreOff(call, points, modes, &x);
   if (call->H) StoreOutput(call, n, bubble, modes, dim, hoop, &x);
 }
 

@@ -19,6 +19,7 @@
    pressures have the sign with which the symmetric part of the tangent is positive definite where that of the
    displacements is: the tangent is not symmetric. */
 #include "nodalpressure.h"
+#include "volumehold.h"
 
 enum { MAX_CORNERS = 4 };
 
@@ -26,13 +27,19 @@ enum { MAX_CORNERS = 4 };
 typedef struct {
   Lanes         tau[MAX_CORNERS]; /* at the nodes */
   Lanes         mean;
+  Lanes         hold, carried, energy; /* of volumehold.h, with J - j: modulus, stress and energy carried over */
   NodalPressure at;
 } Pressure;
 
 /* Computes the pressure and its derivatives from the unknowns and J - 1. */
 LANES_INLINE void SetPressure(const BatchCall *call, const int n, const int dim, const Lanes *dilatation, Pressure *x)
 {
-  x->mean = (Lanes){0};
+  const Lanes none = {0};
+
+  x->mean    = (Lanes){0};
+  x->hold    = HoldModulus(call, 1);
+  x->carried = HoldStress(call, 0, &x->hold, &none);
+  x->energy  = HoldEnergy(call, 0, &x->hold, &none);
   for (int a = 0; a < n; a++) {
     x->tau[a] = call->mu / call->length * CONST_LANE(call->u, (n + a) * dim + call->component);
     x->mean += x->tau[a] / n;
@@ -56,14 +63,15 @@ LANES_INLINE Lanes PressureEnergy(const BatchCall *call, const int n, const Pres
 
   for (int a = 0; a < n; a++)
     for (int b = 0; b < n; b++) projection += Deviation(call, n, &unit, a, b) * x->tau[a] * x->tau[b] / 2;
-  return x->at.p * x->at.excess + x->mean * x->mean / (2 * call->modulus) - projection;
+  return x->energy + (x->at.p - x->hold / 2 * x->at.excess) * x->at.excess + x->mean * x->mean / (2 * call->modulus) -
+         projection;
 }
 
 LANES_INLINE void AddPressureForce(const BatchCall *call, const int n, const int dim, const Lanes *volume,
                                    const Pressure *x)
 {
   for (int a = 0; a < n; a++) {
-    Lanes force = -*volume * x->at.slope * x->at.excess / n;
+    Lanes force = -*volume * (x->at.slope * x->at.excess - x->carried * x->at.j_slope) / n;
 
     for (int b = 0; b < n; b++) force += Deviation(call, n, volume, a, b) * x->tau[b];
     for (int i = 0; i < dim; i++)
@@ -77,7 +85,8 @@ LANES_INLINE void JoinTangent(const BatchCall *call, const int n, const int dim,
 {
   const int   half = n * dim, all = 2 * half, p = half + call->component;
   const Lanes across = x->at.scale * x->at.slope / n;
-  const Lanes middle = *volume * (x->at.slope * x->at.j_slope - x->at.bend * x->at.excess) / (n * n);
+  const Lanes bend   = x->carried / call->modulus; /* j_slope times it is that of the stress carried over */
+  const Lanes middle = *volume * ((x->at.slope + bend) * x->at.j_slope - x->at.bend * x->at.excess) / (n * n);
 
   for (int r = 0; r < all * all; r++) LANE(call->K, r) = (Lanes){0};
   for (int r = 0; r < half; r++) {
@@ -110,10 +119,15 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int dim, const
   Dilatation(call, H, &dilatation);
   KeepLeastJ(call, &dilatation);
   SetPressure(call, n, dim, &dilatation, &x);
+  if (call->H) NodalPressureStore(call, 0, H, &dilatation, &x.at);
+  if (call->off) LANE(call->off, 0) = x.at.excess;
+  if (call->hold) {
+    x.at.p += x.carried;
+    KeepVolume(&x.hold, call, &x.at);
+  }
   PointLaw(call, 0, H, &dilatation, call->W ? &energy : NULL, P, call->K ? c.A[0] : NULL);
   DilatationGradient(call, H, G);
   if (call->W) LANE(call->W, 0) = volume * (energy + PressureEnergy(call, n, &x));
-  if (call->H) NodalPressureStore(call, 0, H, &dilatation, &x.at);
   if (call->f) {
     for (int r = 0; r < 9; r++) P[r] = volume * (P[r] + x.at.p * G[r]);
     for (int i = 0; i < n * dim; i++) LANE(call->f, i) = (Lanes){0};
@@ -122,6 +136,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int dim, const
   }
   if (!call->K) return;
   if (call->finite) AddGeometry(&x.at.p, H, c.A[0]);
+  if (call->hold) AddVolumeModulus(&x.hold, G, c.A[0]);
   for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) c.A[0][k] *= volume;
   for (int r = 0; r < 9; r++) G[r] *= volume;
   for (int i = 0; i < n * dim; i++) LANE(D, i) = (Lanes){0};

@@ -29,21 +29,6 @@ LANES_INLINE Lanes VolumeModulus(const BatchCall *call)
   return most / (1 + 2 * most / call->modulus);
 }
 
-/* Adds the pressure that keeps J at the points near j: the integral gamma / 2 (J - j)^2 of the Lagrangian. */
-LANES_INLINE void KeepVolume(const Lanes *gamma, const BatchCall *call, NodalPressure *x)
-{
-  x->p += *gamma * x->excess;
-  x->slope -= *gamma * x->j_slope;
-  if (call->finite) x->bend -= *gamma * x->j_slope / call->modulus;
-}
-
-/* Adds the square of the derivatives of J to a tangent of the law. */
-LANES_INLINE void AddVolumeModulus(const Lanes *gamma, const Lanes G[9], Lanes A[MATERIAL_TANGENT_SIZE])
-{
-  for (int r = 0; r < 9; r++)
-    for (int s = r; s < 9; s++) A[MATERIAL_TANGENT_INDEX(r, s)] += *gamma * G[r] * G[s];
-}
-
 /* Linear shape functions of the corners at a point of the element */
 LANES_INLINE void CornerShapes(const Element *e, const int corners, int q, double N[MAX_CORNERS])
 {

@@ -23,13 +23,15 @@
    plastic strain. In small strains the first six are -2 times the plastic strain, the linearisation. Zero is the virgin
    state. Laws with a backstress or an overstress have more: the plastic work that does not follow from the equivalent
    plastic strain, then Ci^-1 - 1 for every backstress, with the right Cauchy-Green tensor Ci of the part of the plastic
-   deformation that does not store energy. PlasticStates() counts the numbers of a law. */
+   deformation that does not store energy. PlasticStates() counts the numbers of a law. After them, elements that hold J within
+   (volumehold.h) have PLASTIC_HOLD numbers more. */
 enum {
   PLASTIC_STATE      = 7,
   PLASTIC_STRAIN     = 6,
   PLASTIC_WORK       = 7,
   PLASTIC_BACKSTRESS = 8,
-  PLASTIC_MAX_STATE  = PLASTIC_BACKSTRESS + 6 * HARDENING_MAX_TERMS
+  PLASTIC_HOLD       = 2,
+  PLASTIC_MAX_STATE  = PLASTIC_BACKSTRESS + 6 * HARDENING_MAX_TERMS + PLASTIC_HOLD
 };
 
 int  PlasticStates(const Hardening *);

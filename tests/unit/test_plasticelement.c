@@ -18,6 +18,7 @@ static const Hardening hardenings[] = {
   {.yield = 0.5, .linear = 3, .saturation = 0.9, .rate = 15},
   {.yield = 0.5, .linear = 3, .terms = 2, .backstress = {{5, 30}, {2, 0}}, .overstress = 0.2, .speed = 0.7, .power = 3},
   {.yield = 0.5, .linear = 3, .terms = 1, .backstress = {{5, 30}}},
+  {.yield = 0.5, .linear = 0.1}, /* so flat that elements hold J at their points */
 };
 enum { HARDENINGS = sizeof hardenings / sizeof *hardenings };
 
@@ -58,7 +59,7 @@ static void BatchCreate(Batch *b, KernelCase kernel, const Hardening *hardening)
   b->plastic        = (PlasticBatch){.hardening = hardening, .dt = 0.4, .state = b->state};
   b->kernel.plastic = &b->plastic;
   b->e              = ElementGet(kernel.type);
-  b->states         = PlasticStates(hardening);
+  b->states         = ElementStates(&b->kernel);
   b->dofs           = b->e->nodes * b->e->dim;
   for (int lane = 0; lane < KERNEL_LANES; lane++) {
     for (int k = 0; k < 2; k++) b->constants[k * KERNEL_LANES + lane] = material.constants[k];

@@ -45,12 +45,14 @@ typedef struct {
   const PlasticBatch *plastic;
   const double       *state;        /* of a plastic law [points][states], or NULL; its first lane */
   int                 states, part; /* part: of the batch, its first lane */
+  int                 hold;         /* where volumehold.h has its numbers in the state of a point; 0: nowhere */
   int                 all;          /* H takes all points of the state */
   int                *fault;        /* [LANES], UmatFaultAt() where a routine of the user fails, or NULL */
   const double       *X, *u;
   const double       *u_0;  /* displacements from which K extrapolates the stress, or NULL */
   double              rate; /* of StressReference */
   double             *W, *f, *K, *J, *H;
+  double             *off; /* J less its projection, with hold [points]; or NULL */
   /* Of mixed elements: the part kappa of the modulus of the volume, shear modulus, multipliers or NULL, and results or
      NULL: theta [MIXED_PRESSURES], which mixedkernel.c explains, the pressure at the points of H, and the
      pressures extrapolated from u_0 [MIXED_PRESSURES]. constants[0] is then the local part of VolumeModuli. */

@@ -93,7 +93,7 @@ LANES_INLINE void SetBubbleSystem(const BatchCall *call, const int points, const
     for (int r = 0; r < 9; r++) H[r] = x->H[q][r];
     AddBubble(dim, hoop, x->b, x->bubble[q], H);
     Dilatation(call, H, &dilatation);
-    PointLaw(call, q, H, &dilatation, &energy, P, A);
+    MixedLaw(call, &x->hold, q, H, &dilatation, &energy, P, A);
     DilatationGradient(call, H, G);
     s->W += x->volume[q] * energy;
     for (int k = 0; k < modes; k++) x->theta[k] += x->volume[q] * x->shape[q][k] * dilatation;
@@ -241,7 +241,7 @@ LANES_INLINE void FollowBubble(const BatchCall *call, const int points, const in
     }
     AddBubble(dim, hoop, y->b, y->bubble[q], H);
     Dilatation(call, H, &dilatation);
-    PointLaw(call, q, H, &dilatation, NULL, P, A);
+    MixedLaw(call, &y->hold, q, H, &dilatation, NULL, P, A);
     AddGeometry(&pressure, H, A);
     AddBubbleChange(dim, hoop, y->bubble[q], &y->volume[q], A, dH, s.f);
   }

@@ -3,6 +3,7 @@
 #pragma once
 #include "elementbatch.h"
 #include "mixedrule.h"
+#include "volumehold.h"
 
 enum { MAX_BUBBLE = 3 /* displacements of the inner node */ };
 
@@ -19,6 +20,7 @@ typedef struct {
   Lanes       L[MIXED_PRESSURES][MIXED_PRESSURES];        /* L L^T: matrix of their products before; 1/L_kk at k k */
   Lanes       theta[MIXED_PRESSURES], p[MIXED_PRESSURES]; /* of J - 1 and of the pressure */
   Lanes       C[MIXED_PRESSURES][MIXED_PRESSURES];        /* derivatives of p by theta */
+  Lanes       hold;                                       /* modulus of volumehold.h */
   Lanes       geometric[MIXED_PRESSURES];                 /* of the pressure in the tangent's geometric part */
   Lanes       b[MAX_BUBBLE];
 } Mixed;
@@ -105,7 +107,8 @@ LANES_INLINE Lanes PressureAt(const int modes, const Lanes p[MIXED_PRESSURES], c
 }
 
 /* Computes the pressures from theta, their derivatives by theta, and the energy of the volume. With small strains it is
-   a square of theta. */
+   a square of theta. What holds J at the points (volumehold.h) is c/2 int (J - 1)^2 dV, which MixedLaw() adds there,
+   less c/2 times the square of theta. */
 LANES_INLINE void Pressures(const BatchCall *call, const int points, const int modes, Mixed *x, Lanes *W)
 {
   *W = (Lanes){0};
@@ -117,6 +120,11 @@ LANES_INLINE void Pressures(const BatchCall *call, const int points, const int m
     x->p[k] += call->kappa * x->theta[k];
     x->C[k][k] = call->kappa;
     *W += 0.5 * call->kappa * x->theta[k] * x->theta[k];
+  }
+  for (int k = 0; k < modes && call->hold; k++) {
+    x->p[k] -= x->hold * x->theta[k];
+    x->C[k][k] -= x->hold;
+    *W -= 0.5 * x->hold * x->theta[k] * x->theta[k];
   }
   for (int q = 0; q < points && call->finite; q++) {
     const Lanes dilatation = PressureAt(modes, x->theta, x->shape[q]), log_j = LogVolume(dilatation);
@@ -149,4 +157,22 @@ LANES_INLINE void AddGeometry(const Lanes *pressure, const Lanes H[9], Lanes A[M
         A[MATERIAL_TANGENT_INDEX(r, s)] -= *pressure * (H[rest] + (double)(rest % 4 == 0));
     }
   }
+}
+
+/* Evaluates the law at a point, as PointLaw(), and what holds J there. */
+LANES_INLINE void MixedLaw(const BatchCall *call, const Lanes *hold, int q, const Lanes H[9], const Lanes *dilatation,
+                           Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  Lanes G[9], stress;
+
+  PointLaw(call, q, H, dilatation, W, P, A);
+  if (!call->hold) return;
+  Cofactors(H, G);
+  stress = HoldStress(call, q, hold, dilatation);
+  if (W) *W += HoldEnergy(call, q, hold, dilatation);
+  for (int r = 0; r < 9; r++) P[r] += stress * G[r];
+  if (!A) return;
+  AddGeometry(&stress, H, A);
+  for (int r = 0, k = 0; r < 9; r++)
+    for (int s = r; s < 9; s++, k++) A[k] += *hold * G[r] * G[s];
 }

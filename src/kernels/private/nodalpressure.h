@@ -1,5 +1,5 @@
 /* The pressure at a point of a mixed element whose nodes have unknowns for it: its derivatives by tau, which
-   nodalpressurekernel.c explains. Plain C, inlined like elementbatch.h. */
+   nodalpressurekernel.c explains, and what keeps J near j there. Plain C, inlined like elementbatch.h. */
 #pragma once
 #include "mixedpressure.h"
 
@@ -35,6 +35,21 @@ LANES_INLINE void NodalPressureSet(const BatchCall *call, const Lanes *tau, cons
   x->bend    = soft * (strain - 2) / j;
   x->excess  = *dilatation - (j - 1);
   x->j_slope = soft * j;
+}
+
+/* Adds the pressure that keeps J near j: the integral gamma / 2 (J - j)^2 of the Lagrangian. */
+LANES_INLINE void KeepVolume(const Lanes *gamma, const BatchCall *call, NodalPressure *x)
+{
+  x->p += *gamma * x->excess;
+  x->slope -= *gamma * x->j_slope;
+  if (call->finite) x->bend -= *gamma * x->j_slope / call->modulus;
+}
+
+/* Adds the square of the derivatives of J to a tangent of the law. */
+LANES_INLINE void AddVolumeModulus(const Lanes *gamma, const Lanes G[9], Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  for (int r = 0; r < 9; r++)
+    for (int s = r; s < 9; s++) A[MATERIAL_TANGENT_INDEX(r, s)] += *gamma * G[r] * G[s];
 }
 
 /* Stores displacement gradient and pressure, as StoreOutput() of mixedkernel.c. */
