@@ -159,22 +159,37 @@ static void ListPhysicals(const GmshMesh *gmsh, int dim, char list[MESH_TEXT])
       used += (size_t)snprintf(list + used, MESH_TEXT - used, "%s%s", used ? ", " : "", gmsh->physicals[i].name);
 }
 
+/* Does the mesh have a group of this name and dimension? */
+static PetscBool HasPhysical(const GmshMesh *gmsh, int dim, const char *name)
+{
+  for (int i = 0; i < gmsh->n_physicals; i++)
+    if (gmsh->physicals[i].dim == dim && !strcmp(gmsh->physicals[i].name, name)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* What a group of a body's name that has the other dimension says about the scene; "" where there is none. */
+static const char *OtherGeometry(Scene scene, const GmshMesh *gmsh, const char *name)
+{
+  if (!HasPhysical(gmsh, 5 - scene->dim, name)) return "";
+  return scene->dim == 3 ? "; the name is that of a plane surface: allowed are geometry plane_strain, plane_stress or "
+                           "axisymmetric"
+                         : "; the name is that of a volume: allowed is geometry solid";
+}
+
 /* Checks that every deformable body is a volume group of the mesh. This comes first, because a misspelt name also
    leaves a group without a body. */
 static void CheckBodyNames(Scene scene, const char *file, const RootMesh *root, Complaint *complaint)
 {
-  char list[MESH_TEXT];
+  const GmshMesh *gmsh = &root->gmsh;
+  char            list[MESH_TEXT];
 
-  ListPhysicals(&root->gmsh, scene->dim, list);
+  ListPhysicals(gmsh, scene->dim, list);
   for (int b = 0; b < scene->n_bodies; b++) {
-    PetscBool there = PETSC_FALSE;
+    const char *name = scene->bodies[b].name;
 
-    for (int i = 0; i < root->gmsh.n_physicals; i++)
-      if (root->gmsh.physicals[i].dim == scene->dim && !strcmp(root->gmsh.physicals[i].name, scene->bodies[b].name))
-        there = PETSC_TRUE;
-    if (scene->bodies[b].rigid || there) continue;
-    Complain(complaint, "%s: the mesh '%s' has no volume group '%s'; its volume groups: %s",
-             SceneWhere(scene, scene->bodies[b].path, "volume"), file, scene->bodies[b].name, list);
+    if (scene->bodies[b].rigid || HasPhysical(gmsh, scene->dim, name)) continue;
+    Complain(complaint, "%s: the mesh '%s' has no volume group '%s'; its volume groups: %s%s",
+             SceneWhere(scene, scene->bodies[b].path, "volume"), file, name, list, OtherGeometry(scene, gmsh, name));
   }
 }
 

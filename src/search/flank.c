@@ -149,7 +149,8 @@ PetscBool FlankFaces(const Nearest *look, const Candidate *c)
 
   Note:
   A neighbour of a point's face may be its master where the surface is folded between the two, so that they face each
-  other. Points of the two faces near their common edge then are nearly in contact, whatever the angle of the fold.
+  other. Points of the two faces near their common edge then are nearly in contact, whatever the angle of the fold. The
+  sides of a sharp edge face each other through the body and are no partners.
 @*/
 PetscBool FlankIsOwn(const Nearest *look, const Candidate *c)
 {
@@ -164,7 +165,8 @@ PetscBool FlankIsOwn(const Nearest *look, const Candidate *c)
     for (PetscInt k = 0; k < look->own; k++)
       shared += lists->point_node[lists->point_ptr[p]] == lists->slave_node[lists->slave_ptr[look->q] + k];
   }
-  return (PetscBool)(shared == look->own || (shared > 0 && !FlankFaces(look, c)));
+  if (shared == look->own) return PETSC_TRUE;
+  return (PetscBool)(shared > 0 && (!FlankFaces(look, c) || OwnBodyIsWedge(look, c)));
 }
 
 /* Is a facet behind the slave point, beyond or beside its own body? Only facets that face the point can be taken for

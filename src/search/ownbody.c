@@ -5,23 +5,73 @@
    this part of a face: round-off of the mesh's coordinates. */
 #define OWN_BODY_TOUCHES 1e-6
 
+/* Two faces at a convex edge whose normals have at most this product, 45 degrees apart, do not fold onto each other:
+   the body between them would have to turn inside out. A smooth surface of the coarsest meshes turns by less. */
+#define OWN_BODY_SHARP 0.71
+
+/* Foot of a place on a facet whose nodes are at X[nodes][dim], all relative to the same origin. */
+static void FootAt(int dim, Facet facet, const PetscReal *X, const PetscReal *place, Foot *foot)
+{
+  PetscReal x[FACE_MAX_NODES * 3];
+
+  facet.free_edges = 0;
+  for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
+    for (int d = 0; d < dim; d++) x[a * dim + d] = X[a * dim + d] - place[d];
+    facet.nodes[a] = a;
+  }
+  FacetProject(dim, &facet, x, foot);
+}
+
 /* How far the slave point is behind a facet in the reference configuration (length); negative in front of it. */
 static PetscReal ReferenceDepth(const Nearest *look, const Candidate *c)
 {
   const NeighbourLists lists = look->lists;
   const int            dim   = lists->dim;
-  PetscReal            x[FACE_MAX_NODES * 3];
-  Facet                facet = c->facet;
+  PetscReal            X[FACE_MAX_NODES * 3];
   Foot                 foot;
 
-  facet.free_edges = 0;
-  for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
-    for (int d = 0; d < dim; d++)
-      x[a * dim + d] = lists->point_X[facet.nodes[a] * dim + d] - lists->slave_X[look->q * dim + d];
-    facet.nodes[a] = a;
-  }
-  FacetProject(dim, &facet, x, &foot);
+  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
+    for (int d = 0; d < dim; d++) X[a * dim + d] = lists->point_X[c->facet.nodes[a] * dim + d];
+  FootAt(dim, c->facet, X, &lists->slave_X[look->q * dim], &foot);
   return -foot.gap;
+}
+
+/*@
+  OwnBodyIsWedge - says whether a facet that shares a node with the slave point's own face meets it at a sharp convex
+  edge of the undeformed body, so that the two are sides of a wedge and never partners.
+
+  Not collective
+
+  Input Parameters:
++ look - the slave point, in surface-to-surface contact
+- c    - the candidate
+
+  Note:
+  Sides of a knife's edge oppose each other, and a point on the edge touches both. Its depth below the other side is
+  none, so that OwnBodyHides() cannot tell.
+@*/
+PetscBool OwnBodyIsWedge(const Nearest *look, const Candidate *c)
+{
+  const NeighbourLists lists  = look->lists;
+  const SlavePoints    slaves = look->slaves;
+  const Facet         *own    = &slaves->faces[SlavePointFace(slaves, look->q)];
+  const int            dim = lists->dim, n = ElementGet(own->type)->nodes;
+  const PetscReal     *origin = &lists->slave_X[look->q * dim];
+  PetscReal            X[FACE_MAX_NODES * 3], centre[3] = {0, 0, 0}, cosine = 0;
+  Foot                 foot, own_foot;
+
+  for (int a = 0; a < n; a++) {
+    for (int d = 0; d < dim; d++) {
+      X[a * dim + d] = slaves->nodes[own->nodes[a]].X[d] - origin[d];
+      centre[d] += X[a * dim + d] / n;
+    }
+  }
+  FootAt(dim, *own, X, centre, &own_foot);
+  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
+    for (int d = 0; d < dim; d++) X[a * dim + d] = lists->point_X[c->facet.nodes[a] * dim + d] - origin[d];
+  FootAt(dim, c->facet, X, centre, &foot);
+  for (int d = 0; d < dim; d++) cosine += own_foot.normal[d] * foot.normal[d];
+  return (PetscBool)(foot.gap < 0 && cosine < OWN_BODY_SHARP);
 }
 
 /*@

@@ -233,6 +233,30 @@ PetscBool SlavePointIsOwn(SlavePoints points, PetscInt q, PetscMPIInt rank)
 }
 
 /*@
+  SlavePointFace - returns the number of the face with point q, in surface-to-surface contact.
+
+  Not collective
+
+  Input Parameters:
++ points - the slave points
+- q      - the point
+@*/
+PetscInt SlavePointFace(SlavePoints points, PetscInt q)
+{
+  PetscInt low = 0, high = points->n_faces;
+
+  while (high - low > 1) {
+    const PetscInt middle = (low + high) / 2;
+
+    if (points->first[middle] <= q)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/*@
   SlavePointsDestroy - frees slave points.
 
   Collective

@@ -47,6 +47,7 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface, Geometry, int finer, 
 PetscErrorCode SlavePointsDestroy(SlavePoints *);
 PetscErrorCode SlavePointsMove(SlavePoints, const PetscReal *u);
 PetscBool      SlavePointIsOwn(SlavePoints, PetscInt q, PetscMPIInt rank);
+PetscInt       SlavePointFace(SlavePoints, PetscInt q);
 void           SlavePointsPosition(SlavePoints, PetscInt q, PetscReal *x);
 PetscErrorCode SlavePointsNormals(SlavePoints, int n_images, const SurfaceImage *, const PetscReal *u,
                                   PetscReal *normals);

@@ -6,7 +6,7 @@ FRAME, TUBE = SCENES / "c_strip.yaml", SCENES / "mirrored_tube.yaml"
 RINGS, PIPE = SCENES.parent.parent / "runs/ring_in_ring.yaml", SCENES.parent.parent / "runs/pipe_pinch.yaml"
 SHRINK, BUMPER = SCENES.parent / "jobs/shrink_fit.yaml", SCENES / "jounce_bumper.yaml"
 SIDES = 4e-3  # of a force of friction: between a list and one role of slave and master, whose points differ
-BEAMS, BLOCK = SCENES / "crossed_beams.yaml", SCENES / "patch.yaml"
+BEAMS, BLOCK, BLADE = SCENES / "crossed_beams.yaml", SCENES / "patch.yaml", SCENES / "knife.yaml"
 PRESSED = ["supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_min, uz: 0}]",
            "loads=[{surface: y_max, uy: -0.1}]", "contact=[{name: own, surfaces: all}]"]
 BUMPER_SPREAD = 5e-3  # of its force: the two formulations on its coarse mesh
@@ -216,6 +216,15 @@ def edges():
     check.holds("edges were not looked for", "edges that cross edges have no contact" in free.text)
 
 
+def knife():
+    """A blade that yields is moved as a whole: the sides of its sharp edges, with points on the edges, do not meet."""
+    solid = ["mesh.parameters.solid=1", "geometry=solid", "loads.0.uz=0"]
+    for order in (1, 2):
+        for kind, overrides in (("plane", []), ("solid", solid)):
+            moved = run(args, BLADE, out=f"{kind}{order}", overrides=[f"mesh.order={order}", *overrides]).summary()
+            check.near(f"blade, {kind}, order {order}: nodes in contact", moved["contact_nodes"], 0, 0)
+
+
 def refused(what, text, contact):
     finished = run(args, RINGS, "-check", out="refused", ranks=1, must=1, overrides=[f"contact=[{contact}]", "probes=[]"])
     check.holds(f"refused: {what}", text in finished.text, finished.text.strip().splitlines()[0])
@@ -248,7 +257,7 @@ def refusals():
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, mirror, walls, ranks, refusals, override, friction, overlap, bumper, edges or live"))
+args = arguments(("case", "frame, mirror, walls, ranks, refusals, override, friction, overlap, bumper, edges, knife or live"))
 check = Check()
 if args.case == "frame":
     for smoother in ("facet", "diffuse"):
@@ -259,5 +268,5 @@ elif args.case == "mirror":
     mirror("surface_to_surface")
 else:
     {"walls": walls, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
-     "overlap": overlap, "bumper": bumper, "edges": edges, "live": live}[args.case]()
+     "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "live": live}[args.case]()
 check.finish()

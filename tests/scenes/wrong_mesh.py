@@ -36,6 +36,7 @@ refused("missing mesh file", "nosuch.msh", "mesh.file=nosuch.msh")
 refused("missing .geo file", "nosuch.geo", "mesh.file=nosuch.geo")
 refused("missing surface", "nowhere.*x_min", "supports.0.surface=nowhere")
 refused("missing volume", "no volume group .nothing.*block", "bodies.0.volume=nothing")
+refused("plane mesh of a solid", "no volume group .block.*plane surface: allowed are geometry plane_strain", "geometry=solid")
 refused("inverted element", "inverted", "mesh.parameters.invert=1")
 refused("triangles with enhanced strains", "formulation: enhanced is for quad4 and hex8 only.*tri3",
         "mesh.parameters.tri=1", "bodies.0.formulation=enhanced")

@@ -6,6 +6,7 @@
    OwnBodyHides() tells whether a candidate is hidden behind the point's own body. OwnBodyTurnsFrom() tells whether the
    point's face looks away from its foot on a candidate, as the outside of a pipe does from its bore on the other side.
    OwnBodyTells() answers both questions where the hull of the candidate is enough, which spares most feet.
+   OwnBodyIsWedge() tells whether a face next to the point's own one is the other side of a sharp edge.
    OwnBodyBehind() tells from which distance on one of the two is sure to hold, so that the tree can leave it out. */
 #pragma once
 #include "searchimpl.h"
@@ -14,3 +15,4 @@ PetscBool OwnBodyHides(const Nearest *, const Candidate *, const Foot *);
 PetscBool OwnBodyTells(const Nearest *, const Candidate *, PetscBool *hidden);
 PetscReal OwnBodyBehind(const Nearest *);
 PetscBool OwnBodyTurnsFrom(const Nearest *, const Foot *);
+PetscBool OwnBodyIsWedge(const Nearest *, const Candidate *);
