@@ -70,7 +70,7 @@ static void PlasticStress(const KernelCase *kernel, const double *X, const doubl
     double          W;
 
     (void)UmatPoint(plastic->umat, &place, H, &plastic->state[at * states * KERNEL_LANES + plastic->lane], KERNEL_LANES,
-                    &W, P, NULL, NULL, NULL);
+                    &W, P, NULL, NULL, NULL, NULL);
     return;
   }
   for (int r = 0; r < 9; r++) lanes_H[r] = (Lanes){0} + H[r];

@@ -23,7 +23,7 @@ static const double yielding_kappa = 20;
 static const double largest_local = 1, local_share = 0.1;
 
 /* Numbers of the state of a point, of any law */
-enum { MAX_STATE = UMAT_STATES + UMAT_MAX_STATES };
+enum { MAX_STATE = UMAT_STATES + UMAT_MAX_STATES + UMAT_HOLD };
 _Static_assert((int)MAX_STATE >= (int)PLASTIC_MAX_STATE, "room for the states of all laws");
 
 const char *const Formulations[] = {"full", "enhanced", "fbar", "mixed", NULL};
@@ -142,8 +142,14 @@ int ElementKernelExists(const KernelCase *kernel)
 /* Are there numbers of volumehold.h? */
 static int HoldsVolume(const KernelCase *kernel)
 {
-  return kernel->plastic && !kernel->plastic->umat && kernel->kinematics == KINEMATICS_FINITE &&
+  return kernel->plastic && kernel->kinematics == KINEMATICS_FINITE &&
          (kernel->formulation == FORMULATION_FBAR || kernel->formulation == FORMULATION_MIXED);
+}
+
+/* Counts the numbers that a law has in the state of a point. */
+static int LawStates(const PlasticBatch *plastic)
+{
+  return plastic->umat ? UmatStates(plastic->umat) : PlasticStates(plastic->hardening);
 }
 
 /*@
@@ -153,10 +159,9 @@ static int HoldsVolume(const KernelCase *kernel)
 @*/
 int ElementStates(const KernelCase *kernel)
 {
-  const PlasticBatch *plastic = kernel->plastic;
+  const int hold = kernel->plastic->umat ? UMAT_HOLD : PLASTIC_HOLD;
 
-  if (plastic->umat) return UmatStates(plastic->umat);
-  return PlasticStates(plastic->hardening) + (HoldsVolume(kernel) ? PLASTIC_HOLD : 0);
+  return LawStates(kernel->plastic) + (HoldsVolume(kernel) ? hold : 0);
 }
 
 /*@
@@ -207,7 +212,7 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
                      .component   = kernel->component,
                      .thin        = kernel->thin,
                      .states      = kernel->plastic ? ElementStates(kernel) : 0,
-                     .hold        = HoldsVolume(kernel) ? PlasticStates(kernel->plastic->hardening) : 0,
+                     .hold        = HoldsVolume(kernel) ? LawStates(kernel->plastic) : 0,
                      .constants   = constants};
 }
 

@@ -397,6 +397,24 @@ static void Store(const Umat *umat, const UmatData *x, int stride, double *next)
   for (int k = 0; k < umat->n_states; k++) next[(UMAT_STATES + k) * stride] = x->statev[k];
 }
 
+/* Returns how far the equivalent Kirchhoff stress is above 2/3 of the slope with which it grows along its own
+   direction, 0 where it is below, see volumehold.h. T: the stress */
+static double Unheld(const UmatPlace *place, const UmatData *x, double J, const double T[9])
+{
+  const double mean   = (T[0] + T[4] + T[8]) / 3;
+  double       square = 0, slope = 0, direction[9];
+
+  for (int k = 0; k < 9; k++) {
+    direction[k] = T[k] - (k % 4 == 0) * mean;
+    square += direction[k] * direction[k];
+  }
+  if (square == 0) return 0;
+  for (int r = 0; r < 9; r++)
+    for (int s = 0; s < 9; s++)
+      slope += direction[r] * J * Tangent(place, x, r / 3, r % 3, s / 3, s % 3) * direction[s];
+  return fmax(0, sqrt(1.5 * square) - slope / square); /* 3/2 slope / square in tension */
+}
+
 /*@
   UmatPoint - computes stress and tangent of a point, and the state after the increment.
 
@@ -414,14 +432,15 @@ static void Store(const Umat *umat, const UmatData *x, int stride, double *next)
 . P    - first Piola-Kirchhoff stress; with small strains the stress
 . A    - symmetric part of the tangent dP_r/dH_s at MATERIAL_TANGENT_INDEX(r, s), or NULL
 . skew - its skew part at UMAT_SKEW_INDEX(r, s), or NULL without A
-- next - the state at H, or NULL; it may be the same array as state
+. next - the state at H, or NULL; it may be the same array as state
+- unheld - the modulus by which J is to be held within an element (volumehold.h), 0: none; or NULL
 
   Note:
-  P and A are 0 where it does not return UMAT_FINE. The routine is not called where nothing has changed and no tangent
-  is asked for.
+  P, A and unheld are 0 where it does not return UMAT_FINE. The routine is not called where nothing has changed and no
+  tangent is asked for; unheld is 0 then.
 @*/
-UmatFault UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const double *state, int stride,
-                    double *W, double P[9], double A[], double skew[], double *next)
+UmatFault UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const double *state, int stride, double *W,
+                    double P[9], double A[], double skew[], double *next, double *unheld)
 {
   UmatData  x;
   UmatFault fault = UMAT_FINE;
@@ -434,6 +453,7 @@ UmatFault UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const
   memset(P, 0, 9 * sizeof *P);
   if (A) memset(A, 0, MATERIAL_TANGENT_SIZE * sizeof *A);
   if (A) memset(skew, 0, UMAT_SKEW_SIZE * sizeof *skew);
+  if (unheld) *unheld = 0;
   *W = 0;
   if (!(J > 0)) return UMAT_INVERTED;
   if (!same) {
@@ -449,6 +469,7 @@ UmatFault UmatPoint(Umat *umat, const UmatPlace *place, const double H[9], const
   *W = x.energy[0] + x.energy[1] + x.energy[2];
   Multiply(T, inverse, 1, P);
   if (A) PiolaTangent(place, &x, inverse, J, T, A, skew);
+  if (unheld && !same) *unheld = Unheld(place, &x, J, T);
   if (next) Store(umat, &x, stride, next);
   return UMAT_FINE;
 }

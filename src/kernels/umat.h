@@ -13,7 +13,8 @@
    so that routines which set up their states where both are 1 do so once. Temperature, fields, LAYER and KSPT are 0.
 
    State of a point: F - 1 at 3 i + I, stress (xx yy zz xy yz xz), strain in Abaqus's components, SSE, SPD and SCD, then
-   STATEV. Zero is the virgin state. */
+   STATEV. Elements that hold J within (volumehold.h) have UMAT_HOLD numbers more: those of PLASTIC_HOLD, then the
+   largest modulus that UmatPoint() has told. Zero is the virgin state. */
 #pragma once
 
 enum {
@@ -21,6 +22,7 @@ enum {
   UMAT_STRAIN     = 15,
   UMAT_ENERGY     = 21,
   UMAT_STATES     = 24,
+  UMAT_HOLD       = 3,
   UMAT_MAX_STATES = 100, /* STATEV of a point */
   UMAT_MESSAGE    = 300,
   UMAT_SKEW_SIZE  = 36 /* of the skew part of a tangent */
@@ -56,6 +58,6 @@ int  UmatStates(const Umat *);
 void UmatSetUnsymmetric(Umat *);
 int  UmatIsUnsymmetric(const Umat *);
 UmatFault   UmatPoint(Umat *, const UmatPlace *, const double H[9], const double *state, int stride, double *W,
-                      double P[9], double A[], double skew[], double *next);
+                      double P[9], double A[], double skew[], double *next, double *unheld);
 int         UmatFaultAt(UmatFault, int point);
 const char *UmatTell(int code, int *point);

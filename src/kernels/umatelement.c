@@ -1,5 +1,6 @@
 /* Routines of users in batches of elements. */
 #include "elementbatch.h"
+#include <math.h>
 #include <string.h>
 
 /* Says where a point is and when. Coordinates are those of the deformed body in finite strains.
@@ -29,7 +30,8 @@ UmatPlace UmatPlaceAt(const Element *e, int finite, const PlasticBatch *plastic,
 }
 
 /* Evaluates a routine of the user at point p, one lane after the other. An element whose routine fails counts as one
-   that is turned inside out, so that the step is taken back. Its first fault is kept. */
+   that is turned inside out, so that the step is taken back. Its first fault is kept. With the next state, the largest
+   modulus by which J is to be held goes on, as that of hardening does: unloading does not end it. */
 void PointUmat(const BatchCall *call, int p, const Lanes H[9], double *next, Lanes *W, Lanes P[9],
                Lanes A[MATERIAL_TANGENT_SIZE])
 {
@@ -38,13 +40,15 @@ void PointUmat(const BatchCall *call, int p, const Lanes H[9], double *next, Lan
   for (int lane = 0; lane < LANES; lane++) {
     const UmatPlace place =
       UmatPlaceAt(call->e, call->finite, plastic, call->part + lane, p, call->X + lane, call->u + lane, KERNEL_LANES);
-    const size_t at = (size_t)p * call->states * KERNEL_LANES + lane;
-    double       h[9], energy, stress[9], tangent[MATERIAL_TANGENT_SIZE], skew[UMAT_SKEW_SIZE];
-    UmatFault    fault;
+    const size_t  at      = (size_t)p * call->states * KERNEL_LANES + lane;
+    double *const largest = next && call->hold ? &next[at + (size_t)(call->hold + PLASTIC_HOLD) * KERNEL_LANES] : NULL;
+    double        h[9], energy, stress[9], tangent[MATERIAL_TANGENT_SIZE], skew[UMAT_SKEW_SIZE], unheld;
+    UmatFault     fault;
 
     for (int r = 0; r < 9; r++) h[r] = H[r][lane];
     fault = UmatPoint(plastic->umat, &place, h, &call->state[at], KERNEL_LANES, &energy, stress, A ? tangent : NULL,
-                      skew, next ? &next[at] : NULL);
+                      skew, next ? &next[at] : NULL, largest ? &unheld : NULL);
+    if (largest) *largest = fmax(*largest, unheld);
     if (call->fault && !call->fault[lane]) call->fault[lane] = UmatFaultAt(fault, place.point);
     if (W) (*W)[lane] = energy;
     for (int r = 0; r < 9 && P; r++) P[r][lane] = stress[r];

@@ -18,11 +18,14 @@ SLIDING = SCENES / "../../runs/slide_cylinder.yaml"
 PUSHED = SCENES / "tool.yaml"
 # A punch is pushed into a plastic block and let go: plastic states and unknowns of a tool are kept.
 PUSHED_OVERRIDES = [
-    "bodies.0.material={law: von_mises, E: 1000, nu: 0.3, yield: 30, hardening: {linear: 20}}", "mesh.order=1",
+    "bodies.0.material={law: von_mises, E: 1000, nu: 0.3, yield: 30, hardening: {linear: 20}}",
     "contact.0.master={cylinder: {point: [4.2, 8.2], radius: 3, free: [uy], force: "
     "[0, -150], history: [[0, 0], [0.7, 1], [1, 0.2]]}}", "contact.0.penalty={scale: 100}",
     "stepping={control: fixed, initial: 0.04}"
 ]
+# Elements that hold J within, each with a state of its own: fbar, mixed with pressures of nodes, mixed with its own
+ELEMENTS = {"plastic": ["mesh.order=1"], "plastic_nodal": ["mesh.order=1", "mesh.parameters.tri=1"],
+            "plastic_mixed": ["mesh.order=2"]}
 BATCH = pathlib.Path(__file__).resolve().parents[2] / "runs/batch"
 COUNTS = ("step", "newton", "attempts", "contact_nodes", "nodes_in", "nodes_out")
 # What summary.json may say differently of a run in parts: time, memory, and how often it went on. On other ranks also
@@ -33,11 +36,11 @@ SHORT = ("stepping.initial=0.06", "output={every: 1, checkpoint: 1}")
 OF_RANKS = ("ranks", "partition", "linear.largest_residual", "certificate.residual", "certificate.force_balance",
             "certificate.moment_balance")
 
-args = arguments(("part", "what is shown", ("kills", "sliding", "plastic", "signals", "refusals", "flips", "states",
-                                            "options")),
+args = arguments(("part", "what is shown", ("kills", "sliding", *ELEMENTS, "signals", "refusals", "flips",
+                                            "states", "options")),
                  ("count", "how many kills, or flipped bits"))
 out = pathlib.Path(args.out)
-SCENE = PUSHED if args.part == "plastic" else SLIDING
+SCENE = PUSHED if args.part in ELEMENTS else SLIDING
 check = Check()
 
 
@@ -160,7 +163,7 @@ def wait_for_rows(process, directory, n):
 
 def plastic():
     """Kills with plastic states and a tool that is pushed; every other one goes on on one rank, to the last bit."""
-    kills([*PUSHED_OVERRIDES, "output={every: 1, checkpoint: 1}"], one=2, estimates=1e-5)
+    kills([*PUSHED_OVERRIDES, *ELEMENTS[args.part], "output={every: 1, checkpoint: 1}"], one=2, estimates=1e-5)
 
 
 def kills(overrides=SHORT, one=0, estimates=1e-7, zeros=()):
@@ -552,7 +555,7 @@ def states():
 {
     "kills": kills,
     "sliding": sliding,
-    "plastic": plastic,
+    **dict.fromkeys(ELEMENTS, plastic),
     "signals": signals,
     "refusals": refusals,
     "flips": flips,

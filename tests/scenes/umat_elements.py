@@ -1,6 +1,6 @@
 """Routines of users (law: umat) in every kind of element: they agree with the laws of the program in plane strain,
 about an axis and in space, in contact and on any ranks, and the tangent of the scene is the derivative of its
-residual."""
+residual. Flat fbar elements in a neck carry the force of elements of second order."""
 import pathlib
 import re
 import subprocess
@@ -87,4 +87,13 @@ for element in ELEMENTS:
         weakened = routine("neo_hookean.c", [MU, LAMBDA, 0, 0.5], 0, ", unsymmetric: true")
         jacobian("damage", damage, "small", element, (0.01, 0.02))
         jacobian("weakened", weakened, "finite", element, (0.3, 0.2))
+if args.geometry == "axisymmetric":
+    ends = []
+    for name, more in (("flat", ["mesh.parameters={nr: 8, nl: 60, progression: 1.06}", "bodies.0.formulation=fbar"]),
+                       ("second order", ["mesh.parameters={nr: 4, nl: 30, progression: 1.12}", "mesh.order=2",
+                                         "bodies.0.formulation=full"])):
+        finished = run(args, SCENES / "necking.yaml", "-quiet", "-trust", out=f"neck {name}", overrides=[
+            f"bodies.0.material={routine('j2.f', [E, NU, 600, 150], 1)}", "loads.0.uy=3.5", "stepping.dt_max=0.04", *more])
+        ends.append(finished.steps()[-1]["force"])
+    check.near("flat fbar elements in a neck: force over that of second order", ends[0] / ends[1], 1, 0.005)
 check.finish()

@@ -1,7 +1,7 @@
 /* Shows that mixed triangles and tetrahedra, whose corners have pressures, have the exact tangent of their force with
- * every law and give the stress of the law in a uniform strain. Those of first order resist no pressure that is the
- * same everywhere: only pressures that differ within an element. Those of second order resist none, and no pressure is
- * without a force. */
+ * every law and give the stress of the law in a uniform strain. An accepted plastic state keeps force and energy. Those
+ * of first order resist no pressure that is the same everywhere: only pressures that differ within an element. Those of
+ * second order resist none, and no pressure is without a force. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -15,7 +15,12 @@
 
 enum { MAX_DOFS = 42 };
 static const double    young = 3, length = 0.7, infinite = 0.5;
-static const Hardening hardening = {.yield = 0.05, .linear = 0.3};
+static const Hardening hardenings[] = {
+  {.yield = 0.02, .linear = 0.3},
+  {.yield = 0.02, .linear = 0.002}, /* so flat that elements hold J at their points */
+};
+static const PlasticBatch hardened = {.hardening = &hardenings[0], .dt = 1},
+                          flat     = {.hardening = &hardenings[1], .dt = 1};
 
 typedef struct {
   KernelCase   kernel;
@@ -41,7 +46,16 @@ static double Random(void)
   return (double)(state >> 8) / (1 << 24) - 0.5;
 }
 
-/* An element with corners moved at random, strains of some hundredths, and pressures of some tenths of the modulus */
+/* Displacements with strains of some hundredths and pressures of some tenths of the modulus, at random */
+static void Deform(Case *c)
+{
+  const int order = ElementGet(c->kernel.type)->order;
+
+  for (int k = 0; k < c->dofs * KERNEL_LANES; k++)
+    c->u[k] = k < c->n * c->dim * KERNEL_LANES ? 0.1 / order * Random() : length * Random();
+}
+
+/* An element with corners moved at random. One that yields has flowed before. */
 static void CaseCreate(Case *c, KernelCase kernel, double nu)
 {
   const Element *e = ElementGet(kernel.type);
@@ -51,8 +65,12 @@ static void CaseCreate(Case *c, KernelCase kernel, double nu)
   c->material           = ExampleMaterial(kernel.law, young, nu);
   c->kernel.length      = length;
   c->kernel.n_constants = c->material.n_constants;
-  c->plastic            = (PlasticBatch){.hardening = &hardening, .dt = 1, .state = c->state};
-  if (kernel.law == MATERIAL_VON_MISES) c->kernel.plastic = &c->plastic;
+  if (kernel.plastic) {
+    c->plastic        = *kernel.plastic;
+    c->plastic.state  = c->state;
+    c->kernel.plastic = &c->plastic;
+    assert_int_equal(ElementStatePoints(&kernel), 1);
+  }
   c->n         = e->nodes;
   c->pressures = e->corners;
   c->dim       = e->dim;
@@ -61,20 +79,24 @@ static void CaseCreate(Case *c, KernelCase kernel, double nu)
   assert_int_equal(ElementPressures(&c->kernel), 0);
   for (int lane = 0; lane < KERNEL_LANES; lane++) {
     for (int k = 0; k < c->material.n_constants; k++) c->constants[k * KERNEL_LANES + lane] = c->material.constants[k];
-    for (int k = 0; k < c->dofs; k++) {
+    for (int k = 0; k < c->dofs; k++)
       c->X[k * KERNEL_LANES + lane] =
         Place(c, k / e->dim)[k % e->dim] + (k % e->dim == 0 ? 3 : 0) + 0.2 / e->order * Random();
-      c->u[k * KERNEL_LANES + lane] = k < c->n * c->dim ? 0.1 / e->order * Random() : length * Random();
-    }
+  }
+  Deform(c);
+  if (kernel.plastic) {
+    ElementAcceptState(&c->kernel, c->X, c->u, c->constants, NULL);
+    for (int lane = 0; lane < KERNEL_LANES; lane++) assert_true(c->state[PLASTIC_STRAIN * KERNEL_LANES + lane] > 0);
+    Deform(c);
   }
 }
 
-/* Triangles in the plane and axisymmetric, and tetrahedra, of both orders, with small strains and every law, and with
-   pressures in the first or second component. Plastic
-   elements of second order have no pressures of nodes. */
+/* Triangles in the plane and axisymmetric, and tetrahedra, of both orders, with small strains, every law and two
+   hardenings, and with pressures in the first or second component. Plastic elements of second order have no pressures
+   of nodes. */
 static int NextCase(KernelCase *kernel)
 {
-  enum { SHAPES = 6 };
+  enum { SHAPES = 6, SMALL = MATERIAL_LAWS, FLAT, LAWS };
   static const struct {
     ElementType type;
     Geometry    geometry;
@@ -84,16 +106,18 @@ static int NextCase(KernelCase *kernel)
   };
   static int next = 0;
 
-  for (; next < SHAPES * (MATERIAL_LAWS + 1); next++) {
-    const int law = next / SHAPES;
+  for (; next < SHAPES * LAWS; next++) {
+    const int         row = next / SHAPES;
+    const MaterialLaw law = row == SMALL ? MATERIAL_LINEAR : row == FLAT ? MATERIAL_VON_MISES : (MaterialLaw)row;
 
     *kernel = (KernelCase){.type        = shapes[next % SHAPES].type,
                            .geometry    = shapes[next % SHAPES].geometry,
-                           .kinematics  = law == MATERIAL_LAWS ? KINEMATICS_SMALL : KINEMATICS_FINITE,
-                           .law         = law == MATERIAL_LAWS ? MATERIAL_LINEAR : (MaterialLaw)law,
+                           .kinematics  = row == SMALL ? KINEMATICS_SMALL : KINEMATICS_FINITE,
+                           .law         = law,
                            .formulation = FORMULATION_MIXED,
                            .component   = next % 2};
-    if (law == MATERIAL_LINEAR || !ElementKernelExists(kernel)) continue;
+    if (law == MATERIAL_VON_MISES) kernel->plastic = row == FLAT ? &flat : &hardened;
+    if (row == MATERIAL_LINEAR || !ElementKernelExists(kernel)) continue;
     if (ElementGet(kernel->type)->order == 2 && MaterialGetLaw(kernel->law)->plastic) {
       assert_true(ElementPressures(kernel) > 0);
       continue;
@@ -176,6 +200,32 @@ static void ForceIsTheDerivativeOfTheEnergy(void **state)
     }
   }
   assert_true(tested >= 2 * 6 * 7);
+}
+
+/* Energy and force are the same after a state was accepted. Accepted again, it stays. */
+static void AcceptedStateStays(void **state)
+{
+  int tested = 0;
+
+  (void)state;
+  for (KernelCase kernel; NextCase(&kernel);) {
+    double f[MAX_DOFS * KERNEL_LANES], W[2][KERNEL_LANES], first[PLASTIC_MAX_STATE * KERNEL_LANES], largest = 0;
+    Case   c;
+
+    if (!kernel.plastic) continue;
+    CaseCreate(&c, kernel, 0.4);
+    ElementKernel(&c.kernel, c.X, c.u, NULL, c.constants, NULL, W[0], c.f, NULL, c.J);
+    ElementAcceptState(&c.kernel, c.X, c.u, c.constants, NULL);
+    ElementKernel(&c.kernel, c.X, c.u, NULL, c.constants, NULL, W[1], f, NULL, c.J);
+    for (int k = 0; k < c.dofs * KERNEL_LANES; k++) largest = fmax(largest, fabs(f[k]));
+    for (int k = 0; k < c.dofs * KERNEL_LANES; k++) assert_near(f[k], c.f[k], 1e-12 * largest);
+    for (int lane = 0; lane < KERNEL_LANES; lane++) assert_near(W[1][lane], W[0][lane], 1e-12 * fabs(W[0][lane]));
+    memcpy(first, c.state, sizeof first);
+    ElementAcceptState(&c.kernel, c.X, c.u, c.constants, NULL);
+    for (int k = 0; k < ElementStates(&c.kernel) * KERNEL_LANES; k++) assert_near(c.state[k], first[k], 0);
+    tested++;
+  }
+  assert_int_equal(tested, 6);
 }
 
 /* In a uniform strain with the pressure of the law nothing acts on the pressures, and the stress is that of the law. */
@@ -289,6 +339,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(TangentIsTheDerivative),
     cmocka_unit_test(ForceIsTheDerivativeOfTheEnergy),
+    cmocka_unit_test(AcceptedStateStays),
     cmocka_unit_test(UniformStrainHasTheStressOfTheLaw),
     cmocka_unit_test(OnlyDifferencesOfPressuresAreResisted),
     cmocka_unit_test(PressuresOfSecondOrderHaveForces),

@@ -11,12 +11,26 @@
    where that is negative. It vanishes where J is what the projection sees, and with the size of the elements. It does
    not lock, as the flow itself takes as much stress times the strain.
 
+   Routines of users do not tell their hardening. Their slope is that of DDSDDE along the deviator of the stress, and c
+   the largest so far of the accepted states.
+
    c is that of the accepted state, a constant of the step. A point has two numbers more in its state: what it carries
    over from earlier c, a stress and an energy, so that an accepted state keeps forces and energies. The stresses have
    no part that the projection sees. */
 #pragma once
 #include "elementbatch.h"
 #include "kernels/hardening.h"
+
+/* Adds what a point of a built-in law needs. */
+LANES_INLINE void AddNeed(const Hardening *hardening, const Lanes *strain, Lanes *sum)
+{
+  for (int lane = 0; lane < LANES; lane++) {
+    double       slope;
+    const double stress = HardeningMost(hardening, (*strain)[lane], &slope);
+
+    (*sum)[lane] += fmax(0, stress - 2 * slope / 3);
+  }
+}
 
 /* Computes the modulus c, 0 where nothing holds. points: of integration */
 LANES_INLINE Lanes HoldModulus(const BatchCall *call, const int points)
@@ -26,12 +40,10 @@ LANES_INLINE Lanes HoldModulus(const BatchCall *call, const int points)
   for (int q = 0; q < points && call->hold; q++) {
     const Lanes strain = CONST_LANE(call->state, q * call->states + PLASTIC_STRAIN);
 
-    for (int lane = 0; lane < LANES; lane++) {
-      double       slope;
-      const double stress = HardeningMost(call->plastic->hardening, strain[lane], &slope);
-
-      sum[lane] += fmax(0, stress - 2 * slope / 3);
-    }
+    if (call->plastic->umat)
+      sum += CONST_LANE(call->state, q * call->states + call->hold + PLASTIC_HOLD);
+    else
+      AddNeed(call->plastic->hardening, &strain, &sum);
   }
   return sum / points;
 }
