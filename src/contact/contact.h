@@ -131,7 +131,8 @@ typedef struct {
 typedef struct {
   const SceneContact *scene;
   ContactSurface      slave, master; /* master NULL: analytic, in scene */
-  int                 n_images;      /* mirror images of the master that it may meet besides, the identity included */
+  int                 n_images;      /* mirror images, as which both surfaces go on; the identity included */
+  int                 n_met; /* of these, the slave may meet so many of the master: all, or the identity alone */
   const SurfaceImage *images;
 } ContactSides;
 

@@ -20,7 +20,8 @@ void ContactPairSides(Contact contact, int p, ContactSides *sides)
   *sides = (ContactSides){.scene    = pair->scene,
                           .slave    = pair->slave,
                           .master   = pair->master,
-                          .n_images = pair->scene->listed ? pair->n_images : 1,
+                          .n_images = pair->n_images,
+                          .n_met    = pair->scene->listed ? pair->n_images : 1,
                           .images   = pair->images};
 }
 
