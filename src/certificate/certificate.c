@@ -62,9 +62,9 @@ PetscErrorCode CertificateCreate(Mesh mesh, Scene scene, Loads loads, Contact co
     if (partner >= 0 && partner < p) continue;
     pair->pair = p;
     ContactPairSides(contact, p, &pair->of);
-    PetscCall(SideCreate(pair->of.slave, loads, pair->of.n_images, pair->of.images, &pair->side[0]));
+    PetscCall(SideCreate(pair->of.slave, loads, pair->of.n_mirrors, pair->of.mirrors, &pair->side[0]));
     if (pair->of.master && partner != p)
-      PetscCall(SideCreate(pair->of.master, loads, pair->of.n_images, pair->of.images, &pair->side[1]));
+      PetscCall(SideCreate(pair->of.master, loads, pair->of.n_mirrors, pair->of.mirrors, &pair->side[1]));
     if (partner == p) pair->side[1] = pair->side[0];
     certificate->n++;
   }
@@ -120,7 +120,7 @@ static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, in
 
   PetscFunctionBeginUser;
   SideBox(own, near);
-  PetscCall(SideShare(pair->side[1 - s], near, pair->of.n_met, pair->of.images, list));
+  PetscCall(SideShare(pair->side[1 - s], near, pair->of.n_images, pair->of.images, list));
   if (!list->n) PetscFunctionReturn(PETSC_SUCCESS);
   look->penetration = certificate->scene->certificate.penetration;
   look->overlap     = overlap;
@@ -154,7 +154,7 @@ static PetscBool SidesMeet(const CertifiedPair *pair, PetscReal overlap)
     reach = PetscMax(reach, pair->side[s]->surface->max_extent);
   }
   if (BoxesMeet(box[0], box[1], reach)) return PETSC_TRUE;
-  for (int m = 1; m < pair->of.n_met; m++) {
+  for (int m = 1; m < pair->of.n_images; m++) {
     Place corner[2], to[2] = {{0}};
 
     for (int k = 0; k < 2; k++)

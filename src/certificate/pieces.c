@@ -65,16 +65,16 @@ static const PetscReal *SurfaceCoords(ContactSurface surface)
 }
 
 /* Finds the axes across which planes of symmetry reflect the surface at its points. */
-static void FindPlanes(Side side, int n_images, const SurfaceImage *images)
+static void FindPlanes(Side side, int n_mirrors, const SurfaceImage *mirrors)
 {
   const Mesh       mesh   = side->surface->mesh;
   const PetscReal *coords = SurfaceCoords(side->surface);
 
   for (PetscInt i = 0; i < side->n_points; i++) {
-    for (int plane = 1; plane < n_images; plane <<= 1) {
-      if (!SurfaceOnPlane(mesh, &images[plane], &coords[side->node[i] * side->dim])) continue;
+    for (int plane = 1; plane < n_mirrors; plane <<= 1) {
+      if (!SurfaceOnPlane(mesh, &mirrors[plane], &coords[side->node[i] * side->dim])) continue;
       for (int d = 0; d < side->dim; d++)
-        side->points[i].reflected[d] = side->points[i].reflected[d] || images[plane].sign[d] < 0;
+        side->points[i].reflected[d] = side->points[i].reflected[d] || mirrors[plane].sign[d] < 0;
     }
   }
 }
@@ -234,15 +234,15 @@ static PetscErrorCode NamePoints(Side side)
   Collective
 
   Input Parameters:
-+ surface  - borrowed
-. loads    - give the places of tools; borrowed
-. n_images - number of mirror images
-- images   - of the pair; the surface goes on beyond their planes
++ surface   - borrowed
+. loads     - give the places of tools; borrowed
+. n_mirrors - number of mirror images
+- mirrors   - of the pair; the surface goes on beyond their planes
 
   Output Parameter:
 . out - free it with SideDestroy()
 @*/
-PetscErrorCode SideCreate(ContactSurface surface, Loads loads, int n_images, const SurfaceImage *images, Side *out)
+PetscErrorCode SideCreate(ContactSurface surface, Loads loads, int n_mirrors, const SurfaceImage *mirrors, Side *out)
 {
   PetscInt first, end, *number, n = SurfaceNodes(surface);
   Side     side;
@@ -260,7 +260,7 @@ PetscErrorCode SideCreate(ContactSurface surface, Loads loads, int n_images, con
   PetscCall(PetscCalloc1((end - first) * PIECE_MAX * 3, &side->corner));
   for (PetscInt f = first; f < end; f++) DivideFace(side, f, number);
   PetscCall(PetscCalloc1(side->n_points, &side->points));
-  FindPlanes(side, n_images, images);
+  FindPlanes(side, n_mirrors, mirrors);
   PetscCall(MeasurePoints(side, number));
   PetscCall(PetscFree(number));
   PetscCall(NamePoints(side));

@@ -131,9 +131,10 @@ typedef struct {
 typedef struct {
   const SceneContact *scene;
   ContactSurface      slave, master; /* master NULL: analytic, in scene */
-  int                 n_images;      /* mirror images, as which both surfaces go on; the identity included */
-  int                 n_met; /* of these, the slave may meet so many of the master: all, or the identity alone */
+  int                 n_images;      /* mirror images of the master that it may meet besides, the identity included */
   const SurfaceImage *images;
+  int                 n_mirrors; /* images as which both surfaces go on, the identity included */
+  const SurfaceImage *mirrors;
 } ContactSides;
 
 typedef struct _n_Contact *Contact;

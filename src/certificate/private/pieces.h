@@ -75,7 +75,7 @@ typedef struct {
   Piece   *pieces;
 } PieceList;
 
-PetscErrorCode SideCreate(ContactSurface, Loads, int n_images, const SurfaceImage *, Side *);
+PetscErrorCode SideCreate(ContactSurface, Loads, int n_mirrors, const SurfaceImage *, Side *);
 PetscErrorCode SideDestroy(Side *);
 PetscErrorCode SideMove(Side, const PetscReal *const u[2], const PetscReal t[2]);
 PetscErrorCode SideMeasure(Side, const PetscReal *closed);
