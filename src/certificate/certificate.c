@@ -62,8 +62,9 @@ PetscErrorCode CertificateCreate(Mesh mesh, Scene scene, Loads loads, Contact co
     if (partner >= 0 && partner < p) continue;
     pair->pair = p;
     ContactPairSides(contact, p, &pair->of);
-    PetscCall(SideCreate(pair->of.slave, loads, &pair->side[0]));
-    if (pair->of.master && partner != p) PetscCall(SideCreate(pair->of.master, loads, &pair->side[1]));
+    PetscCall(SideCreate(pair->of.slave, loads, pair->of.n_mirrors, pair->of.mirrors, &pair->side[0]));
+    if (pair->of.master && partner != p)
+      PetscCall(SideCreate(pair->of.master, loads, pair->of.n_mirrors, pair->of.mirrors, &pair->side[1]));
     if (partner == p) pair->side[1] = pair->side[0];
     certificate->n++;
   }

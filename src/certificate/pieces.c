@@ -5,6 +5,9 @@
 
 /* Normals that turn from a piece's by more than this belong to a sharp edge. A ring of eight pieces is round. */
 #define PIECE_COSINE 0.92
+/* A surface lies in a plane of symmetry, and does not go on beyond it, where less than this part of its direction lies
+   along the plane: round-off of its places. */
+#define PIECE_IN_PLANE 1e-6
 
 /* Faces of this rank, a tool's in equal parts. */
 static void OwnFaces(ContactSurface surface, PetscInt *first, PetscInt *end)
@@ -54,6 +57,39 @@ static PetscErrorCode SumPoints(Side side, int n, PetscReal *values)
     for (int k = 0; k < n; k++) values[n * i + k] = all[n * side->node[i] + k];
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static const PetscReal *SurfaceCoords(ContactSurface surface)
+{
+  return surface->rigid ? surface->rigid->coords : surface->mesh->coords;
+}
+
+/* Finds the axes across which planes of symmetry reflect the surface at its points. */
+static void FindPlanes(Side side, int n_mirrors, const SurfaceImage *mirrors)
+{
+  const Mesh       mesh   = side->surface->mesh;
+  const PetscReal *coords = SurfaceCoords(side->surface);
+
+  for (PetscInt i = 0; i < side->n_points; i++) {
+    for (int plane = 1; plane < n_mirrors; plane <<= 1) {
+      if (!SurfaceOnPlane(mesh, &mirrors[plane], &coords[side->node[i] * side->dim])) continue;
+      for (int d = 0; d < side->dim; d++)
+        side->points[i].reflected[d] = side->points[i].reflected[d] || mirrors[plane].sign[d] < 0;
+    }
+  }
+}
+
+/* Adds the reflected faces to a direction of the surface at a point, which is the mean over all then. */
+static void AddReflected(const Point *point, double direction[3])
+{
+  double kept[3], whole = 0, rest = 0;
+
+  for (int d = 0; d < 3; d++) {
+    kept[d] = point->reflected[d] ? 0 : direction[d];
+    whole += direction[d] * direction[d];
+    rest += kept[d] * kept[d];
+  }
+  if (rest > PIECE_IN_PLANE * PIECE_IN_PLANE * whole) memcpy(direction, kept, sizeof(kept));
 }
 
 /* Makes the pieces of one face. */
@@ -116,8 +152,7 @@ static void MeasureTool(Side side, const PetscInt *number, PetscReal *sum)
       Place X[3] = {{0}}, normal;
 
       for (int a = 0; a < side->dim; a++)
-        for (int d = 0; d < side->dim; d++)
-          X[a][d] = surface->rigid->coords[face->nodes[node[k][a]] * side->dim + d];
+        for (int d = 0; d < side->dim; d++) X[a][d] = surface->rigid->coords[face->nodes[node[k][a]] * side->dim + d];
       PieceNormal(side->dim, (const Place *)X, normal);
       for (int a = 0; a < side->dim; a++) {
         const PetscInt i     = number[face->nodes[node[k][a]]];
@@ -132,6 +167,10 @@ static void MeasureTool(Side side, const PetscInt *number, PetscReal *sum)
         }
       }
     }
+  }
+  for (PetscInt i = 0; i < side->n_points; i++) {
+    AddReflected(&side->points[i], side->points[i].turns);
+    AddReflected(&side->points[i], side->points[i].ridge_turns);
   }
 }
 
@@ -195,13 +234,15 @@ static PetscErrorCode NamePoints(Side side)
   Collective
 
   Input Parameters:
-+ surface - borrowed
-- loads   - give the places of tools; borrowed
++ surface   - borrowed
+. loads     - give the places of tools; borrowed
+. n_mirrors - number of mirror images
+- mirrors   - of the pair; the surface goes on beyond their planes
 
   Output Parameter:
 . out - free it with SideDestroy()
 @*/
-PetscErrorCode SideCreate(ContactSurface surface, Loads loads, Side *out)
+PetscErrorCode SideCreate(ContactSurface surface, Loads loads, int n_mirrors, const SurfaceImage *mirrors, Side *out)
 {
   PetscInt first, end, *number, n = SurfaceNodes(surface);
   Side     side;
@@ -219,6 +260,7 @@ PetscErrorCode SideCreate(ContactSurface surface, Loads loads, Side *out)
   PetscCall(PetscCalloc1((end - first) * PIECE_MAX * 3, &side->corner));
   for (PetscInt f = first; f < end; f++) DivideFace(side, f, number);
   PetscCall(PetscCalloc1(side->n_points, &side->points));
+  FindPlanes(side, n_mirrors, mirrors);
   PetscCall(MeasurePoints(side, number));
   PetscCall(PetscFree(number));
   PetscCall(NamePoints(side));
@@ -252,7 +294,7 @@ PetscErrorCode SideDestroy(Side *side)
 static void PlacePoints(Side side, int state, const PetscReal *u, PetscReal t)
 {
   const ContactSurface surface = side->surface;
-  const PetscReal     *coords  = surface->rigid ? surface->rigid->coords : surface->mesh->coords;
+  const PetscReal     *coords  = SurfaceCoords(surface);
 
   for (PetscInt i = 0; i < side->n_points; i++) {
     Point         *point = &side->points[i];
@@ -292,6 +334,8 @@ static PetscErrorCode PointsAround(Side side)
   }
   PetscCall(SumPoints(side, AROUND, sum));
   for (PetscInt i = 0; i < side->n_points; i++) {
+    for (int state = 0; state < 2; state++) AddReflected(&side->points[i], &sum[AROUND * i + 3 * state]);
+    AddReflected(&side->points[i], &sum[AROUND * i + AROUND_RIDGE]);
     memcpy(side->points[i].normal, &sum[AROUND * i], AROUND_NORMALS * sizeof(PetscReal));
     memcpy(side->points[i].ridge, &sum[AROUND * i + AROUND_RIDGE], sizeof(Place));
     side->points[i].side = sum[AROUND * i + AROUND_NORMALS] / side->points[i].number;
@@ -312,8 +356,7 @@ static void FindTips(Side side)
     point->tip = fmin(PIECE_TIP, sqrt(1 - cosine * cosine) / fmax(cosine, 0.5));
   }
   for (PetscInt k = 0; k < side->n_pieces; k++) {
-    for (int a = 0; a < side->dim; a++)
-      side->pieces[k].tip[a] = side->points[side->corner[3 * k + a]].tip;
+    for (int a = 0; a < side->dim; a++) side->pieces[k].tip[a] = side->points[side->corner[3 * k + a]].tip;
   }
 }
 

@@ -133,6 +133,8 @@ typedef struct {
   ContactSurface      slave, master; /* master NULL: analytic, in scene */
   int                 n_images;      /* mirror images of the master that it may meet besides, the identity included */
   const SurfaceImage *images;
+  int                 n_mirrors; /* images as which both surfaces go on, the identity included */
+  const SurfaceImage *mirrors;
 } ContactSides;
 
 typedef struct _n_Contact *Contact;

@@ -73,15 +73,9 @@ PetscInt ContactSideAdd(ContactPair *pair, PetscInt c)
 @*/
 PetscErrorCode ContactEndsFind(ContactPair *pair, Scene scene)
 {
-  SurfaceImage images[SURFACE_MAX_IMAGES];
-  int          n_images = pair->n_images;
-
   PetscFunctionBeginUser;
   if (!ContactSidesServe(pair) || !SceneIsPlastic(scene) || SceneHasFluid(scene)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArraycpy(images, pair->images, SURFACE_MAX_IMAGES));
-  if (pair->scene->find_symmetry)
-    PetscCall(SurfaceImagesFromSupports(pair->mesh, scene, pair->slave, pair->master, &n_images, images));
-  PetscCall(SurfaceFindEnds(pair->slave, pair->fit.feature_angle, n_images, images));
+  PetscCall(SurfaceFindEnds(pair->slave, pair->fit.feature_angle, pair->n_mirrors, pair->mirrors));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -326,6 +326,18 @@ static PetscErrorCode PairTurnMaster(Scene scene, Loads loads, const ContactPair
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds the images as which the surfaces of the pair go on at their corners and ends, on which no fit depends. */
+static PetscErrorCode PairMirrors(Mesh mesh, Scene scene, ContactPair *pair)
+{
+  PetscFunctionBeginUser;
+  pair->n_mirrors = pair->n_images;
+  PetscCall(PetscArraycpy(pair->mirrors, pair->images, SURFACE_MAX_IMAGES));
+  if (pair->scene->find_symmetry)
+    PetscCall(
+      SurfaceImagesFromSupports(mesh, scene, pair->slave, pair->master, PETSC_FALSE, &pair->n_mirrors, pair->mirrors));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Makes the mixing of a pair's multipliers: pressures, and two components of each traction. */
 static PetscErrorCode PairCreateMixing(ContactPair *pair)
 {
@@ -384,7 +396,9 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(PairTurnMaster(scene, loads, pair));
   PetscCall(SurfaceImages(mesh, scene, contact, pair->slave, pair->master, &pair->n_images, pair->images));
   if (contact->find_symmetry && (pair->smoother->fitted || contact->listed)) /* a body may meet its own image */
-    PetscCall(SurfaceImagesFromSupports(mesh, scene, pair->slave, pair->master, &pair->n_images, pair->images));
+    PetscCall(
+      SurfaceImagesFromSupports(mesh, scene, pair->slave, pair->master, PETSC_TRUE, &pair->n_images, pair->images));
+  PetscCall(PairMirrors(mesh, scene, pair));
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));

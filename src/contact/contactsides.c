@@ -17,11 +17,13 @@ void ContactPairSides(Contact contact, int p, ContactSides *sides)
 {
   const ContactPair *pair = &contact->pairs[p];
 
-  *sides = (ContactSides){.scene    = pair->scene,
-                          .slave    = pair->slave,
-                          .master   = pair->master,
-                          .n_images = pair->scene->listed ? pair->n_images : 1,
-                          .images   = pair->images};
+  *sides = (ContactSides){.scene     = pair->scene,
+                          .slave     = pair->slave,
+                          .master    = pair->master,
+                          .n_images  = pair->scene->listed ? pair->n_images : 1,
+                          .images    = pair->images,
+                          .n_mirrors = pair->n_mirrors,
+                          .mirrors   = pair->mirrors};
 }
 
 /* Part of a face within which an open mean gap hides that the other surface stands in the face: an edge of a right

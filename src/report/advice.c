@@ -456,6 +456,9 @@ static const ChangeKind tries[][ADVICE_CHANGES] = {
   [SOLVE_JUMP]        = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK},
   [SOLVE_NAN]         = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK}};
 
+/* What is tried where surfaces cross and no term presses: no penalty and no step acts there. */
+static const ChangeKind unheld[ADVICE_CHANGES] = {CHANGE_SHORTER_MIN, CHANGE_ROLES, CHANGE_FINER_MASTER, CHANGE_CHECK};
+
 /* Does a line name a change already? */
 static int Names(const AdviceLine *line, ChangeKind change)
 {
@@ -513,7 +516,8 @@ static void AddTries(const RunFigures *figures, Advice *advice)
   const Failure     *failure  = &solve->failure;
   ChangePlace        at       = {.figures = figures, .pair = FailedPair(figures), .body = -1, .factor = 1};
   const int          squeezed = failure->squeeze > 0 && failure->squeeze < ADVICE_SQUEEZED;
-  ChangeKind         changes[ADVICE_CHANGES + 1] = {CHANGE_LAW}, *first = squeezed ? changes : changes + 1;
+  ChangeKind         changes[ADVICE_CHANGES + 1] = {CHANGE_LAW};
+  const ChangeKind  *first                       = squeezed ? changes : changes + 1;
 
   memcpy(changes + 1, tries[solve->result], sizeof(tries[0]));
   if (failure->n) at.body = failure->node[0].body;
@@ -527,6 +531,7 @@ static void AddTries(const RunFigures *figures, Advice *advice)
     first     = changes + (deep > ADVICE_DEEP ? 1 : 3); /* without what makes the penalty stiffer */
     at.factor = (double)(deep / ADVICE_DEEP_WANTED);
   }
+  if (solve->result == SOLVE_UNCERTIFIED && at.pair && !at.pair->quality.nodes) first = unheld;
   AddLine(advice, "", &at, first);
   advice->tries = advice->n > 0;
   if (advice->n && advice->lines[0].n > 1 && advice->lines[0].changes[advice->lines[0].n - 1] == CHANGE_CHECK)

@@ -59,8 +59,8 @@ PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, int n_images, const Su
                                 PetscReal *turn, PetscReal *share);
 PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, ContactSurface slave, ContactSurface master,
                              int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
-PetscErrorCode SurfaceImagesFromSupports(Mesh, Scene, ContactSurface slave, ContactSurface master, int *n_images,
-                                         SurfaceImage images[SURFACE_MAX_IMAGES]);
+PetscErrorCode SurfaceImagesFromSupports(Mesh, Scene, ContactSurface slave, ContactSurface master, PetscBool smoothly,
+                                         int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
 PetscBool      SurfaceImageBeyondAxis(const SurfaceImage *);
 void           SurfaceReflect(const SurfaceImage *, int dim, const PetscReal *x, PetscReal *y);
 Facet          SurfaceImageFacet(const Facet *, const SurfaceImage *);

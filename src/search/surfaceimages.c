@@ -213,8 +213,9 @@ static PetscBool ToolCrosses(const Motion *motion, int axis)
 /* What a surface does at a plane; of all ranks. */
 typedef struct {
   PetscReal below, above; /* how far its nodes are on either side (length) */
-  int       ends,
-    breaks; /* it has an edge there; an edge that is free to leave the plane, or from which its image turns away */
+  int       ends;         /* it has an edge there */
+  int       leaves;       /* such an edge is free to leave the plane */
+  int       turns;        /* its image turns away from such an edge */
 } PlaneEnd;
 
 /* Angle between a face and its image. */
@@ -239,7 +240,7 @@ static PetscErrorCode SurfaceAtPlane(ContactSurface surface, int axis, PetscReal
 {
   const PetscReal *coords  = surface->rigid ? surface->rigid->coords : surface->mesh->coords;
   const PetscReal  flat    = SURFACE_FLATNESS * surface->mesh->size;
-  PetscReal        most[4] = {0, 0, 0, 0};
+  PetscReal        most[5] = {0, 0, 0, 0, 0};
 
   PetscFunctionBeginUser;
   for (PetscInt f = 0; f < surface->n_faces; f++) {
@@ -260,13 +261,13 @@ static PetscErrorCode SurfaceAtPlane(ContactSurface surface, int axis, PetscReal
     }
     if (on < surface->mesh->dim - 1) continue;
     most[2] = 1;
+    if (free) most[3] = 1;
     /* Nodes' turn is half of that between their faces. A tool's own turn is not known. */
-    if (free || (surface->group &&
-                 ImageTurn(surface, face, coords, axis) > SURFACE_SMOOTH_TURN + 2 * SURFACE_SMOOTHNESS * bend))
-      most[3] = 1;
+    if (surface->group && ImageTurn(surface, face, coords, axis) > SURFACE_SMOOTH_TURN + 2 * SURFACE_SMOOTHNESS * bend)
+      most[4] = 1;
   }
-  if (surface->group) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 4, MPIU_REAL, MPI_MAX, surface->mesh->comm));
-  *end = (PlaneEnd){most[0], most[1], most[2] > 0, most[3] > 0};
+  if (surface->group) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 5, MPIU_REAL, MPI_MAX, surface->mesh->comm));
+  *end = (PlaneEnd){most[0], most[1], most[2] > 0, most[3] > 0, most[4] > 0};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -286,15 +287,15 @@ static PetscErrorCode HeldNodes(Mesh mesh, Scene scene, int component, PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Do slave and master continue beyond a plane as their images? */
+/* Do slave and master continue beyond a plane as their images? Where asked, they have to do so smoothly. */
 static PetscErrorCode PairContinues(Mesh mesh, Scene scene, ContactSurface slave, ContactSurface master, int axis,
-                                    PetscReal position, PetscBool *continues)
+                                    PetscReal position, PetscBool smoothly, PetscBool *continues)
 {
   ContactSurface  side[] = {slave, master};
   const PetscReal flat   = SURFACE_FLATNESS * mesh->size;
   PetscReal      *size, *turn, *share;
   PetscBool      *held;
-  PlaneEnd        whole = {0, 0, 0, 0};
+  PlaneEnd        whole = {0, 0, 0, 0, 0};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(mesh->n_nodes, &size, mesh->n_nodes, &turn, mesh->n_nodes, &share, mesh->n_nodes, &held));
@@ -305,20 +306,21 @@ static PetscErrorCode PairContinues(Mesh mesh, Scene scene, ContactSurface slave
     if (!side[i]) continue;
     if (side[i]->group) PetscCall(SurfaceNodeSizes(side[i], scene->geometry, 0, NULL, size, turn, share));
     PetscCall(SurfaceAtPlane(side[i], axis, position, held, turn, &end));
-    if (side[i]->rigid) end.breaks = end.breaks || ToolCrosses(&scene->bodies[side[i]->body].motion, axis);
+    if (side[i]->rigid) end.leaves = ToolCrosses(&scene->bodies[side[i]->body].motion, axis);
     whole.below  = PetscMax(whole.below, end.below);
     whole.above  = PetscMax(whole.above, end.above);
     whole.ends   = whole.ends || end.ends;
-    whole.breaks = whole.breaks || end.breaks;
+    whole.leaves = whole.leaves || end.leaves || (smoothly && end.turns);
   }
-  *continues = (PetscBool)(whole.ends && !whole.breaks && PetscMin(whole.below, whole.above) <= flat);
+  *continues = (PetscBool)(whole.ends && !whole.leaves && PetscMin(whole.below, whole.above) <= flat);
   PetscCall(PetscFree4(size, turn, share, held));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Adds a plane that a support shows, if slave and master continue beyond it, and unless there are two already. */
 static PetscErrorCode AddPlaneOfSupport(Mesh mesh, Scene scene, ContactSurface slave, ContactSurface master, int axis,
-                                        PetscReal position, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES])
+                                        PetscReal position, PetscBool smoothly, int *n_images,
+                                        SurfaceImage images[SURFACE_MAX_IMAGES])
 {
   PetscBool continues = PETSC_FALSE;
   int       taken     = 0;
@@ -327,7 +329,7 @@ static PetscErrorCode AddPlaneOfSupport(Mesh mesh, Scene scene, ContactSurface s
   for (int bit = 1; bit < *n_images; bit <<= 1) taken += images[bit].sign[axis] < 0;
   if (taken == SURFACE_AXIS_PLANES || ImagesHavePlane(axis, position, mesh->size, *n_images, images))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PairContinues(mesh, scene, slave, master, axis, position, &continues));
+  PetscCall(PairContinues(mesh, scene, slave, master, axis, position, smoothly, &continues));
   if (continues) ImagesAddPlane(axis, position, n_images, images);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -354,7 +356,7 @@ that ended there would hand the slave's forces wrongly to the master's nodes. A 
 scene is such a plane too.
 @*/
 PetscErrorCode SurfaceImagesFromSupports(Mesh mesh, Scene scene, ContactSurface slave, ContactSurface master,
-                                         int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES])
+                                         PetscBool smoothly, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES])
 {
   PetscFunctionBeginUser;
   for (int s = 0; s < scene->n_supports; s++) {
@@ -367,7 +369,7 @@ PetscErrorCode SurfaceImagesFromSupports(Mesh mesh, Scene scene, ContactSurface 
     if (g < 0 || axis == mesh->dim) continue;
     PetscCall(GroupPlanes(mesh, &mesh->groups[g], axis, &n, position));
     for (int k = 0; k < n; k++)
-      PetscCall(AddPlaneOfSupport(mesh, scene, slave, master, axis, position[k], n_images, images));
+      PetscCall(AddPlaneOfSupport(mesh, scene, slave, master, axis, position[k], smoothly, n_images, images));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -108,6 +108,19 @@ JOBS = [
         "contact.0.symmetry=[symmetry, side]",
         "supports=[{surface: symmetry, uz: 0}, {surface: side, ux: 0}, {surface: groove_bottom, ux: 0, uy: 0, uz: 0}]"
     ]),
+    # Tips on the axis and on planes of symmetry
+    Job("cone_pressed", "blunt cone pressed into rubber", [
+        Answer("force", 24.095, 0.1, "Sneddon"),
+    ], steps=8, picture=["--mirror", "x"]),
+    Job("cone_dent", "diamond cone pressed into steel", [
+        Answer("force", 440.0, 1, "limit"),
+    ], steps=45, picture=["--mirror", "x"]),
+    Job("wedge_pressed", "half of a wedge pressed into rubber", [
+        Answer("force", 0.8027, 0.7, "limit"),
+    ], steps=8, picture=["--mirror", "x"]),
+    Job("pyramid_quarter", "quarter of a pyramid pressed into rubber", [
+        Answer("force", 13.176, 0.1, "limit"),
+    ], steps=8),
     # Machine parts
     Job("three_spheres", "three rubber balls in a column", [
         Answer("peak_south", 0.7953, 0.1, "limit"),

@@ -413,6 +413,16 @@ static void test_order(void **state)
   c.pair.quality.max_penetration_over_h = 0;
   AdviceCollect(&c.figures, &advice);
   assert_int_equal(advice.lines[0].changes[0], CHANGE_SHORTER_MIN);
+  c.way.failed.solve.result  = SOLVE_UNCERTIFIED;
+  c.way.failed.solve.failure = (Failure){.n = 1, .node = {{.body = -1}}, .inverted_body = -1};
+  for (int nodes = 0; nodes < 2; nodes++) { /* where nothing presses, no penalty acts */
+    int stiffer = 0;
+
+    c.pair.quality.nodes = nodes;
+    AdviceCollect(&c.figures, &advice);
+    for (int k = 0; k < advice.lines[0].n; k++) stiffer |= advice.lines[0].changes[k] == CHANGE_STIFFER;
+    assert_int_equal(stiffer, nodes);
+  }
 }
 
 static void test_sides(void **state)

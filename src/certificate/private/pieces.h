@@ -41,12 +41,13 @@ typedef struct {
   double    size, height; /* means of the faces around (length) */
   FaceMarks marks;        /* of all faces around */
   int       body;
-  int       closed; /* contact pressed there at one of the states */
-  int       inside; /* it stands in the other side at the end, PointFinding() */
-  double    number; /* of the pieces around */
-  double    side;   /* mean of their longest sides at the end (length) */
-  int       order;  /* of their faces */
-  double    tip;    /* height of the edge there over a chord between its flanks, over half the chord: tan(turn/2) */
+  int       closed;       /* contact pressed there at one of the states */
+  int       inside;       /* it stands in the other side at the end, PointFinding() */
+  double    number;       /* of the pieces around, without images */
+  int       reflected[3]; /* axes across which planes of symmetry reflect the surface there */
+  double    side;         /* mean of their longest sides at the end (length) */
+  int       order;        /* of their faces */
+  double    tip; /* height of the edge there over a chord between its flanks, over half the chord: tan(turn/2) */
 } Point;
 
 /* An edge of pieces. In the plane it is the piece itself. */
@@ -74,7 +75,7 @@ typedef struct {
   Piece   *pieces;
 } PieceList;
 
-PetscErrorCode SideCreate(ContactSurface, Loads, Side *);
+PetscErrorCode SideCreate(ContactSurface, Loads, int n_mirrors, const SurfaceImage *, Side *);
 PetscErrorCode SideDestroy(Side *);
 PetscErrorCode SideMove(Side, const PetscReal *const u[2], const PetscReal t[2]);
 PetscErrorCode SideMeasure(Side, const PetscReal *closed);

@@ -61,16 +61,17 @@ typedef struct {
   FitSettings         fit;           /* fit.fitted: the master is fitted, so lists hold fits and timings count as fit */
   ContactSurface      slave, master; /* master NULL: analytic, in scene */
   const MeshTool     *tool;          /* the master, where its motion has free components; else NULL */
-  int                 n_images;
-  SurfaceImage        images[SURFACE_MAX_IMAGES];
-  const Smoother     *smoother; /* the scene's */
-  const Smoother     *facets;   /* serves where there is no fit, and says where the master ends */
-  const Law          *law;
-  SlavePoints         slaves;
-  Offsets             slave_offsets, master_offsets; /* NULL: none */
-  PetscBool           one_body; /* of a list of surfaces: slave and master have faces of one body */
-  ContactSearch       search;
-  FaceMarks          *marks; /* of each slave point, where other pairs treat some of its partners; else NULL */
+  int                 n_images;      /* of the master, for fits and search */
+  int             n_mirrors; /* those and the ones beyond planes at which a surface turns sharply, for its corners */
+  SurfaceImage    images[SURFACE_MAX_IMAGES], mirrors[SURFACE_MAX_IMAGES];
+  const Smoother *smoother; /* the scene's */
+  const Smoother *facets;   /* serves where there is no fit, and says where the master ends */
+  const Law      *law;
+  SlavePoints     slaves;
+  Offsets         slave_offsets, master_offsets; /* NULL: none */
+  PetscBool       one_body;                      /* of a list of surfaces: slave and master have faces of one body */
+  ContactSearch   search;
+  FaceMarks      *marks; /* of each slave point, where other pairs treat some of its partners; else NULL */
 
   /* Terms: the first n_nodes are those of nodes, up to n_sides those of further sides of sharp edges and of ends, the
      others those of faces. */
