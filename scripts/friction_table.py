@@ -317,6 +317,11 @@ def turned_rings(angle, bore=0, rim=0):
     ]
 
 
+def tool(surface, own=""):
+    """Overrides that put a meshed rigid surface in the place of the analytic master of a scene with one body."""
+    return [f"bodies.1={{surface: {surface}, rigid: {{{own}}}}}", f"contact.0.master={surface}"]
+
+
 # name -> scene, what measures a run, and its meshes: (name, argument of the measure, overrides, formulations)
 BENCHMARKS = {
     "wedge": (RUNS / "wedge.yaml", wedge, [
@@ -330,8 +335,15 @@ BENCHMARKS = {
                                      ("inclined by 30 degrees", 30, [
                                          "mesh.parameters.angle=30", "supports.0.spring=[0.2, 0.2]",
                                          "contact.0.master.plane.normal=[-0.5, 0.866025403784439]"
-                                     ], ANALYTIC)]),
-    "bar": (SCENES / "bar.yaml", bar, [("160 elements", None, [], BOTH)]),
+                                     ], ANALYTIC),
+                                     ("inclined, meshed plane", 30, [
+                                         "mesh.parameters={angle: 30, bed: 25}", "supports.0.spring=[0.2, 0.2]",
+                                         *tool("bed")
+                                     ], ALL)]),
+    "bar": (SCENES / "bar.yaml", bar, [("160 elements", None, [], BOTH),
+                                          ("160 elements, meshed bed", None, [
+                                              "mesh.parameters.bed=225", *tool("bed")
+                                          ], ALL)]),
     "shear": (SCENES / "shear.yaml", shear,
               [(f"3D, jitter {jitter}", 4, [f"mesh.parameters.jitter={jitter}", "solver.tolerance=1e-8"], ALL)
                for jitter in (0, 0.25)]),
@@ -347,8 +359,13 @@ BENCHMARKS = {
              ("slip over five faces", "held", 0, 0.26, 0.04, ()),
              ("slip over five faces, radii of free bore and rim", "free", 0, 0.26, 0.04, (-7.8125e-5, 4.6875e-5)))
     ]),
-    "belt": (SCENES / "belt.yaml", belt, [(f"{n} elements", None, [f"mesh.parameters.n={n}"], ANALYTIC)
-                                          for n in (12, 24, 48, 96)]),
+    "belt": (SCENES / "belt.yaml", belt, [
+        *((f"{n} elements", None, [f"mesh.parameters.n={n}"], ANALYTIC) for n in (12, 24, 48, 96)),
+        *((f"{n} elements, meshed drum", None, [
+            f"mesh.parameters={{n: {n}, drum: 1.25}}",
+            *tool("drum", "motion: [{rz: -2, history: [[0, 0], [0.2, 0], [1, 1]]}]")
+        ], ALL) for n in (12, 24, 48, 96))
+    ]),
     "mindlin_line": (RUNS / "mindlin_line.yaml", mindlin_line, [
         *((f"{n} elements", None, [f"mesh.parameters.n={n}"], ALL) for n in (8, 16, 32)),
         *((f"{n} elements, mean of four meshes", None, [[f"mesh.parameters.n={n}", f"mesh.parameters.zone={zone}"]
@@ -377,9 +394,10 @@ BENCHMARKS = {
             "contact.0.friction.stick.penalty=3000"
         ], PLAIN)
     ]),
-    "plate_greco": (RUNS / "plate_greco.yaml", plate_greco, [(f"{n} elements", None, [
-        f"mesh.parameters.n={n}", f"mesh.parameters.m={n}"
-    ], ANALYTIC) for n in (32, 64)]),
+    "plate_greco": (RUNS / "plate_greco.yaml", plate_greco, [
+        *((f"{n} elements", None, [f"mesh.parameters={{n: {n}, m: {n}}}"], ANALYTIC) for n in (32, 64)),
+        ("64 elements, meshed floor", None, ["mesh.parameters={n: 64, m: 64, floor: 75}", *tool("floor")], ALL)
+    ]),
     "punch_rounded": (RUNS / "punch_rounded.yaml", punch_rounded,
                       [(f"mu {mu}, elements of {h}", mu, [f"mesh.parameters.h={h}", f"contact.0.friction.mu={mu}"],
                         ALL if mu else BOTH) for mu in (0, 0.1) for h in (1, 0.5)]),
