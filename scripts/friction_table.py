@@ -298,11 +298,14 @@ def plate_greco(result, _):
 
 
 def punch_rounded(result, mu):
+    """The published stress is a contact pressure that was extrapolated from the inside, the mean of two programs. The own
+    limit is that of surface to surface with elements of 1, 0.5 and 0.25, which the contact pressure there meets."""
     node = numpy.flatnonzero(numpy.linalg.norm(result.nodes, axis=1) < 1e-9)
     node = node[numpy.argmin(abs(result.displacement[node, 1] - result.probes["u"]))]
     return [
         deviation("displacement under the axis", result.probes["u"], {0: -0.132941, 0.1: -0.130794}[mu], 1),
-        deviation("stress under the axis", result.stress[node, 1], {0: -94.12, 0.1: -95.47}[mu], None)
+        deviation("stress under the axis", result.stress[node, 1], {0: -94.12, 0.1: -95.47}[mu], None),
+        deviation("stress under the axis, own limit", result.stress[node, 1], {0: -87.17, 0.1: -88.61}[mu], None)
     ]
 
 
@@ -400,7 +403,7 @@ BENCHMARKS = {
     ]),
     "punch_rounded": (RUNS / "punch_rounded.yaml", punch_rounded,
                       [(f"mu {mu}, elements of {h}", mu, [f"mesh.parameters.h={h}", f"contact.0.friction.mu={mu}"],
-                        ALL if mu else BOTH) for mu in (0, 0.1) for h in (1, 0.5)]),
+                        ALL if mu and h > 0.25 else BOTH) for mu in (0, 0.1) for h in (1, 0.5, 0.25)]),
 }
 
 
