@@ -1,6 +1,7 @@
 // A rectangle from the origin, in the plane, with elements that grow away from its lower left corner.
 DefineConstant[ width = {40, Name "along x"}, height = {40, Name "along y"}, n = {32, Name "elements along x"}, m = {32, Name "elements along y"},
-  growth = {1, Name "of an element over the one before it, from the corner on"} ];
+  growth = {1, Name "of an element over the one before it, from the corner on"},
+  floor = {0, Name "faces of a meshed floor, longer by a quarter at both ends; 0: none"} ];
 Point(1) = {0, 0, 0};
 Point(2) = {width, 0, 0};
 Point(3) = {width, height, 0};
@@ -19,3 +20,10 @@ Physical Curve("y_min") = {1};
 Physical Curve("x_max") = {2};
 Physical Curve("y_max") = {3};
 Physical Curve("x_min") = {4};
+If (floor)
+  Point(11) = {-width / 4, 0, 0};
+  Point(12) = {width * 5 / 4, 0, 0};
+  Line(11) = {11, 12};
+  Transfinite Curve{11} = floor + 1;
+  Physical Curve("floor") = {11};
+EndIf

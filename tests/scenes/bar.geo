@@ -1,5 +1,6 @@
 // A thin bar on its bed, for friction: its left end is free, its right end is pulled.
-DefineConstant[ length = {16, Name "length"}, height = {0.1, Name "height"}, n = {160, Name "elements along"} ];
+DefineConstant[ length = {16, Name "length"}, height = {0.1, Name "height"}, n = {160, Name "elements along"},
+  bed = {0, Name "faces of a meshed bed, longer by 1 at both ends; 0: none"} ];
 Point(1) = {0, 0, 0};
 Point(2) = {length, 0, 0};
 Point(3) = {length, height, 0};
@@ -17,3 +18,10 @@ Physical Surface("bar") = {1};
 Physical Curve("bottom") = {1};
 Physical Curve("right") = {2};
 Physical Curve("top") = {3};
+If (bed)
+  Point(11) = {-1, 0, 0};
+  Point(12) = {length + 1, 0, 0};
+  Line(11) = {11, 12};
+  Transfinite Curve{11} = bed + 1;
+  Physical Curve("bed") = {11};
+EndIf
