@@ -654,11 +654,13 @@ PetscErrorCode FrictionAnchorLate(ContactPair *pair, PetscReal t, PetscBool *mad
 
 /* Evaluates the law of a term. In a linear step what sticks goes on sticking and what slips goes on slipping, as what
    is in contact stays so. A term that only touches sticks, because it may be what holds a body; it presses nothing, and
-   the law would take it for one that has not touched yet. */
-static void TermEvaluate(const ContactPair *pair, PetscInt c, FrictionInput *in, FrictionTraction *out)
+   the law would take it for one that has not touched yet. One that new lists have opened is expected to press as it
+   did when the step began. */
+static void TermEvaluate(const ContactPair *pair, PetscInt c, PetscReal area, FrictionInput *in, FrictionTraction *out)
 {
   in->state = FRICTION_DECIDES;
   if (pair->holding) in->state = pair->now.slips[c] ? FRICTION_SLIPS : FRICTION_STICKS;
+  if (pair->holding) in->expected = area > 0 ? pair->friction->pressed[c] / area : 0;
   if (pair->holding && !(in->pressure > 0)) in->began = 0;
   FrictionEvaluate(in, out);
 }
@@ -710,7 +712,7 @@ PetscErrorCode FrictionTerm(const ContactPair *pair, PetscInt c, PetscReal t, Fr
   ContactTermLaw(pair, c, t, &value, NULL, &area);
   *acts = (PetscBool)(value.stiffness > 0);
   if (*acts) PetscCall(FrictionTermAsk(pair, c, t, in, acts));
-  if (*acts) TermEvaluate(pair, c, in, out);
+  if (*acts) TermEvaluate(pair, c, area, in, out);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

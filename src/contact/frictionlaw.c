@@ -185,6 +185,13 @@ static double Bound(const FrictionInput *in, double *slope)
   return bound;
 }
 
+/* The bound with which a node that slips resists turns of its slip. Where a linear step pulls at it, that of the
+   pressure which is expected at the end counts: without it nothing would hold the node across its slip. */
+static double TurningBound(const FrictionInput *in, double bound)
+{
+  return bound > 0 || in->pressure > 0 ? bound : FrictionBound(in, in->expected);
+}
+
 /*@
   FrictionBound - gives the largest traction that sticks at a pressure (force per area).
 
@@ -244,7 +251,7 @@ void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
     return;
   }
   for (int i = 0; i < 3; i++) e[i] /= length;
-  Projector(bound > 0 ? bound / length : 0, e, m);
+  Projector(fmax(0, TurningBound(in, bound)) / length, e, m);
   ApplyMatrix(m, out);
   for (int i = 0; i < 3; i++) {
     rest[i]              = bound / in->stiffness * e[i] - gripped[i];

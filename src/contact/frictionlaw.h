@@ -36,6 +36,7 @@ typedef struct {
   double kept[2];     /* lengths */
   double grip[2];     /* force per area; 0 without augmentation */
   double pressure;    /* p; none below 0 counts, unless the caller has it slip: in a linear step p is signed */
+  double expected;    /* pressure that resists turns of the slip where p is not positive and the caller has it slip */
   double rate;        /* -dp/dgap: force per length and area */
   double began;       /* gap less the gap below which there is pressure when the step began, where the node was
                          open then; else 0 (length) */

@@ -202,6 +202,31 @@ static void test_touch(void **state)
   }
 }
 
+/* A node that a linear step pulls at while it slips has the traction of its signed pressure, and resists turns of its
+   slip as under the pressure that is expected. */
+static void test_pulled(void **state)
+{
+  (void)state;
+  for (int trial = 0; trial < 20; trial++) {
+    FrictionInput    in = node(3, 0.01, 0, 0);
+    FrictionTraction pressed, pulled;
+
+    in.state = FRICTION_SLIPS;
+    FrictionEvaluate(&in, &pressed);
+    in.expected = in.pressure;
+    in.pressure = -2 * in.pressure;
+    FrictionEvaluate(&in, &pulled);
+    for (int i = 0; i < 3; i++) {
+      assert_true(fabs(pulled.traction[i] + 2 * pressed.traction[i]) <= 1e-12 * norm(pressed.traction));
+      for (int j = 0; j < 3; j++)
+        assert_true(fabs(pulled.by_slip[i][j] - pressed.by_slip[i][j]) <= 1e-12 * in.stiffness);
+    }
+    in.expected = 0;
+    FrictionEvaluate(&in, &pulled);
+    for (int i = 0; i < 9; i++) assert_true(pulled.by_slip[i / 3][i % 3] == 0);
+  }
+}
+
 /* v turned by the angle about the axis, which is of length 1. */
 static void turn(const double axis[3], double angle, const double v[3], double out[3])
 {
@@ -518,10 +543,11 @@ static void test_frame(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_law),     cmocka_unit_test(test_grip),     cmocka_unit_test(test_rotation),
-    cmocka_unit_test(test_kept),    cmocka_unit_test(test_touch),    cmocka_unit_test(test_foot),
-    cmocka_unit_test(test_balance), cmocka_unit_test(test_crossing), cmocka_unit_test(test_frame)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_law),      cmocka_unit_test(test_grip),
+                                     cmocka_unit_test(test_rotation), cmocka_unit_test(test_kept),
+                                     cmocka_unit_test(test_touch),    cmocka_unit_test(test_foot),
+                                     cmocka_unit_test(test_balance),  cmocka_unit_test(test_crossing),
+                                     cmocka_unit_test(test_frame),    cmocka_unit_test(test_pulled)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
