@@ -28,7 +28,8 @@ static PetscErrorCode ThinnestPart(ContactSearch s, PetscReal *length)
 }
 
 /*@
-  SearchHasPartners - says whether slave points are tested for partners before they are searched.
+  SearchHasPartners - says whether slave points without a partner are known from former searches or from a test before
+  a search.
 
   Not collective
 
@@ -37,7 +38,24 @@ static PetscErrorCode ThinnestPart(ContactSearch s, PetscReal *length)
 @*/
 PetscBool SearchHasPartners(ContactSearch s)
 {
-  return (PetscBool)(s->one_body && !s->slaves->maps.ptr);
+  return (PetscBool)(s->listed && s->master && !s->master->rigid && !s->slaves->maps.ptr);
+}
+
+/*@
+  SearchTestsPartners - says whether slave points are tested for partners before they are searched.
+
+  Not collective
+
+  Input Parameter:
+. s - the search
+
+  Note:
+  They are on one body, where most faces lie near others that do not oppose them. Where slave and master are two bodies,
+  a search learns from its own lists which points have no partner.
+@*/
+PetscBool SearchTestsPartners(ContactSearch s)
+{
+  return (PetscBool)(s->one_body && SearchHasPartners(s));
 }
 
 /* The test of one slave point. */
@@ -136,6 +154,24 @@ static void FaceNormals(ContactSearch s, const PetscReal *u, PetscReal t, PetscR
   }
 }
 
+/* Has a slave point at x a facet in sight that is not behind its own body? Where slave and master have faces of one
+   body, the facet must oppose the point. */
+static PetscBool TestPoint(ContactSearch s, const SearchField *field, NeighbourLists lists, BoxTree tree,
+                           const PartnersSight *sight, PetscInt q, const PetscReal *normal, const PetscReal *x)
+{
+  const PetscReal   entered = SEARCH_ENTERED * s->slaves->height[q];
+  const BoxTreeSide side    = {.own     = normal,
+                               .opposed = s->one_body ? SEARCH_OPPOSED_NOT - 2 * sight->turn : -INFINITY,
+                               .behind  = (s->one_body ? entered : PetscMax(entered, s->slaves->size[q])) + sight->shift,
+                               .shift   = sight->shift,
+                               .lean    = sight->turn};
+  PointTest         test    = {field, lists, &side, x, PETSC_FALSE};
+  double            bound   = sight->radius;
+
+  BoxTreeClosest(tree, x, &side, &bound, TestFacet, &test);
+  return test.found;
+}
+
 /* Tests which of some slave points have a facet that opposes them in sight, and not behind their own body. The tree
    compares boxes, so that points without a partner may pass, but no point with one is missed. */
 static PetscErrorCode TestPoints(ContactSearch s, const PetscReal *u, PetscReal t, const PartnersSight *sight,
@@ -155,22 +191,13 @@ static PetscErrorCode TestPoints(ContactSearch s, const PetscReal *u, PetscReal 
     SearchBoxAdd(box, dim, x);
   }
   PetscCall(PetscNew(&lists));
-  PetscCall(SearchFieldCreate(s, u, t, box, sight->radius, lists, &field));
+  PetscCall(SearchFieldCreate(s, u, t, box, sight->radius, PETSC_FALSE, lists, &field));
   PetscCall(CandidatesTree(dim, field.n_candidates, field.candidates, PETSC_TRUE, &tree));
   for (PetscInt q = 0; q < s->slaves->n; q++) {
-    const BoxTreeSide side  = {.own     = &normal[3 * q],
-                               .opposed = SEARCH_OPPOSED_NOT - 2 * sight->turn,
-                               .behind  = SEARCH_ENTERED * s->slaves->height[q] + sight->shift,
-                               .shift   = sight->shift,
-                               .lean    = sight->turn};
-    PointTest         test  = {&field, lists, &side, x, PETSC_FALSE};
-    double            bound = sight->radius;
-
     possible[q] = PETSC_FALSE;
     if (among && !among[q]) continue;
     SlavePointsPosition(s->slaves, q, x);
-    BoxTreeClosest(tree, x, &side, &bound, TestFacet, &test);
-    possible[q] = test.found;
+    possible[q] = TestPoint(s, &field, lists, tree, sight, q, &normal[3 * q], x);
   }
   BoxTreeDestroy(&tree);
   PetscCall(SearchFieldDestroy(&field));
@@ -219,21 +246,71 @@ static PetscErrorCode Changes(ContactSearch s, const PetscReal *u, const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tests all points at a state, which becomes that of the last test. */
+/* How far the tests see on whose answer later searches rely. */
+static PartnersSight SightAhead(ContactSearch s)
+{
+  const PetscReal skin = PARTNERS_SKIN * s->partners.thin;
+
+  return (PartnersSight){s->reach + s->partners.motion + skin, skin, PARTNERS_TURN};
+}
+
+/* Says whether any slave point on any rank may have a partner. */
+static PetscErrorCode NoteAny(ContactSearch s)
+{
+  Partners *at  = &s->partners;
+  int       any = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < s->slaves->n; q++) any = any || at->possible[q];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, s->mesh->comm));
+  at->any = (PetscBool)any;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tests all points at a state, which becomes that of the last test, or leaves the test to SearchPartnersLearn(). */
 static PetscErrorCode TestAll(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion)
 {
-  Partners           *at    = &s->partners;
-  const PetscReal     skin  = PARTNERS_SKIN * at->thin;
-  const PartnersSight sight = {s->reach + motion + skin, skin, PARTNERS_TURN};
-  int                 any   = 0;
+  Partners           *at = &s->partners;
+  const PartnersSight sight = (at->motion = motion, SightAhead(s));
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(at->u, u, s->mesh->n_nodes * s->mesh->dim));
-  PetscCall(TestPoints(s, u, t, &sight, at->normal, NULL, at->possible));
-  for (PetscInt q = 0; q < s->slaves->n; q++) any = any || at->possible[q];
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, s->mesh->comm));
-  at->any    = (PetscBool)any;
-  at->motion = motion;
+  at->learns = (PetscBool)!SearchTestsPartners(s);
+  if (at->learns)
+    for (PetscInt q = 0; q < s->slaves->n; q++) at->possible[q] = PETSC_TRUE;
+  else
+    PetscCall(TestPoints(s, u, t, &sight, at->normal, NULL, at->possible));
+  PetscCall(NoteAny(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SearchPartnersLearn - finds which slave points have no partner from lists that have just been made, if no test has
+  said so.
+
+  Collective
+
+  Input Parameters:
++ s     - the search, after SearchPartners() at the state of the lists
+. lists - the lists
+. field - the candidates of the lists
+- tree  - the tree of the candidates
+
+  Note:
+  A point for which the lists have a facet, or one that does not face it, may have a partner. The others are tested.
+@*/
+PetscErrorCode SearchPartnersLearn(ContactSearch s, NeighbourLists lists, const SearchField *field, BoxTree tree)
+{
+  const PartnersSight sight = SightAhead(s);
+  Partners           *at    = &s->partners;
+
+  PetscFunctionBeginUser;
+  if (!SearchHasPartners(s) || !at->learns) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt q = 0; q < s->slaves->n; q++)
+    if (lists->nearest[q] < 0 && !lists->averse[q])
+      at->possible[q] = TestPoint(s, field, lists, tree, &sight, q, &at->normal[3 * q], &at->x[q * lists->dim]);
+  at->learns = PETSC_FALSE;
+  PetscCall(NoteAny(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -263,6 +263,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   lists->list_point                 = buffer.point;
   lists->facet                      = buffer.facet;
   lists->facet_size                 = buffer.size;
+  PetscCall(SearchPartnersLearn(s, lists, field, tree));
   BoxTreeDestroy(&tree);
   PetscCall(PetscFree3(found, ends, buffer.position));
   PetscCall(PetscFree(aversed));
@@ -381,6 +382,7 @@ void SearchSetRungs(ContactSearch s, const int *first)
 PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *out)
 {
   const PetscReal distance = SearchListsDistance(s, motion);
+  const PetscBool partners = SearchHasPartners(s);
   PetscReal       box[6];
   SearchField     field;
   NeighbourLists  lists;
@@ -390,9 +392,10 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(PetscNew(&lists));
   lists->t = NAN; /* not updated yet */
   PetscCall(SlavePointsMove(s->slaves, u));
-  if (SearchHasPartners(s)) PetscCall(SearchPartners(s, u, t, motion));
+  if (partners) PetscCall(SearchPartners(s, u, t, motion));
   SearchSlaveBox(s, box);
-  PetscCall(SearchFieldCreate(s, u, t, box, distance, lists, &field));
+  PetscCall(SearchFieldCreate(s, u, t, box, distance, (PetscBool)(s->fit->fitted && (!partners || s->partners.any)),
+                              lists, &field));
   PetscCall(NeighbourListsCreateSlaves(s, lists));
   PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, lists->slave_normal));
   if (s->master) PetscCall(SlavePointsFindEnds(s->slaves, u));

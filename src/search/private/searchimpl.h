@@ -22,6 +22,7 @@
 /* Which slave points may have a partner, and the state of the test that says so (partners.c). */
 typedef struct {
   PetscBool *possible, any;            /* of each slave point, NULL before the first test; of any one on any rank */
+  PetscBool  learns;                   /* the next lists say which points may have one; until then all may */
   PetscReal *x, *normal, *face_normal; /* of slave points and master faces */
   PetscReal  thin;                     /* thinnest element or largest face, whichever is less (length) */
   PetscReal *u, motion; /* of the mesh's nodes (length); motion for which lists were to be good (length) */
@@ -159,8 +160,10 @@ PetscErrorCode NeighbourListsUpdateNodes(ContactSearch, NeighbourLists, const Pe
 void           NeighbourListsCentre(NeighbourLists, PetscInt q, PetscReal centre[2]);
 /* partners.c */
 PetscBool      SearchHasPartners(ContactSearch);
+PetscBool      SearchTestsPartners(ContactSearch);
 PetscErrorCode SearchPartners(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion);
 PetscErrorCode SearchPartnersFaces(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *faces);
+PetscErrorCode SearchPartnersLearn(ContactSearch, NeighbourLists, const SearchField *, BoxTree);
 PetscErrorCode SearchPartnersFree(ContactSearch);
 /* fitsupport.c */
 PetscReal      SearchFitReach(ContactSearch);
@@ -171,7 +174,7 @@ PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, int first, FitProb
 /* searchfield.c */
 PetscReal        SearchListsDistance(ContactSearch, PetscReal motion);
 PetscErrorCode   SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6],
-                                   PetscReal distance, NeighbourLists, SearchField *);
+                                   PetscReal distance, PetscBool fits, NeighbourLists, SearchField *);
 PetscErrorCode   SearchFieldDestroy(SearchField *);
 const Candidate *SearchFieldOwn(const SearchField *, const Facet *);
 PetscErrorCode   SearchFieldWay(ContactSearch, const SearchField *, PetscSF *faces);
