@@ -346,14 +346,14 @@ static PetscBool FitSees(NeighbourLists old, NeighbourLists fresh, PetscInt q, P
 {
   const int        dim   = old->dim;
   const PetscReal *frame = &old->frame[9 * q], *metric = &old->metric[4 * q];
-  PetscReal        x[3], y[2] = {0, 0};
+  PetscReal        x[3], y[2]                          = {0, 0};
 
   NeighbourListsRelative(fresh, q, p, x);
   for (int a = 0; a < dim - 1; a++)
     for (int d = 0; d < dim; d++) y[a] += frame[3 * a + d] * x[d];
   if (fresh->point_hoop) y[1] = fresh->point_hoop[p];
-  return (PetscBool)(FitDistance2(dim, old->degree[q], (const double(*)[2])metric, old->bend ? &old->bend[q] : NULL,
-                                  y) < 1);
+  return (
+    PetscBool)(FitDistance2(dim, old->degree[q], (const double(*)[2])metric, old->bend ? &old->bend[q] : NULL, y) < 1);
 }
 
 /* Says whether every point that now lies inside the support of the old fit of slave point q is in its list. Most points
@@ -412,8 +412,9 @@ static PetscBool PairDrifts(const ContactPair *pair)
    offsets the gap must agree within `drift`. Area factors must agree on both, weighted by the term's pressure over
    the pair's largest one, or be as close to a jump of what the solution asks for: factor_drift. At such a jump fresh
    factors weight the points of a term in another way, or leave it none: closed gaps are compared with the factors in
-   force. gaps are those of the points by fresh lists; alike: PointsAlike() of both lists. depth is the largest penetration of the pair; where the pair is
-   augmented and penetrations go to zero, the bound on them counts instead. */
+   force. gaps are those of the points by fresh lists; alike: PointsAlike() of both lists. depth is the largest
+   penetration of the pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead.
+ */
 static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscBool alike, PetscInt c,
                             const PetscReal *gaps, const PetscReal *factor, PetscReal t, PetscReal depth,
                             PetscReal pressure, PetscReal drift, PetscReal factor_drift)

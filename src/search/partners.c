@@ -132,11 +132,12 @@ static PetscErrorCode Normalise(PetscInt n, PetscReal *normal)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Unit normals of the slave points after their last move. */
-static PetscErrorCode PointNormals(ContactSearch s, const PetscReal *u, PetscReal *normal)
+/* Unit normals of the slave points after their last move. any: the same of any length. */
+static PetscErrorCode PointNormals(ContactSearch s, const PetscReal *u, PetscReal *any, PetscReal *normal)
 {
   PetscFunctionBeginUser;
-  PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, normal));
+  PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, any));
+  PetscCall(PetscArraycpy(normal, any, 3 * s->slaves->n));
   PetscCall(Normalise(s->slaves->n, normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -270,7 +271,7 @@ static PetscErrorCode NoteAny(ContactSearch s)
 /* Tests all points at a state, which becomes that of the last test, or leaves the test to SearchPartnersLearn(). */
 static PetscErrorCode TestAll(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion)
 {
-  Partners           *at = &s->partners;
+  Partners           *at    = &s->partners;
   const PartnersSight sight = (at->motion = motion, SightAhead(s));
 
   PetscFunctionBeginUser;
@@ -325,6 +326,9 @@ PetscErrorCode SearchPartnersLearn(ContactSearch s, NeighbourLists lists, const 
 . t      - load parameter
 - motion - relative motion (length) for which lists are to be good
 
+  Output Parameter:
+. normals - normals[3*n] of the slave points, as SlavePointsNormals() gives them
+
   Note:
   The answer is in the search's partners. Boxes are seen farther than a search would by a skin, and normals count as
   opposed earlier. As long as nothing has moved or turned by more, the last answer is kept: a point that it leaves out
@@ -332,7 +336,7 @@ PetscErrorCode SearchPartnersLearn(ContactSearch s, NeighbourLists lists, const 
 
   Source: Verlet, Computer experiments on classical fluids, Phys. Rev. 159 (1967) 98-103, for the skin.
 @*/
-PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion)
+PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal *normals)
 {
   Partners      *at = &s->partners;
   const PetscInt n = s->slaves->n, faces = s->master->n_faces;
@@ -344,7 +348,7 @@ PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(n * dim, &x, 3 * n, &normal, 3 * faces, &face_normal));
   for (PetscInt q = 0; q < n; q++) SlavePointsPosition(s->slaves, q, &x[q * dim]);
-  PetscCall(PointNormals(s, u, normal));
+  PetscCall(PointNormals(s, u, normals, normal));
   FaceNormals(s, u, t, face_normal);
   if (first) PetscCall(ThinnestPart(s, &at->thin));
   if (first)
@@ -390,11 +394,15 @@ PetscErrorCode SearchPartnersFaces(ContactSearch s, const PetscReal *u, PetscRea
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(faces, points->surface->n_faces));
   PetscCall(SlavePointsMove(points, u));
-  PetscCall(SearchPartners(s, u, t, motion));
-  if (!s->partners.any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc3(points->n, &possible, points->n_faces, &at_points, 3 * points->n, &normal));
   PetscCall(PetscCalloc1(points->surface->n_faces, &at_faces));
-  PetscCall(PointNormals(s, u, normal));
+  PetscCall(SearchPartners(s, u, t, motion, normal));
+  PetscCall(Normalise(points->n, normal));
+  if (!s->partners.any) {
+    PetscCall(PetscFree3(possible, at_points, normal));
+    PetscCall(PetscFree(at_faces));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(TestPoints(s, u, t, &sight, normal, s->partners.possible, possible));
   for (PetscInt f = 0; f < points->n_faces; f++) {
     at_points[f] = 0;

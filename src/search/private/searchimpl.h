@@ -47,6 +47,7 @@ struct _n_ContactSearch {
   const FaceMarks    *marks;         /* of each slave point, where other pairs treat some of its partners; else NULL */
   PetscReal           reach, margin; /* lengths, without the motion */
   PetscReal           fit_reach;     /* SearchFitReach() */
+  PetscInt            room, points_room; /* of the facets and points of the last lists */
   Partners            partners;
 };
 
@@ -138,6 +139,7 @@ PetscReal      CandidateBulge(const Candidate *, PetscReal size);
 PetscReal      CandidateBoxDistance(int dim, const Candidate *, const PetscReal *x);
 PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, PetscBool facing, BoxTree *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
+PetscErrorCode ListBufferAddPoints(ListBuffer *, PetscInt first, PetscInt n, const PetscInt *points);
 /* faceexchange.c */
 void      SearchSlaveBox(ContactSearch, PetscReal box[6]);
 void      SearchMasterBox(ContactSearch, const PetscReal *u, PetscReal t, const PetscBool *some, PetscReal box[6]);
@@ -161,7 +163,7 @@ void           NeighbourListsCentre(NeighbourLists, PetscInt q, PetscReal centre
 /* partners.c */
 PetscBool      SearchHasPartners(ContactSearch);
 PetscBool      SearchTestsPartners(ContactSearch);
-PetscErrorCode SearchPartners(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion);
+PetscErrorCode SearchPartners(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal *normals);
 PetscErrorCode SearchPartnersFaces(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *faces);
 PetscErrorCode SearchPartnersLearn(ContactSearch, NeighbourLists, const SearchField *, BoxTree);
 PetscErrorCode SearchPartnersFree(ContactSearch);
