@@ -258,6 +258,7 @@ static PetscErrorCode PairWantOffsets(ContactPair *pair, const PetscReal *u, Pet
 
   PetscFunctionBeginUser;
   if (!pair->slave_offsets || !pair->master_offsets) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!OffsetsFollow(pair->slave_offsets) && !OffsetsFollow(pair->master_offsets)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(pair->slave->n_faces, &slave, pair->master->n_faces, &master));
   PetscCall(SearchNearFaces(pair->search, u, t, motion, slave, master));
   PetscCall(OffsetsWant(pair->slave_offsets, slave, begins));
@@ -333,34 +334,44 @@ static long ListKey(NeighbourLists lists, PetscInt q, PetscInt place)
   return lists->point_key[lists->list_point[lists->list_ptr[q] + place]];
 }
 
-/* Says whether every point that now lies inside the support of the old fit of slave point q is in its list, and
-   whether the frame has stayed. */
-static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
+/* Says whether the points of two lists have the same numbers. */
+static PetscBool PointsAlike(NeighbourLists old, NeighbourLists fresh)
+{
+  return (PetscBool)(old->n_points == fresh->n_points &&
+                     !memcmp(old->point_key, fresh->point_key, old->n_points * sizeof(*old->point_key)));
+}
+
+/* Says whether a point of fresh lists lies inside the support of the old fit of slave point q. */
+static PetscBool FitSees(NeighbourLists old, NeighbourLists fresh, PetscInt q, PetscInt p)
 {
   const int        dim   = old->dim;
-  const PetscReal *frame = &old->frame[9 * q], *turned = &fresh->frame[9 * q], *metric = &old->metric[4 * q];
-  const PetscInt   n      = old->fit_n[q];
-  PetscInt         at     = 0;
-  PetscReal        cosine = 0;
+  const PetscReal *frame = &old->frame[9 * q], *metric = &old->metric[4 * q];
+  PetscReal        x[3], y[2]                          = {0, 0};
 
-  for (int d = 0; d < dim; d++) cosine += frame[3 * (dim - 1) + d] * turned[3 * (dim - 1) + d];
-  if (cosine < CONTACT_FRAME_COSINE || old->degree[q] % FIT_BENT != fresh->degree[q] % FIT_BENT) return PETSC_FALSE;
-  for (PetscInt i = fresh->list_ptr[q]; i < fresh->list_ptr[q] + fresh->fit_n[q]; i++) {
-    const PetscInt p   = fresh->list_point[i];
-    const long     key = fresh->point_key[p];
-    PetscReal      x[3], y[2] = {0, 0};
+  NeighbourListsRelative(fresh, q, p, x);
+  for (int a = 0; a < dim - 1; a++)
+    for (int d = 0; d < dim; d++) y[a] += frame[3 * a + d] * x[d];
+  if (fresh->point_hoop) y[1] = fresh->point_hoop[p];
+  return (
+    PetscBool)(FitDistance2(dim, old->degree[q], (const double(*)[2])metric, old->bend ? &old->bend[q] : NULL, y) < 1);
+}
+
+/* Says whether every point that now lies inside the support of the old fit of slave point q is in its list. Most points
+   have the same place in the list as before. */
+static PetscBool FitHoldsPoints(NeighbourLists old, NeighbourLists fresh, PetscInt q)
+{
+  const PetscInt n = old->fit_n[q], first = fresh->list_ptr[q];
+
+  for (PetscInt i = first, at = 0; i < first + fresh->fit_n[q]; i++) {
+    const PetscInt p     = fresh->list_point[i];
+    const long     key   = fresh->point_key[p];
     PetscBool      known = PETSC_FALSE;
 
-    if (n && ListKey(old, q, at) == key) { /* most points have the same place in the list as before */
-      at = (at + 1) % n;
+    if (n && ListKey(old, q, at) == key) {
+      at = at + 1 < n ? at + 1 : 0;
       continue;
     }
-    NeighbourListsRelative(fresh, q, p, x);
-    for (int a = 0; a < dim - 1; a++)
-      for (int d = 0; d < dim; d++) y[a] += frame[3 * a + d] * x[d];
-    if (fresh->point_hoop) y[1] = fresh->point_hoop[p];
-    if (FitDistance2(dim, old->degree[q], (const double(*)[2])metric, old->bend ? &old->bend[q] : NULL, y) >= 1)
-      continue;
+    if (!FitSees(old, fresh, q, p)) continue;
     for (PetscInt k = 0; !known && k < n; k++) {
       const PetscInt place = (at + k) % n;
 
@@ -370,6 +381,23 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
     if (!known) return PETSC_FALSE;
   }
   return PETSC_TRUE;
+}
+
+/* Says whether every point that now lies inside the support of the old fit of slave point q is in its list, and
+   whether the frame has stayed. alike: PointsAlike() of both lists. */
+static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscBool alike, PetscInt q)
+{
+  const int        last  = old->dim - 1;
+  const PetscReal *frame = &old->frame[9 * q], *turned = &fresh->frame[9 * q];
+  PetscReal        cosine = 0;
+
+  for (int d = 0; d < old->dim; d++) cosine += frame[3 * last + d] * turned[3 * last + d];
+  if (cosine < CONTACT_FRAME_COSINE || old->degree[q] % FIT_BENT != fresh->degree[q] % FIT_BENT) return PETSC_FALSE;
+  if (alike && fresh->fit_n[q] <= old->fit_n[q] &&
+      !memcmp(&old->list_point[old->list_ptr[q]], &fresh->list_point[fresh->list_ptr[q]],
+              fresh->fit_n[q] * sizeof(*fresh->list_point)))
+    return PETSC_TRUE;
+  return FitHoldsPoints(old, fresh, q);
 }
 
 /* Says whether the gaps of a pair may drift with its lists: with offsets that are held in a solve, and with friction,
@@ -384,11 +412,12 @@ static PetscBool PairDrifts(const ContactPair *pair)
    offsets the gap must agree within `drift`. Area factors must agree on both, weighted by the term's pressure over
    the pair's largest one, or be as close to a jump of what the solution asks for: factor_drift. At such a jump fresh
    factors weight the points of a term in another way, or leave it none: closed gaps are compared with the factors in
-   force. gaps are those of the points by fresh lists. depth is the largest penetration of the pair; where the pair is
-   augmented and penetrations go to zero, the bound on them counts instead. */
-static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscInt c, const PetscReal *gaps,
-                            const PetscReal *factor, PetscReal t, PetscReal depth, PetscReal pressure, PetscReal drift,
-                            PetscReal factor_drift)
+   force. gaps are those of the points by fresh lists; alike: PointsAlike() of both lists. depth is the largest
+   penetration of the pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead.
+ */
+static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscBool alike, PetscInt c,
+                            const PetscReal *gaps, const PetscReal *factor, PetscReal t, PetscReal depth,
+                            PetscReal pressure, PetscReal drift, PetscReal factor_drift)
 {
   const PetscReal gap  = ContactTermGap(pair, factor, gaps, c, NULL),
                   same = ContactTermGap(pair, pair->factor, gaps, c, NULL), rest = ContactTermOnsetGap(pair, c, t),
@@ -408,7 +437,7 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
 
     FactorBracket(pair, q, factor[q], &low, &high);
     if (share * PetscMin(PetscAbsReal(factor[q] - pair->factor[q]), high - low) > factor_drift) return PETSC_FALSE;
-    if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
+    if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, alike, q)) return PETSC_FALSE;
   }
   if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(same - old) <= tolerance);
   return (PetscBool)(!PetscIsNanReal(same) && (!PairDrifts(pair) || PetscAbsReal(same - old) <= drift));
@@ -417,7 +446,8 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
 /* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. */
 static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscReal lag, PetscBool *agrees)
 {
-  PetscReal depth = 0, pressure = 0, drift, factor_drift = CONTACT_FACTOR_AGREES, *gaps, *factor;
+  const PetscBool alike = PointsAlike(pair->lists, pair->next);
+  PetscReal       depth = 0, pressure = 0, drift, factor_drift = CONTACT_FACTOR_AGREES, *gaps, *factor;
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
@@ -430,7 +460,7 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   PetscCall(ContactPointGaps(pair, pair->next, factor, NULL, NULL, gaps, NULL));
   if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
-    *agrees = TermAgrees(pair, pair->next, c, gaps, pair->next_factor, t, depth, pressure, drift, factor_drift);
+    *agrees = TermAgrees(pair, pair->next, alike, c, gaps, pair->next_factor, t, depth, pressure, drift, factor_drift);
   PetscCall(PetscFree2(gaps, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -163,3 +163,32 @@ PetscErrorCode ListBufferAddPoint(ListBuffer *buffer, PetscInt first, PetscInt p
   buffer->point[buffer->n_points++] = point;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  ListBufferAddPoints - adds points to the list of the present slave point as ListBufferAddPoint() does.
+
+  Not collective
+
+  Input Parameters:
++ first  - start of the list of the present slave point
+. n      - number of points
+- points - the points
+
+  Input/Output Parameter:
+. buffer - the growing lists
+@*/
+PetscErrorCode ListBufferAddPoints(ListBuffer *buffer, PetscInt first, PetscInt n, const PetscInt *points)
+{
+  PetscInt *position = buffer->position, end = buffer->n_points;
+
+  PetscFunctionBeginUser;
+  if (end + n > buffer->points_room)
+    PetscCall(PetscRealloc((buffer->points_room = 2 * (end + n)) * sizeof(PetscInt), &buffer->point));
+  for (PetscInt i = 0; i < n; i++) {
+    if (position[points[i]] >= first) continue;
+    position[points[i]]  = end;
+    buffer->point[end++] = points[i];
+  }
+  buffer->n_points = end;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

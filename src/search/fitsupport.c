@@ -472,7 +472,7 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
     if (!lists->bend) PetscCall(PetscCalloc1(lists->n_slaves, &lists->bend));
     lists->bend[q] = problem.bend;
   }
-  for (PetscInt i = 0; i < problem.n; i++) PetscCall(ListBufferAddPoint(buffer, first, fit->points[i]));
+  PetscCall(ListBufferAddPoints(buffer, first, problem.n, fit->points));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -23,7 +23,7 @@ PetscErrorCode MasterFitsCreate(ContactSearch s, const PetscReal *u, PetscReal t
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&fits->lists));
   SearchMasterBox(s, u, t, some, box);
-  PetscCall(SearchFieldCreate(s, u, t, box, SearchFitReach(s), fits->lists, &fits->field));
+  PetscCall(SearchFieldCreate(s, u, t, box, SearchFitReach(s), s->fit->fitted, fits->lists, &fits->field));
   PetscCall(FitSupportCreate(s, fits->lists, &fits->field, &fits->fit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -146,7 +146,7 @@ PetscErrorCode SearchNearFaces(ContactSearch s, const PetscReal *u, PetscReal t,
 {
   const ContactSurface side[2] = {s->slaves->surface, s->master};
   PetscBool *const     near[2] = {slave, master};
-  const PetscBool      tested  = SearchHasPartners(s);
+  const PetscBool      tested  = SearchTestsPartners(s);
 
   PetscFunctionBeginUser;
   ToolsPlace(s->mesh, u, t);

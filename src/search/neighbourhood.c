@@ -2,6 +2,9 @@
 #include "neighbourhood.h"
 #include "smooth/diffusefit.h"
 
+/* Distances of the fit points of a facet are found so many at a time. */
+enum { RUN = 16 };
+
 /* Facets and points whose normal makes a larger angle with that of the frame belong to another flank: cos 60
    degrees. */
 #define NEIGHBOURHOOD_COSINE 0.5
@@ -14,6 +17,7 @@ struct _n_Neighbourhoods {
   const SurfaceView *view;
   PetscInt          *link_ptr, *link; /* facets across the edges that are not sharp, as compressed rows */
   PetscBool         *sharp;           /* of each facet: it has a sharp edge */
+  PetscReal         *place[3];        /* of each point, one component each; in 2D the third one is along the hoop */
   PetscInt          *seen_facet, *seen_point, stamp;
   PetscInt          *queue;
   PetscReal         *rho2, *point_rho2; /* of the points found; of every point that was visited */
@@ -82,6 +86,20 @@ static PetscInt LinkFacets(const SurfaceView *view, PetscInt n, const SharedEdge
   return count;
 }
 
+/* Writes the components of all points one by one, so that distances of several points are found at a time. */
+static PetscErrorCode TakePlaces(Neighbourhoods nb)
+{
+  const SurfaceView *view = nb->view;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(view->n_points, &nb->place[0], view->n_points, &nb->place[1], view->n_points, &nb->place[2]));
+  for (PetscInt p = 0; p < view->n_points; p++) {
+    for (int d = 0; d < view->dim; d++) nb->place[d][p] = view->x[p * view->dim + d];
+    if (view->dim == 2) nb->place[2][p] = view->hoop ? view->hoop[p] : 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   NeighbourhoodsCreate - links the facets of a view across their edges.
 
@@ -117,6 +135,7 @@ PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out
   PetscCall(PetscCalloc2(view->n_facets, &nb->seen_facet, view->n_points, &nb->seen_point));
   PetscCall(PetscMalloc4(view->n_facets, &nb->queue, view->n_points, &nb->reach, view->n_points, &nb->rho2,
                          view->n_points, &nb->point_rho2));
+  PetscCall(TakePlaces(nb));
   *out = nb;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -133,6 +152,7 @@ PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
 {
   PetscFunctionBeginUser;
   if (!*nb) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree3((*nb)->place[0], (*nb)->place[1], (*nb)->place[2]));
   PetscCall(PetscFree2((*nb)->seen_facet, (*nb)->seen_point));
   PetscCall(PetscFree4((*nb)->queue, (*nb)->reach, (*nb)->rho2, (*nb)->point_rho2));
   PetscCall(PetscFree((*nb)->link_ptr));
@@ -194,23 +214,27 @@ PetscInt NeighbourhoodsLinks(Neighbourhoods nb, PetscInt f, const PetscInt **lin
   return nb->link_ptr[f + 1] - nb->link_ptr[f];
 }
 
-/* Squared distance of point p from x0 in a support. */
-static inline PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3],
-                             const NeighbourhoodSupport *support)
+/* Squared distances of n points from x0 in a support, the first of them being number p. */
+static inline void Rho2(const Neighbourhoods nb, PetscInt p, PetscInt n, const PetscReal x0[3],
+                        const NeighbourhoodSupport *support, PetscReal *rho2)
 {
-  const PetscReal *x = &view->x[p * view->dim], *metric = support->metric;
-  PetscReal a = x[0] - x0[0], b = x[1] - x0[1], c = view->dim == 3 ? x[2] - x0[2] : view->hoop ? view->hoop[p] : 0;
+  const PetscReal *x = &nb->place[0][p], *y = &nb->place[1][p], *z = &nb->place[2][p], *metric = support->metric;
+  const PetscReal  z0 = nb->view->dim == 3 ? x0[2] : 0;
 
-  if (support->bent) {
-    const PetscReal *along = support->along,
-                    bend   = FitBendAside(support->h, along[0] * a + along[1] * b + along[2] * c);
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal a = x[i] - x0[0], b = y[i] - x0[1], c = z[i] - z0;
 
-    a -= bend * support->across[0];
-    b -= bend * support->across[1];
-    c -= bend * support->across[2];
+    if (support->bent) {
+      const PetscReal *along = support->along,
+                      bend   = FitBendAside(support->h, along[0] * a + along[1] * b + along[2] * c);
+
+      a -= bend * support->across[0];
+      b -= bend * support->across[1];
+      c -= bend * support->across[2];
+    }
+    rho2[i] = metric[0] * a * a + metric[4] * b * b + metric[8] * c * c +
+              2 * (metric[1] * a * b + metric[2] * a * c + metric[5] * b * c);
   }
-  return metric[0] * a * a + metric[4] * b * b + metric[8] * c * c +
-         2 * (metric[1] * a * b + metric[2] * a * c + metric[5] * b * c);
 }
 
 /* Sorts the points by distance, and points at equal distance by number. */
@@ -268,11 +292,15 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
     const Facet   *facet  = &view->facets[f];
     PetscBool      inside = PETSC_FALSE;
 
-    for (PetscInt q = 0, points = view->first ? view->count[f] : 0; q < points; q++) {
-      const PetscReal own = Rho2(view, view->first[f] + q, x0, support);
+    for (PetscInt q = 0, points = view->first ? view->count[f] : 0; q < points; q += RUN) {
+      const PetscInt first = view->first[f] + q, run = PetscMin(RUN, points - q);
+      PetscReal      own[RUN];
 
-      inside = (PetscBool)(inside || own <= limit);
-      if (own <= limit) ReachAdd(nb, &count, own, view->first[f] + q);
+      Rho2(nb, first, run, x0, support, own);
+      for (PetscInt i = 0; i < run; i++) {
+        inside = (PetscBool)(inside || own[i] <= limit);
+        if (own[i] <= limit) ReachAdd(nb, &count, own[i], first + i);
+      }
     }
     /* A quadrature point inside shows that the facet reaches into the support, so that its nodes need not be
        examined. */
@@ -281,7 +309,7 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
 
       if (nb->seen_point[p] != nb->stamp) {
         nb->seen_point[p] = nb->stamp;
-        nb->point_rho2[p] = Rho2(view, p, x0, support);
+        Rho2(nb, p, 1, x0, support, &nb->point_rho2[p]);
         if (!view->first && nb->point_rho2[p] <= limit && view->geometry[p].weight > 0 &&
             Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE)
           ReachAdd(nb, &count, nb->point_rho2[p], p);

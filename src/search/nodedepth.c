@@ -381,7 +381,8 @@ PetscErrorCode NodeDepthsMeasure(NodeDepths depths, const PetscReal *u, PetscRea
   PetscCall(NearNodes(depths, u, t, &n, nodes, box));
   PetscCall(PetscNew(&lists));
   lists->t = NAN; /* not updated yet */
-  PetscCall(SearchFieldCreate(depths->search, u, t, box, depths->search->reach, lists, &field));
+  PetscCall(
+    SearchFieldCreate(depths->search, u, t, box, depths->search->reach, depths->search->fit->fitted, lists, &field));
   PetscCall(PetscMalloc1(field.n_records, &fetched));
   PetscCall(FetchAllowed(depths, &field, allowed, fetched));
   PetscCall(MeasureNodes(depths, lists, &field, n, nodes, fetched, own, depth));

@@ -314,7 +314,7 @@ static PetscErrorCode OffsetsMap(Offsets o, const PetscReal *zero)
 static PetscErrorCode TakeOnce(Offsets o, PetscBool *done)
 {
   PetscFunctionBeginUser;
-  *done = (PetscBool)(o->once || o->kind != OFFSETS_HELD);
+  *done = (PetscBool)!OffsetsFollow(o);
   if (*done && o->kind != OFFSETS_NONE && !o->taken) {
     PetscReal *zero;
 
@@ -375,6 +375,19 @@ static PetscErrorCode OffsetsAt(Offsets o, const PetscReal *u, PetscReal t, Pets
 static PetscReal InUse(PetscReal offset)
 {
   return PetscIsNanReal(offset) ? 0 : offset;
+}
+
+/*@
+  OffsetsFollow - says whether offsets are taken again and again, so that it matters on which faces they are needed.
+
+  Not collective
+
+  Input Parameter:
+. o - the offsets
+@*/
+PetscBool OffsetsFollow(Offsets o)
+{
+  return (PetscBool)(o->kind == OFFSETS_HELD && !o->once);
 }
 
 /*@
@@ -489,7 +502,7 @@ PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
 
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
-  if (o->once || o->kind != OFFSETS_HELD) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!OffsetsFollow(o)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < o->n; i++) {
     const PetscReal change = o->used[i] - o->held[i];
 
@@ -572,7 +585,7 @@ PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
   Hdf5Table   faces;
 
   PetscFunctionBeginUser;
-  if (o->once || o->kind != OFFSETS_HELD) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!OffsetsFollow(o)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(o->surface->n_faces, &tag));
   for (PetscInt f = 0; f < o->surface->n_faces; f++) tag[f] = o->surface->faces[f].tag;
   PetscCall(Hdf5TableCreateByKey(o->search->mesh->comm, o->surface->n_faces, tag, &faces));

@@ -28,7 +28,8 @@ static PetscErrorCode ThinnestPart(ContactSearch s, PetscReal *length)
 }
 
 /*@
-  SearchHasPartners - says whether slave points are tested for partners before they are searched.
+  SearchHasPartners - says whether slave points without a partner are known from former searches or from a test before
+  a search.
 
   Not collective
 
@@ -37,7 +38,24 @@ static PetscErrorCode ThinnestPart(ContactSearch s, PetscReal *length)
 @*/
 PetscBool SearchHasPartners(ContactSearch s)
 {
-  return (PetscBool)(s->one_body && !s->slaves->maps.ptr);
+  return (PetscBool)(s->listed && s->master && !s->master->rigid && !s->slaves->maps.ptr);
+}
+
+/*@
+  SearchTestsPartners - says whether slave points are tested for partners before they are searched.
+
+  Not collective
+
+  Input Parameter:
+. s - the search
+
+  Note:
+  They are on one body, where most faces lie near others that do not oppose them. Where slave and master are two bodies,
+  a search learns from its own lists which points have no partner.
+@*/
+PetscBool SearchTestsPartners(ContactSearch s)
+{
+  return (PetscBool)(s->one_body && SearchHasPartners(s));
 }
 
 /* The test of one slave point. */
@@ -114,11 +132,12 @@ static PetscErrorCode Normalise(PetscInt n, PetscReal *normal)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Unit normals of the slave points after their last move. */
-static PetscErrorCode PointNormals(ContactSearch s, const PetscReal *u, PetscReal *normal)
+/* Unit normals of the slave points after their last move. any: the same of any length. */
+static PetscErrorCode PointNormals(ContactSearch s, const PetscReal *u, PetscReal *any, PetscReal *normal)
 {
   PetscFunctionBeginUser;
-  PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, normal));
+  PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, any));
+  PetscCall(PetscArraycpy(normal, any, 3 * s->slaves->n));
   PetscCall(Normalise(s->slaves->n, normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -134,6 +153,24 @@ static void FaceNormals(ContactSearch s, const PetscReal *u, PetscReal t, PetscR
     CandidatePlace(s->mesh->dim, x, 0, &face);
     for (int d = 0; d < 3; d++) normal[3 * f + d] = face.normal[d];
   }
+}
+
+/* Has a slave point at x a facet in sight that is not behind its own body? Where slave and master have faces of one
+   body, the facet must oppose the point. */
+static PetscBool TestPoint(ContactSearch s, const SearchField *field, NeighbourLists lists, BoxTree tree,
+                           const PartnersSight *sight, PetscInt q, const PetscReal *normal, const PetscReal *x)
+{
+  const PetscReal   entered = SEARCH_ENTERED * s->slaves->height[q];
+  const BoxTreeSide side    = {.own     = normal,
+                               .opposed = s->one_body ? SEARCH_OPPOSED_NOT - 2 * sight->turn : -INFINITY,
+                               .behind  = (s->one_body ? entered : PetscMax(entered, s->slaves->size[q])) + sight->shift,
+                               .shift   = sight->shift,
+                               .lean    = sight->turn};
+  PointTest         test    = {field, lists, &side, x, PETSC_FALSE};
+  double            bound   = sight->radius;
+
+  BoxTreeClosest(tree, x, &side, &bound, TestFacet, &test);
+  return test.found;
 }
 
 /* Tests which of some slave points have a facet that opposes them in sight, and not behind their own body. The tree
@@ -155,22 +192,13 @@ static PetscErrorCode TestPoints(ContactSearch s, const PetscReal *u, PetscReal 
     SearchBoxAdd(box, dim, x);
   }
   PetscCall(PetscNew(&lists));
-  PetscCall(SearchFieldCreate(s, u, t, box, sight->radius, lists, &field));
+  PetscCall(SearchFieldCreate(s, u, t, box, sight->radius, PETSC_FALSE, lists, &field));
   PetscCall(CandidatesTree(dim, field.n_candidates, field.candidates, PETSC_TRUE, &tree));
   for (PetscInt q = 0; q < s->slaves->n; q++) {
-    const BoxTreeSide side  = {.own     = &normal[3 * q],
-                               .opposed = SEARCH_OPPOSED_NOT - 2 * sight->turn,
-                               .behind  = SEARCH_ENTERED * s->slaves->height[q] + sight->shift,
-                               .shift   = sight->shift,
-                               .lean    = sight->turn};
-    PointTest         test  = {&field, lists, &side, x, PETSC_FALSE};
-    double            bound = sight->radius;
-
     possible[q] = PETSC_FALSE;
     if (among && !among[q]) continue;
     SlavePointsPosition(s->slaves, q, x);
-    BoxTreeClosest(tree, x, &side, &bound, TestFacet, &test);
-    possible[q] = test.found;
+    possible[q] = TestPoint(s, &field, lists, tree, sight, q, &normal[3 * q], x);
   }
   BoxTreeDestroy(&tree);
   PetscCall(SearchFieldDestroy(&field));
@@ -219,21 +247,71 @@ static PetscErrorCode Changes(ContactSearch s, const PetscReal *u, const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tests all points at a state, which becomes that of the last test. */
+/* How far the tests see on whose answer later searches rely. */
+static PartnersSight SightAhead(ContactSearch s)
+{
+  const PetscReal skin = PARTNERS_SKIN * s->partners.thin;
+
+  return (PartnersSight){s->reach + s->partners.motion + skin, skin, PARTNERS_TURN};
+}
+
+/* Says whether any slave point on any rank may have a partner. */
+static PetscErrorCode NoteAny(ContactSearch s)
+{
+  Partners *at  = &s->partners;
+  int       any = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < s->slaves->n; q++) any = any || at->possible[q];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, s->mesh->comm));
+  at->any = (PetscBool)any;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tests all points at a state, which becomes that of the last test, or leaves the test to SearchPartnersLearn(). */
 static PetscErrorCode TestAll(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   Partners           *at    = &s->partners;
-  const PetscReal     skin  = PARTNERS_SKIN * at->thin;
-  const PartnersSight sight = {s->reach + motion + skin, skin, PARTNERS_TURN};
-  int                 any   = 0;
+  const PartnersSight sight = (at->motion = motion, SightAhead(s));
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(at->u, u, s->mesh->n_nodes * s->mesh->dim));
-  PetscCall(TestPoints(s, u, t, &sight, at->normal, NULL, at->possible));
-  for (PetscInt q = 0; q < s->slaves->n; q++) any = any || at->possible[q];
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, s->mesh->comm));
-  at->any    = (PetscBool)any;
-  at->motion = motion;
+  at->learns = (PetscBool)!SearchTestsPartners(s);
+  if (at->learns)
+    for (PetscInt q = 0; q < s->slaves->n; q++) at->possible[q] = PETSC_TRUE;
+  else
+    PetscCall(TestPoints(s, u, t, &sight, at->normal, NULL, at->possible));
+  PetscCall(NoteAny(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SearchPartnersLearn - finds which slave points have no partner from lists that have just been made, if no test has
+  said so.
+
+  Collective
+
+  Input Parameters:
++ s     - the search, after SearchPartners() at the state of the lists
+. lists - the lists
+. field - the candidates of the lists
+- tree  - the tree of the candidates
+
+  Note:
+  A point for which the lists have a facet, or one that does not face it, may have a partner. The others are tested.
+@*/
+PetscErrorCode SearchPartnersLearn(ContactSearch s, NeighbourLists lists, const SearchField *field, BoxTree tree)
+{
+  const PartnersSight sight = SightAhead(s);
+  Partners           *at    = &s->partners;
+
+  PetscFunctionBeginUser;
+  if (!SearchHasPartners(s) || !at->learns) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt q = 0; q < s->slaves->n; q++)
+    if (lists->nearest[q] < 0 && !lists->averse[q])
+      at->possible[q] = TestPoint(s, field, lists, tree, &sight, q, &at->normal[3 * q], &at->x[q * lists->dim]);
+  at->learns = PETSC_FALSE;
+  PetscCall(NoteAny(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -248,6 +326,9 @@ static PetscErrorCode TestAll(ContactSearch s, const PetscReal *u, PetscReal t, 
 . t      - load parameter
 - motion - relative motion (length) for which lists are to be good
 
+  Output Parameter:
+. normals - normals[3*n] of the slave points, as SlavePointsNormals() gives them
+
   Note:
   The answer is in the search's partners. Boxes are seen farther than a search would by a skin, and normals count as
   opposed earlier. As long as nothing has moved or turned by more, the last answer is kept: a point that it leaves out
@@ -255,7 +336,7 @@ static PetscErrorCode TestAll(ContactSearch s, const PetscReal *u, PetscReal t, 
 
   Source: Verlet, Computer experiments on classical fluids, Phys. Rev. 159 (1967) 98-103, for the skin.
 @*/
-PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion)
+PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal *normals)
 {
   Partners      *at = &s->partners;
   const PetscInt n = s->slaves->n, faces = s->master->n_faces;
@@ -267,7 +348,7 @@ PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(n * dim, &x, 3 * n, &normal, 3 * faces, &face_normal));
   for (PetscInt q = 0; q < n; q++) SlavePointsPosition(s->slaves, q, &x[q * dim]);
-  PetscCall(PointNormals(s, u, normal));
+  PetscCall(PointNormals(s, u, normals, normal));
   FaceNormals(s, u, t, face_normal);
   if (first) PetscCall(ThinnestPart(s, &at->thin));
   if (first)
@@ -313,11 +394,15 @@ PetscErrorCode SearchPartnersFaces(ContactSearch s, const PetscReal *u, PetscRea
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(faces, points->surface->n_faces));
   PetscCall(SlavePointsMove(points, u));
-  PetscCall(SearchPartners(s, u, t, motion));
-  if (!s->partners.any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc3(points->n, &possible, points->n_faces, &at_points, 3 * points->n, &normal));
   PetscCall(PetscCalloc1(points->surface->n_faces, &at_faces));
-  PetscCall(PointNormals(s, u, normal));
+  PetscCall(SearchPartners(s, u, t, motion, normal));
+  PetscCall(Normalise(points->n, normal));
+  if (!s->partners.any) {
+    PetscCall(PetscFree3(possible, at_points, normal));
+    PetscCall(PetscFree(at_faces));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(TestPoints(s, u, t, &sight, normal, s->partners.possible, possible));
   for (PetscInt f = 0; f < points->n_faces; f++) {
     at_points[f] = 0;

@@ -11,6 +11,8 @@
    motion), so that the point may slide there within a solve. The size is that of the point's own face or of the nearest
    one, whichever is larger: large faces elsewhere do not lengthen lists between fine faces. */
 #define SEARCH_MARGIN 1.5
+/* Lists begin with room for those before and this part of them, one over it. */
+enum { LIST_ROOM = 16 };
 
 /*@
   SearchCreate - holds what does not change in a run: surfaces, images, slave points.
@@ -231,11 +233,15 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   BoxTree    tree;
   int       *found, *ends;
   PetscInt  *aversed;
-  ListBuffer buffer = {0};
+  ListBuffer buffer = {.room        = s->room + s->room / LIST_ROOM,
+                       .points_room = s->points_room + s->points_room / LIST_ROOM};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(field->n_candidates, &found, field->n_candidates, &ends, lists->n_points, &buffer.position));
   PetscCall(PetscCalloc1(lists->n_points, &aversed));
+  PetscCall(PetscMalloc1(buffer.room, &buffer.facet));
+  PetscCall(PetscMalloc1(buffer.room, &buffer.size));
+  PetscCall(PetscMalloc1(buffer.points_room, &buffer.point));
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
   PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, s->one_body, &tree)); /* none is averse then */
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
@@ -261,8 +267,11 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   lists->list_ptr[lists->n_slaves]  = buffer.n_points;
   lists->facet_ptr[lists->n_slaves] = buffer.n;
   lists->list_point                 = buffer.point;
+  s->room                           = buffer.n;
+  s->points_room                    = buffer.n_points;
   lists->facet                      = buffer.facet;
   lists->facet_size                 = buffer.size;
+  PetscCall(SearchPartnersLearn(s, lists, field, tree));
   BoxTreeDestroy(&tree);
   PetscCall(PetscFree3(found, ends, buffer.position));
   PetscCall(PetscFree(aversed));
@@ -381,7 +390,8 @@ void SearchSetRungs(ContactSearch s, const int *first)
 PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *out)
 {
   const PetscReal distance = SearchListsDistance(s, motion);
-  PetscReal       box[6];
+  const PetscBool partners = SearchHasPartners(s);
+  PetscReal       box[6], *normals;
   SearchField     field;
   NeighbourLists  lists;
   FitSupport      fit;
@@ -390,11 +400,15 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(PetscNew(&lists));
   lists->t = NAN; /* not updated yet */
   PetscCall(SlavePointsMove(s->slaves, u));
-  if (SearchHasPartners(s)) PetscCall(SearchPartners(s, u, t, motion));
+  PetscCall(PetscMalloc1(3 * s->slaves->n, &normals));
+  if (partners) PetscCall(SearchPartners(s, u, t, motion, normals));
   SearchSlaveBox(s, box);
-  PetscCall(SearchFieldCreate(s, u, t, box, distance, lists, &field));
+  PetscCall(SearchFieldCreate(s, u, t, box, distance, (PetscBool)(s->fit->fitted && (!partners || s->partners.any)),
+                              lists, &field));
   PetscCall(NeighbourListsCreateSlaves(s, lists));
-  PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, lists->slave_normal));
+  if (!partners) PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, normals));
+  PetscCall(PetscArraycpy(lists->slave_normal, normals, 3 * s->slaves->n));
+  PetscCall(PetscFree(normals));
   if (s->master) PetscCall(SlavePointsFindEnds(s->slaves, u));
   if (s->fit->fitted) PetscCall(FitSupportCreate(s, lists, &field, &fit));
   if (s->fit->fitted && s->fit->global_frame)

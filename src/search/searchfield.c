@@ -87,7 +87,8 @@ static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
 . u        - local displacements u[mesh n_nodes*dim] (length), ghosts included
 . t        - load parameter, for rigid tools
 . box      - box of this rank, lower then upper corner
-- distance - faces within this distance of the box are collected (length)
+. distance - faces within this distance of the box are collected (length)
+- fits     - fits are to be made, so that the faces bring the geometry of their nodes
 
   Output Parameters:
 + lists - the lists, still without slave points
@@ -97,7 +98,7 @@ static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
   The caller frees the field with SearchFieldDestroy().
 @*/
 PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal box[6],
-                                 PetscReal distance, NeighbourLists lists, SearchField *field)
+                                 PetscReal distance, PetscBool fits, NeighbourLists lists, SearchField *field)
 {
   Mesh          mesh = s->mesh;
   PetscMPIInt   size;
@@ -108,7 +109,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   *field     = (SearchField){0};
   lists->dim = mesh->dim;
   ToolsPlace(mesh, u, t);
-  if (s->fit->fitted) {
+  if (fits) {
     PetscCall(PetscMalloc1(s->master->rigid ? s->master->rigid->n_nodes : mesh->n_nodes, &geometry));
     PetscCall(SurfaceNodeGeometry(s->master, s->scene->geometry, s->loads, u, t, geometry));
   }

@@ -205,6 +205,9 @@ JOBS = [
     Job("comb_fingers", "two combs of leaves pushed against each other", [
         Answer("side_force", 53.399, 0.59, "limit"),
     ], steps=8),
+    Job("serpentine_spring", "serpentine spring closed until its arms touch", [
+        Answer("force", 68.07, 0.34, "limit"),
+    ], steps=8),
     # Friction
     Job("strip_in_rollers", "rubber strip drawn between rollers", [
         Answer("pull", 5.33, 0.8, "limit"),  # it varies by that as nodes come and go

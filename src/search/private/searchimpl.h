@@ -22,6 +22,7 @@
 /* Which slave points may have a partner, and the state of the test that says so (partners.c). */
 typedef struct {
   PetscBool *possible, any;            /* of each slave point, NULL before the first test; of any one on any rank */
+  PetscBool  learns;                   /* the next lists say which points may have one; until then all may */
   PetscReal *x, *normal, *face_normal; /* of slave points and master faces */
   PetscReal  thin;                     /* thinnest element or largest face, whichever is less (length) */
   PetscReal *u, motion; /* of the mesh's nodes (length); motion for which lists were to be good (length) */
@@ -46,6 +47,7 @@ struct _n_ContactSearch {
   const FaceMarks    *marks;         /* of each slave point, where other pairs treat some of its partners; else NULL */
   PetscReal           reach, margin; /* lengths, without the motion */
   PetscReal           fit_reach;     /* SearchFitReach() */
+  PetscInt            room, points_room; /* of the facets and points of the last lists */
   Partners            partners;
 };
 
@@ -137,6 +139,7 @@ PetscReal      CandidateBulge(const Candidate *, PetscReal size);
 PetscReal      CandidateBoxDistance(int dim, const Candidate *, const PetscReal *x);
 PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, PetscBool facing, BoxTree *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
+PetscErrorCode ListBufferAddPoints(ListBuffer *, PetscInt first, PetscInt n, const PetscInt *points);
 /* faceexchange.c */
 void      SearchSlaveBox(ContactSearch, PetscReal box[6]);
 void      SearchMasterBox(ContactSearch, const PetscReal *u, PetscReal t, const PetscBool *some, PetscReal box[6]);
@@ -159,8 +162,10 @@ PetscErrorCode NeighbourListsUpdateNodes(ContactSearch, NeighbourLists, const Pe
 void           NeighbourListsCentre(NeighbourLists, PetscInt q, PetscReal centre[2]);
 /* partners.c */
 PetscBool      SearchHasPartners(ContactSearch);
-PetscErrorCode SearchPartners(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion);
+PetscBool      SearchTestsPartners(ContactSearch);
+PetscErrorCode SearchPartners(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal *normals);
 PetscErrorCode SearchPartnersFaces(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *faces);
+PetscErrorCode SearchPartnersLearn(ContactSearch, NeighbourLists, const SearchField *, BoxTree);
 PetscErrorCode SearchPartnersFree(ContactSearch);
 /* fitsupport.c */
 PetscReal      SearchFitReach(ContactSearch);
@@ -171,7 +176,7 @@ PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, int first, FitProb
 /* searchfield.c */
 PetscReal        SearchListsDistance(ContactSearch, PetscReal motion);
 PetscErrorCode   SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6],
-                                   PetscReal distance, NeighbourLists, SearchField *);
+                                   PetscReal distance, PetscBool fits, NeighbourLists, SearchField *);
 PetscErrorCode   SearchFieldDestroy(SearchField *);
 const Candidate *SearchFieldOwn(const SearchField *, const Facet *);
 PetscErrorCode   SearchFieldWay(ContactSearch, const SearchField *, PetscSF *faces);
