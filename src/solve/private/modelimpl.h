@@ -42,6 +42,7 @@ enum { LINE_MEMORY = 4 };
 typedef struct {
   PetscBool waits;    /* there is one, and it is not known yet */
   PetscBool linear;   /* the last step was taken as far as cells may turn, whatever its energy */
+  PetscBool turns;    /* in this solve a step uphill close to an equilibrium did not pay: such steps are turned, too */
   PetscInt  times;    /* steps since */
   PetscReal rise;     /* of the energy over it and the steps since, where there is no energy to evaluate */
   PetscReal slope;    /* of the energy along it */
