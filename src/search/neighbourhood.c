@@ -2,10 +2,6 @@
 #include "neighbourhood.h"
 #include "smooth/diffusefit.h"
 
-/* Facets and points whose normal makes a larger angle with that of the frame belong to another flank: cos 60
-   degrees. */
-#define NEIGHBOURHOOD_COSINE 0.5
-
 typedef struct {
   PetscInt a, b, facet; /* points of the edge, a < b (2D: the end twice) */
 } SharedEdge;
