@@ -270,7 +270,7 @@ static PetscErrorCode StayUphill(const Search *s, PetscReal slope, PetscBool *st
   *stays = (PetscBool)(slope < 0 && !work->relaxed.turns);
   if (!*stays) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscInfo(s->snes, "close to an equilibrium a step uphill does not pay: slope %g\n", (double)slope));
-  work->relaxed.turns = PETSC_TRUE;
+  work->relaxed.turns = work->strayed = PETSC_TRUE;
   if (s->model->contact) PetscCall(ContactCycleStart(work->watch));
   PetscCall(Take(s, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
