@@ -34,9 +34,7 @@ PRESSED = {  # name -> overrides; only a squeeze by 30 % leaves no gap between l
     "20 %, then 10 MPa, gap 0.05": ("mesh.parameters.gap=0.05", ),
     "20 %, then 10 MPa, gap 0.025": ("mesh.parameters.gap=0.025", )
 }
-PRESSED_SIZES = {name: {"tri6": (12, )} for name in PRESSED}
-for name in ("30 %, then 10 MPa", "20 %, then 10 MPa, gap 0.05"):
-    PRESSED_SIZES[name] = {"quad4": (24, ), "quad9": (12, ), "tri3": (24, ), "tri6": (12, )}
+PRESSED_SIZES = {"quad4": (24, ), "quad9": (12, ), "tri3": (24, ), "tri6": (12, )}
 WAYS |= PRESSED
 LIMITS = {"20 %": "20 %", "30 %": "30 %", "20 % in one step": "20 %"} | dict.fromkeys(PRESSED)
 NUS = (0.49, 0.499, 0.4999, 0.5)
@@ -84,7 +82,7 @@ def cases(nus):
             if LIMITS[way] == way:
                 yield way, *FINE, nu
             for element, (_, _, sizes) in ELEMENTS.items():
-                for n in sizes if way not in PRESSED else PRESSED_SIZES[way].get(element, ()):
+                for n in sizes if way not in PRESSED else PRESSED_SIZES[element]:
                     yield way, element, n, nu
 
 

@@ -200,6 +200,14 @@ static const Explanation Input[] = {
 };
 
 static const Explanation Unsolved[] = {
+  {"B155",
+   {"as before a limit load"},
+   "a limit load",
+   "For the load, the bodies move faster from step to step, and the rates of the last steps grow without bound at the "
+   "load parameter that the message names. The model carries no more than the load there: a body snaps through, buckles, "
+   "or is pressed or drawn through an opening.",
+   "That is a result. What lies behind it is found with `stepping.damping: auto`, or where a displacement is imposed "
+   "instead of the load."},
   {"B136",
    {"an edge against an edge has no contact"},
    "an edge meets an edge, which has no contact in space",

@@ -176,6 +176,52 @@ static void PairKeepRungs(ContactPair *pair)
   }
 }
 
+/* Cosine of the angle between two unit vectors. */
+static PetscReal Cosine(const PetscReal *a, const PetscReal *b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* A fit whose frame turns back a second time within a step keeps the frame that the next lists have, to the end of the
+   step. The frame is that of the points around the nearest facet. On a coarse bend two facets may hand a point to and
+   fro: with the frame of either the solution has the other one nearest. */
+static void PairKeepFrames(ContactPair *pair)
+{
+  const int dim = pair->mesh->dim;
+
+  for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.fitted; q++) {
+    const PetscReal *now   = &pair->lists->frame[9 * q + 3 * (dim - 1)],
+                    *next  = &pair->next->frame[9 * q + 3 * (dim - 1)];
+    PetscReal      *before = &pair->frame_before[3 * q];
+    const PetscBool turns =
+      (PetscBool)(pair->lists->fit_n[q] && pair->next->fit_n[q] && Cosine(now, next) < CONTACT_FRAME_COSINE);
+    const PetscBool back = (PetscBool)(turns && Cosine(before, next) >= CONTACT_FRAME_COSINE);
+
+    for (int d = 0; d < 3; d++) {
+      if (back && pair->turned_back[q]) pair->frame_kept[3 * q + d] = next[d];
+      before[d] = turns ? now[d] : 0;
+    }
+    pair->turned_back[q] = (PetscBool)(pair->turned_back[q] || back);
+  }
+}
+
+/* Lets the search choose rungs and frames of all fits. *changed: it did not choose some of them. */
+static PetscErrorCode PairFreeFits(ContactPair *pair, PetscBool *changed)
+{
+  const PetscInt n = pair->slaves->n;
+
+  PetscFunctionBeginUser;
+  *changed = PETSC_FALSE;
+  for (PetscInt q = 0; q < n; q++) *changed = (PetscBool)(*changed || pair->first_rung[q]);
+  for (PetscInt i = 0; i < 3 * n; i++) *changed = (PetscBool)(*changed || pair->frame_kept[i] != 0);
+  PetscCall(PetscArrayzero(pair->first_rung, n));
+  PetscCall(PetscArrayzero(pair->fallen, n));
+  PetscCall(PetscArrayzero(pair->frame_before, 3 * n));
+  PetscCall(PetscArrayzero(pair->frame_kept, 3 * n));
+  PetscCall(PetscArrayzero(pair->turned_back, n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The next lists replace those in force. */
 static PetscErrorCode PairTakeNext(ContactPair *pair)
 {
@@ -299,17 +345,15 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   for (int p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair    = &contact->pairs[p];
-    PetscReal    needed  = motion;
-    PetscBool    changed = PETSC_FALSE, serve;
+    ContactPair *pair   = &contact->pairs[p];
+    PetscReal    needed = motion;
+    PetscBool    changed, serve;
 
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(PetscLogEventBegin(contact->event_offset, 0, 0, 0, 0));
     PetscCall(PairTakeOffsets(pair, u, t, needed, PETSC_TRUE));
     if (pair->slave_offsets) PetscCall(PetscLogEventEnd(contact->event_offset, 0, 0, 0, 0));
-    for (PetscInt q = 0; q < pair->slaves->n; q++) changed = (PetscBool)(changed || pair->first_rung[q]);
-    PetscCall(PetscArrayzero(pair->first_rung, pair->slaves->n));
-    PetscCall(PetscArrayzero(pair->fallen, pair->slaves->n));
+    PetscCall(PairFreeFits(pair, &changed));
     PetscCall(PairListsServe(pair, u, t, needed, changed, &serve));
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
     if (pair->next) PetscCall(PairTakeNext(pair));
@@ -524,6 +568,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
     PetscCall(ContactNoteLost(pair, t));
     PairDampFactors(pair);
     PairKeepRungs(pair);
+    PairKeepFrames(pair);
     PetscCall(PairTakeNext(pair));
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
@@ -582,6 +627,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
     PetscCall(PairDampOffsets(&contact->pairs[p], u, t));
     PairDampFactors(&contact->pairs[p]);
     PairKeepRungs(&contact->pairs[p]);
+    PairKeepFrames(&contact->pairs[p]);
     PetscCall(PairTakeNext(&contact->pairs[p]));
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));

@@ -196,6 +196,8 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
   PetscCall(PetscCalloc4(slaves->n, &pair->factor_before, slaves->n, &pair->factor_change, slaves->n, &pair->factor_low,
                          slaves->n, &pair->factor_high));
   PetscCall(PetscCalloc2(slaves->n, &pair->first_rung, slaves->n, &pair->fallen));
+  PetscCall(
+    PetscCalloc3(3 * slaves->n, &pair->frame_before, 3 * slaves->n, &pair->frame_kept, slaves->n, &pair->turned_back));
   PetscCall(ContactVariationsCreate(mesh->dim, slaves->n, &pair->variations));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -418,6 +420,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   pair->tool = ToolOfPair(mesh, scene, (int)(contact - scene->contacts));
   SearchSetTool(pair->search, pair->tool);
   SearchSetRungs(pair->search, pair->first_rung);
+  SearchSetFrames(pair->search, pair->frame_kept);
   PetscCall(
     PetscCalloc4(pair->n, &pair->held, pair->n, &pair->predicted, pair->n, &pair->expected, pair->n, &pair->arrived));
   if (friction) PetscCall(FrictionCreate(pair));
@@ -461,6 +464,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(
     PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
   PetscCall(PetscFree2(pair->first_rung, pair->fallen));
+  PetscCall(PetscFree3(pair->frame_before, pair->frame_kept, pair->turned_back));
   PetscCall(PetscFree4(pair->factor_before, pair->factor_change, pair->factor_low, pair->factor_high));
   PetscCall(ContactVariationsDestroy(&pair->variations));
   PetscCall(PetscFree(pair->before));

@@ -280,6 +280,23 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
   }
 }
 
+/* Elements that have come across the axis of revolution are inverted, too: J is at most their hoop stretch where that
+   is not positive. A ball that is turned inside out through its centre has a determinant above 0. */
+static void AcrossAxis(const BatchCall *call)
+{
+  for (int p = 0; p < call->e->points; p++) {
+    Lanes before = {0}, now = {0};
+
+    for (int a = 0; a < call->e->nodes; a++) {
+      before += call->e->N[p][a] * CONST_LANE(call->X, 2 * a);
+      now += call->e->N[p][a] * CONST_LANE(call->u, 2 * a);
+    }
+    now += before;
+    for (int lane = 0; lane < LANES; lane++)
+      if (before[lane] > 0 && now[lane] <= 0) call->J[lane] = fmin(call->J[lane], now[lane] / before[lane]);
+  }
+}
+
 /*@
   ElementKernel - computes energy, internal force and tangent of a batch of KERNEL_LANES elements, total Lagrangian.
 
@@ -297,7 +314,8 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
 + W - strain energy [lanes], or NULL
 . f - internal force [nodes][dim][lanes], or NULL
 . K - tangent [nodes*dim][nodes*dim][lanes], or NULL
-- J - smallest determinant of F over the quadrature points [lanes]; 1 for small kinematics
+- J - smallest determinant of F over the quadrature points [lanes], or a hoop stretch that is not positive; 1 for small
+      kinematics
 
   Note:
   Solids in the plane have unit thickness; where they are thin, their stress across the plane is 0. Axisymmetric
@@ -338,6 +356,7 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
     call.J          = J + part;
     call.fault      = fault;
     batch(&call);
+    if (kernel->geometry == GEOMETRY_AXISYMMETRIC && call.finite) AcrossAxis(&call);
     for (int lane = 0; lane < LANES; lane++) { /* as an element that is inverted: the step is taken back */
       if (fault[lane]) J[part + lane] = NAN;
       if (kernel->plastic && kernel->plastic->fault) kernel->plastic->fault[part + lane] = fault[lane];
@@ -597,7 +616,7 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
 {
   Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS] = {{0}};
   BatchCall call = StartCall(kernel, lanes_constants);
-  const int dofs = ElementNodes(kernel) * call.e->dim;
+  const int dofs                                    = ElementNodes(kernel) * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
     lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], lanes_state[ELEMENT_MAX_POINTS * MAX_STATE * KERNEL_LANES],
     lanes_pressure[ELEMENT_MAX_POINTS * KERNEL_LANES] = {0}, lanes_multiplier[MIXED_PRESSURES * KERNEL_LANES];

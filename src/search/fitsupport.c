@@ -420,6 +420,18 @@ static PetscBool FootPast(const Nearest *look)
                      SEARCH_FIT_TIE * look->size);
 }
 
+/* Has a fit keep its frame, where it is to, unless the nearest facet belongs to another flank than that. */
+static void KeepFrame(const FitSupport *fit, PetscInt q, FitFoot *at)
+{
+  const PetscReal *kept   = fit->s->kept ? &fit->s->kept[3 * q] : NULL;
+  PetscReal        cosine = 0;
+
+  for (int d = 0; d < fit->lists->dim && kept; d++) cosine += kept[d] * at->outward[d];
+  if (cosine <= NEIGHBOURHOOD_COSINE) return;
+  at->upright = PETSC_TRUE;
+  for (int d = 0; d < fit->lists->dim; d++) at->outward[d] = kept[d];
+}
+
 /*@
   FitSupportSlave - fits the surface for one slave point and writes a fit that holds into its list.
 
@@ -453,6 +465,7 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
     at.u[d]    = lists->slave_u[q * lists->dim + d];
     at.foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
   }
+  KeepFrame(fit, q, &at);
   TimingBegin(TIMING_FIT); /* these two readings of the clock cost 0.1 % of a ladder */
   PetscCall(FitSupportClimb(fit, &at, fit->s->first_rung ? fit->s->first_rung[q] : RUNG_PLAIN, &problem, &result,
                             &lists->rung[q]));

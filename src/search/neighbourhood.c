@@ -5,10 +5,6 @@
 /* Distances of the fit points of a facet are found so many at a time. */
 enum { RUN = 16 };
 
-/* Facets and points whose normal makes a larger angle with that of the frame belong to another flank: cos 60
-   degrees. */
-#define NEIGHBOURHOOD_COSINE 0.5
-
 typedef struct {
   PetscInt a, b, facet; /* points of the edge, a < b (2D: the end twice) */
 } SharedEdge;

@@ -369,6 +369,21 @@ void SearchSetRungs(ContactSearch s, const int *first)
 }
 
 /*@
+  SearchSetFrames - has fits keep the direction of their frames.
+
+  Not collective
+
+  Input Parameters:
++ s    - the search
+- kept - of each slave point of this rank, kept[3*n]: normal of the frame that its fit keeps, on the side of the slave;
+         0 where the search chooses it; borrowed, read by each search
+@*/
+void SearchSetFrames(ContactSearch s, const PetscReal *kept)
+{
+  s->kept = kept;
+}
+
+/*@
   SearchLists - lists for every slave point of this rank the facets near it and the points of which these are made, from
   whatever rank.
 

@@ -45,6 +45,7 @@ void           SearchAllSides(ContactSearch, PetscBool one_body);
 void           SearchSetTool(ContactSearch, const MeshTool *);
 void           SearchSetMarks(ContactSearch, const FaceMarks *);
 void           SearchSetRungs(ContactSearch, const int *first);
+void           SearchSetFrames(ContactSearch, const PetscReal *kept);
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
 PetscErrorCode SearchNearFaces(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *slave,
                                PetscBool *master);

@@ -195,6 +195,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   model->t                 = t;
   model->problem->inverted = -1;
   work->start              = 0;
+  work->strayed            = PETSC_FALSE;
   work->cycling            = PETSC_FALSE;
   work->cycles             = 0;
   work->augmented          = PETSC_FALSE;

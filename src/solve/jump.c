@@ -21,7 +21,8 @@
   Two things together tell a jump: the tangent became indefinite on the way, so that steps were turned round or the
   solve needed a viscous restraint, and the bodies moved much faster than in the step before. The first step of a run
   has none before it. Without contact, whose changes make the tangent of an iterate indefinite, too, it is then to be
-  repeated with a smaller one, unless a viscous restraint has led it.
+  repeated with a smaller one, unless a viscous restraint has led it. So is a step that jumped after it was close to an
+  equilibrium and turned round where that was a saddle: its length may have led it away from its path.
 @*/
 PetscErrorCode ModelFindJump(Model model, SolveReport *report)
 {
@@ -53,6 +54,11 @@ PetscErrorCode ModelFindJump(Model model, SolveReport *report)
   }
   PetscCall(LargestOfRanks(mesh->comm, farthest, &most, &rank, &here));
   if (most <= PetscSqr(allowed)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (work->strayed && !report->damped) {
+    model->problem->inverted = -1;
+    report->result           = SOLVE_JUMP;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (here) {
     MeshNodePlace(mesh, at, X);
     PetscCall(PetscSNPrintf(report->jump, sizeof(report->jump),

@@ -158,11 +158,11 @@ static PetscErrorCode ModelTurnSoft(Model model, Vec F, Vec y, PetscReal slope, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Turns a step round that leads uphill, unless an equilibrium is near. Where the tangent is indefinite, Newton's step
-   may lead to a saddle of the energy, and the opposite step leads downhill. With loads that follow the surface the work
-   of the residual stands for the energy. Where nodes have pressures, the part of the step that makes up for changes of
-   the volume stays as it is: turned round it would double them. Along the rest the linear problem keeps the volume, and
-   its slope is that of the energy of displacements. */
+/* Turns a step round that leads uphill, unless an equilibrium is near and the search has found no other way. Where the
+   tangent is indefinite, Newton's step may lead to a saddle of the energy, and the opposite step leads downhill. With
+   loads that follow the surface the work of the residual stands for the energy. Where nodes have pressures, the part of
+   the step that makes up for changes of the volume stays as it is: turned round it would double them. Along the rest
+   the linear problem keeps the volume, and its slope is that of the energy of displacements. */
 static PetscErrorCode ModelTurnStep(Model model, SNES snes, Vec F, Vec y, PetscReal slope)
 {
   PetscBool near = PETSC_FALSE, turned;
@@ -172,7 +172,7 @@ static PetscErrorCode ModelTurnStep(Model model, SNES snes, Vec F, Vec y, PetscR
   PetscFunctionBeginUser;
   if (slope >= 0 || PetscIsInfOrNanReal(slope)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelNearEquilibrium(model, F, &near));
-  if (near) PetscFunctionReturn(PETSC_SUCCESS);
+  if (near && !model->work->relaxed.turns) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(y, &z));
   if (model->mesh->saddle) PetscCall(ModelSplitStep(model, snes, F, y, z, &rest));
   turned = (PetscBool)(rest >= 0);

@@ -295,6 +295,19 @@ PetscErrorCode ModelAccept(Model model)
 }
 
 /*@
+  ModelRate - returns the largest displacement per unit of t in the last accepted step (length), 0 before the first one.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. model - the model
+@*/
+PetscReal ModelRate(Model model)
+{
+  return model->work->rate;
+}
+
+/*@
   ModelRestore - returns to the accepted state.
 
   Collective

@@ -122,6 +122,7 @@ PetscErrorCode ModelLookAhead(Model, PetscReal t, PetscReal *u, SolveReport *);
 PetscErrorCode ModelGetAccepted(Model, const PetscReal **u, PetscReal *t);
 PetscErrorCode ModelCertify(Model, SolveReport *);
 PetscErrorCode ModelAccept(Model);
+PetscReal      ModelRate(Model);
 PetscErrorCode ModelRestore(Model);
 PetscErrorCode ModelArchive(Model, Archive);
 PetscErrorCode ModelChangeSupports(Model, PetscBool *changed);

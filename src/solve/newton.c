@@ -416,6 +416,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   model->work->crawls           = 0;
   model->work->stalled          = PETSC_FALSE;
   model->work->relaxed.waits    = PETSC_FALSE;
+  model->work->relaxed.turns    = PETSC_FALSE;
   model->work->relaxed.farthest = MODEL_FARTHEST;
   PetscCall(PetscArrayzero(model->work->cuts, CUT_CAUSES));
   PetscCall(ModelIterate(model));

@@ -259,19 +259,39 @@ static PetscErrorCode Descend(const Search *s, PetscReal rise)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Stays where the step begins, as close to an equilibrium it leads uphill, and no part of it lowers the energy. There
+   the tangent is indefinite, and the equilibrium that the step seeks is a saddle, or none. From now on steps are turned
+   there as elsewhere. *stays: that was done. */
+static PetscErrorCode StayUphill(const Search *s, PetscReal slope, PetscBool *stays)
+{
+  ModelWork *work = s->model->work;
+
+  PetscFunctionBeginUser;
+  *stays = (PetscBool)(slope < 0 && !work->relaxed.turns);
+  if (!*stays) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscInfo(s->snes, "close to an equilibrium a step uphill does not pay: slope %g\n", (double)slope));
+  work->relaxed.turns = work->strayed = PETSC_TRUE;
+  if (s->model->contact) PetscCall(ContactCycleStart(work->watch));
+  PetscCall(Take(s, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Shortens the step until the energy falls. */
 static PetscErrorCode Shorten(const Search *s)
 {
   PetscReal lambda, slope, rise;
+  PetscBool stays;
 
   PetscFunctionBeginUser;
+  PetscCall(VecDotRealPart(s->F, s->y, &slope));
+  PetscCall(StayUphill(s, slope, &stays));
+  if (stays) PetscFunctionReturn(PETSC_SUCCESS);
   if (ProblemConservative(s->model->problem)) {
     PetscCall(ChooseFalling(s));
     PetscCall(Backtrack(s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(SNESLineSearchGetDamping(s->search, &lambda));
-  PetscCall(VecDotRealPart(s->F, s->y, &slope));
   for (int i = 0; i < SEARCH_CUTS; i++) {
     PetscCall(Rise(s, lambda, &rise));
     if (rise <= -SEARCH_FALL * lambda * slope) {

@@ -36,6 +36,16 @@
 /* What bounds a step and may have another cause than its length */
 typedef enum { BOUND_LAG, BOUND_TRAVEL, BOUND_FACING, BOUNDS } Bound;
 
+/* Accepted steps whose pace tells a limit load: two pairs of neighbours must tell the same */
+enum { PACE_STEPS = 3 };
+
+/* How fast the bodies have moved for the load in the last accepted steps, the last one first */
+typedef struct {
+  int       n;
+  PetscReal middle[PACE_STEPS], rate[PACE_STEPS]; /* t in the middle of the step; largest displacement per unit of t */
+  PetscReal dt;                                   /* of the last one */
+} Pace;
+
 struct _n_LoadStepper {
   MPI_Comm             comm;
   Model                model;
@@ -52,7 +62,8 @@ struct _n_LoadStepper {
   void                *monitor_context;
   PetscReal            used[BOUNDS]; /* by the last attempt of this step, of what is allowed; 0: none */
   PetscReal            most_facing;  /* turn (radians) of surfaces that lie opposite each other in this step */
-  PetscInt             damped;       /* 1: the last accepted step was damped */
+  Pace                 pace;
+  PetscInt             damped; /* 1: the last accepted step was damped */
   PetscBool            view;
 };
 
@@ -393,6 +404,22 @@ static void ScaleRecord(Scene scene, StepRecord *record)
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(per_thickness); i++) *per_thickness[i] *= scene->thickness;
 }
 
+/* Adds the step from t - dt to t that was accepted to the pace. A damped step, or one that jumped, begins it anew. So
+   does a load that changes its rate. */
+static void PaceAdd(Pace *pace, Model model, PetscReal dt, PetscBool jumped)
+{
+  const PetscBool anew = (PetscBool)(jumped || SceneBreaks(model->scene, model->t));
+
+  for (int i = PACE_STEPS - 1; i > 0; i--) {
+    pace->middle[i] = pace->middle[i - 1];
+    pace->rate[i]   = pace->rate[i - 1];
+  }
+  pace->middle[0] = model->t - dt / 2;
+  pace->rate[0]   = ModelRate(model);
+  pace->dt        = dt;
+  pace->n         = anew ? 0 : PetscMin(PACE_STEPS, pace->n + 1);
+}
+
 /* Accepts a converged step of dt: fills its record, lets the control choose the next dt, which is at most `most` and
    which it must not shrink below dt_min, and accepts the state. */
 static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscReal most, PetscBool clipped,
@@ -414,6 +441,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   record->tied     = stepper->size.tied;
   if (stepper->last && model->t >= 1 - STEPPER_SAME_T) PetscCall(stepper->last(stepper->last_context));
   PetscCall(ModelAccept(model));
+  PaceAdd(&stepper->pace, model, dt, (PetscBool)(solve->jump[0] || solve->damped));
   record->energy         = EnergyBalanceGet(model->balance);
   record->energy.damping = report->damping + solve->damping;
   ScaleRecord(model->scene, record);
@@ -437,17 +465,58 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether the way that a solve failed may be due to an unstable equilibrium. */
+static PetscBool MayBeUnstable(SolveResult result)
+{
+  switch (result) {
+  case SOLVE_ITERATIONS:
+  case SOLVE_LINE_SEARCH:
+  case SOLVE_DOMAIN:
+  case SOLVE_LINEAR:
+  case SOLVE_LISTS:
+  case SOLVE_CYCLE:
+  case SOLVE_LOST:
+  case SOLVE_NAN: return PETSC_TRUE;
+  default: return PETSC_FALSE;
+  }
+}
+
+/* The load parameter at which two steps say that the pace is without bound; infinite where it does not grow. The way to
+   a limit load is a parabola, at whose end the rate goes with the inverse of the square root of the distance. */
+static PetscReal PaceEnd(const Pace *pace, int step)
+{
+  const PetscReal now = PetscSqr(pace->rate[step]), before = PetscSqr(pace->rate[step + 1]);
+
+  if (now <= before) return PETSC_INFINITY;
+  return (now * pace->middle[step] - before * pace->middle[step + 1]) / (now - before);
+}
+
+/* Says whether the pace before the state at t tells a limit load within one more step like the last one. */
+static PetscBool PaceLimited(const Pace *pace, PetscReal t, PetscReal *limit)
+{
+  if (pace->n < PACE_STEPS) return PETSC_FALSE;
+  *limit = PetscMax(t, PaceEnd(pace, 0));
+  return (PetscBool)(*limit <= t + pace->dt && PaceEnd(pace, 1) <= t + (t - pace->middle[PACE_STEPS - 1]));
+}
+
 /* Writes into the report that the step from t to `end` failed for good. first, dt: of its first and its last attempt.
  */
-static PetscErrorCode ReportFailure(StepperReport *report, PetscReal t, PetscReal end, PetscReal first, PetscReal dt,
-                                    PetscReal dt_min, PetscInt attempts, const SolveReport *solve)
+static PetscErrorCode ReportFailure(LoadStepper stepper, PetscReal t, PetscReal end, PetscReal first, PetscReal dt,
+                                    PetscInt attempts, const SolveReport *solve)
 {
+  StepperReport *report    = &stepper->report;
+  PetscReal      limit     = t;
+  char           text[128] = "";
+
   PetscFunctionBeginUser;
+  if (MayBeUnstable(solve->result) && PaceLimited(&stepper->pace, t, &limit))
+    PetscCall(PetscSNPrintf(text, sizeof(text), "; the bodies move ever faster, as before a limit load at t = %.4g",
+                            (double)limit));
   PetscCall(PetscSNPrintf(report->message, sizeof(report->message),
-                          "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT
+                          "no equilibrium from t = %.6g to %.6g: %s; %s%s; tried %" PetscInt_FMT
                           " steps, dt from %.3g down to %.3g (dt_min %.3g)",
-                          (double)t, (double)end, SolveResults[solve->result], solve->detail, attempts, (double)first,
-                          (double)dt, (double)dt_min));
+                          (double)t, (double)end, SolveResults[solve->result], solve->detail, text, attempts,
+                          (double)first, (double)dt, (double)stepper->size.dt_min));
   report->failed.solve    = *solve;
   report->failed.attempts = attempts;
   report->failed.t        = end;
@@ -546,22 +615,6 @@ static PetscErrorCode LoadStepperBound(LoadStepper stepper, PetscReal dt, PetscR
   else
     stepper->size.dt = PetscMin(STEPPER_CUT * dt, *most); /* a landing may stretch it by STEPPER_STRETCH */
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Says whether the way that a solve failed may be due to an unstable equilibrium. */
-static PetscBool MayBeUnstable(SolveResult result)
-{
-  switch (result) {
-  case SOLVE_ITERATIONS:
-  case SOLVE_LINE_SEARCH:
-  case SOLVE_DOMAIN:
-  case SOLVE_LINEAR:
-  case SOLVE_LISTS:
-  case SOLVE_CYCLE:
-  case SOLVE_LOST:
-  case SOLVE_NAN: return PETSC_TRUE;
-  default: return PETSC_FALSE;
-  }
 }
 
 /* Solves for a step of dt to `end`. Where static solves have failed often enough, the next one is damped, and the count
@@ -667,7 +720,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     stepper->size.failed_dt = recovers ? 0 : longest; /* what fails again on the way back is no matter of the place */
     stepper->size.dt        = STEPPER_CUT * dt;
     if (stepper->size.dt < stepper->size.dt_min || singular || BoundIsReached(&solve, dt, end)) {
-      PetscCall(ReportFailure(report, t, end, first, dt, stepper->size.dt_min, record->attempts, &solve));
+      PetscCall(ReportFailure(stepper, t, end, first, dt, record->attempts, &solve));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }

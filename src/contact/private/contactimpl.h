@@ -107,10 +107,14 @@ typedef struct {
   PetscReal     *factor, *next_factor; /* area factor of each slave point: frozen with the lists, fades out past a free
                                           edge of the master */
   /* Of each slave point: its factor before the one in force, in this step, and what the search said then less that. */
-  PetscReal         *factor_before, *factor_change;
-  PetscReal         *factor_low, *factor_high; /* factors of this step between which the right one is */
-  int               *first_rung;               /* rung with which the fit of each slave point begins in this step */
-  PetscBool         *fallen;                   /* slave points whose fit has fallen to a lower rung in this step */
+  PetscReal *factor_before, *factor_change;
+  PetscReal *factor_low, *factor_high; /* factors of this step between which the right one is */
+  int       *first_rung;               /* rung with which the fit of each slave point begins in this step */
+  PetscBool *fallen;                   /* slave points whose fit has fallen to a lower rung in this step */
+  /* Of each slave point, in this step: normals of the frame of the fit before the one in force and of the frame that
+     its fit keeps, 0 for none; its frame has turned back once. */
+  PetscReal         *frame_before, *frame_kept;
+  PetscBool         *turned_back;
   PetscBool          fresh;     /* the lists in force were made where they are, with the offsets in force */
   PetscBool          projected; /* the slave points were projected with these lists at their last update */
   int               *seed;      /* of each slave point: facet of the last projection */

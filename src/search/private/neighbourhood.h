@@ -31,6 +31,10 @@ typedef struct {
   PetscReal along[3], across[3], h[2]; /* where it is bent: unit vectors, and coefficients as in FitBend */
 } NeighbourhoodSupport;
 
+/* Facets and points whose normal makes a larger angle with that of the frame belong to another flank: cos 60
+   degrees. */
+#define NEIGHBOURHOOD_COSINE 0.5
+
 typedef struct _n_Neighbourhoods *Neighbourhoods;
 
 PetscErrorCode NeighbourhoodsCreate(const SurfaceView *, Neighbourhoods *);

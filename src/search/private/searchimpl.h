@@ -40,7 +40,8 @@ struct _n_ContactSearch {
   const PetscReal    *offset; /* of the quadrature points of this rank's master faces, where fits use these points */
   const FaceMaps     *maps;   /* or these points as combinations of nodes */
   const MeshTool     *tool;   /* the master, where its motion has free components; else NULL */
-  const int          *first_rung;    /* of each slave point, with which its fit begins; NULL: RUNG_PLAIN */
+  const int          *first_rung; /* of each slave point, with which its fit begins; NULL: RUNG_PLAIN */
+  const PetscReal    *kept;       /* 3 for each slave point: normal of the frame that its fit keeps, 0 for none; NULL */
   PetscBool           keeps_faces;   /* lists keep all faces, not only those of each slave point */
   PetscBool           listed;        /* any side of the bodies may meet any other one */
   PetscBool           one_body;      /* slave and master have faces of one body */

@@ -42,6 +42,7 @@ enum { LINE_MEMORY = 4 };
 typedef struct {
   PetscBool waits;    /* there is one, and it is not known yet */
   PetscBool linear;   /* the last step was taken as far as cells may turn, whatever its energy */
+  PetscBool turns;    /* in this solve a step uphill close to an equilibrium did not pay: such steps are turned, too */
   PetscInt  times;    /* steps since */
   PetscReal rise;     /* of the energy over it and the steps since, where there is no energy to evaluate */
   PetscReal slope;    /* of the energy along it */
@@ -88,6 +89,7 @@ typedef struct _n_ModelWork {
   PetscBool held;         /* no contact lists were replaced at a solution */
   PetscBool unsettled;    /* the contact at the end of the last linear step was not found */
   PetscBool softens;      /* soft penalties are those of all contact, also of what the prediction counted on */
+  PetscBool strayed;      /* a step uphill close to an equilibrium was turned round: the solve may end far from there */
   PetscReal start;        /* residual norm where Newton's method started; 0: it has not started */
   PetscReal energy;       /* the last energy that the line search evaluated; 0: none */
   PetscInt  renewed;      /* times that a slave point slid out of its lists and new lists were made */
