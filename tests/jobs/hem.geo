@@ -1,7 +1,8 @@
 // An angle of sheet 1 thick with a flange of 8, inner radius 1 (hem.yaml)
 DefineConstant[ refine = 1 ];
 t = 1; r = 1;
-Point(1) = {-12, 0, 0};  Point(2) = {0, 0, 0};  Point(3) = {0, r + t, 0};  Point(4) = {r + t, r + t, 0};  Point(5) = {r + t, 9, 0};
+Point(1) = {-12, 0, 0};  Point(2) = {0, 0, 0};  Point(3) = {0, r + t, 0};  Point(4) = {r + t, r + t, 0};
+Point(5) = {r + t, 9, 0};
 Point(11) = {-12, t, 0};  Point(12) = {0, t, 0};  Point(14) = {r, r + t, 0};  Point(15) = {r, 9, 0};
 Line(1) = {1, 2};  Circle(2) = {2, 3, 4};  Line(3) = {4, 5};
 Line(4) = {11, 12};  Circle(5) = {12, 3, 14};  Line(6) = {14, 15};

@@ -1,5 +1,5 @@
-"""An elastic block lands with its edge on a flat face: a fifth of a face deep it presses back as on finer faces, as named
-pair and as a list of surfaces. Without terms of ends it pressed with nothing (first order) or 0.6 of that (second).
+"""An elastic block lands with its edge on a flat face: a fifth of a face deep it presses back as on finer faces, as a
+named pair and as a list of surfaces. Without terms of ends it pressed with nothing (first order) or 0.6 of that (second).
 Where surfaces cross and no contact presses, the run says so."""
 from harness import Check, arguments, run, SCENES
 
