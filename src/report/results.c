@@ -432,8 +432,10 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(results->scene->n_contacts, &apart));
   last.apart = apart;
+  last.met   = (PetscBool)!results->stepped;
   for (int p = 0; p < results->scene->n_contacts; p++) {
     apart[p] = -1;
+    last.met = (PetscBool)(last.met || results->met[p]);
     if (results->stepped && !results->met[p] && !results->scene->contacts[p].listed) /* most of a list never meet */
       PetscCall(ContactPairDistance(results->model->contact, p, results->model->u, results->model->t, &apart[p]));
   }

@@ -16,6 +16,9 @@
 /* Motions that ties hold are unstable where their stiffness is below 0 by more than this part of their body's. The
    unevenness of meshes gives neutral ones, such as the rolling of a ball, far less. */
 #define TERMINAL_UNSTABLE 1e-2
+/* Surfaces that cross by less than this part of a face are said to touch: so far places go off by what curved faces of
+   coarse meshes leave. */
+#define TERMINAL_CROSSED 1e-3
 
 enum {
   EFFECTS_SIZE  = 2 * PETSC_MAX_PATH_LEN, /* characters of the list of a run's effects */
@@ -444,6 +447,19 @@ static void PrintUnmet(Terminal terminal, const PetscReal *apart)
   }
 }
 
+/* Warns of surfaces that cross in a run in which no contact has pressed: its results are those of no contact. */
+static void WarnCrossed(const RunFigures *figures, PetscBool met)
+{
+  const PetscReal over_h = figures->certificate.over_h;
+
+  if (!met && over_h > TERMINAL_CROSSED)
+    fprintf(
+      stderr,
+      "burnish: warning: surfaces cross by up to %.3g of a face in this run, and no contact pressed: the faces are "
+      "too large for what touches [B154]\n",
+      (double)over_h);
+}
+
 /* Warns of penetrations of more than a face size, whose results are those of no contact. */
 static void WarnDeep(PetscReal deepest, PetscReal standing)
 {
@@ -560,6 +576,7 @@ PetscErrorCode TerminalEnd(Terminal terminal, const TerminalLast *last)
   if (terminal->rank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WarnUnused());
   WarnDeep(last->deepest, last->standing);
+  WarnCrossed(figures, last->met);
   if (terminal->talks && counts->refined)
     printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts->refined,
            (long long)counts->solves, (long long)counts->steps);

@@ -291,4 +291,10 @@ JOBS = [
     Job("hole_expanded", "hole in a sheet expanded by a cone", [
         Answer("hole", 3.111, 0.7, "limit"),
     ], steps=15, picture=["--mirror", "x"], stiff=["stepping.dt_max=0.02"]),
+    Job("rivet", "rivet headed by force and let go", [
+        Answer("height", -1.738, 1, "limit"),
+    ], steps=30, pairs=2, picture=["--mirror", "x"], levels=(0.5, 0.75, 1.125)),
+    Job("hem", "flange folded over as before hemming", [
+        Answer("tip_x", -4.1137, 0.04, "limit"),
+    ], steps=20, pairs=2, stiff=["contact.0.initial_overlap=resolve", "stepping.dt_max=0.04"]),
 ]

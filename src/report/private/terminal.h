@@ -13,6 +13,7 @@ typedef struct _n_Terminal *Terminal;
 typedef struct {
   const RunFigures *figures;
   const PetscReal  *probes;   /* final values, NaN where there is none */
+  PetscBool         met;      /* some contact has pressed in this run, or there is no step to speak of */
   const PetscReal  *apart;    /* of each contact pair that never met: its nearest distance at the end, else -1 */
   PetscReal         deepest;  /* largest penetration of the run, in face sizes */
   PetscReal         standing; /* largest depth of a master node in a slave in the written states, in face sizes */

@@ -1,0 +1,22 @@
+// An angle of sheet 1 thick with a flange of 8, inner radius 1 (hem.yaml)
+DefineConstant[ refine = 1 ];
+t = 1; r = 1;
+Point(1) = {-12, 0, 0};  Point(2) = {0, 0, 0};  Point(3) = {0, r + t, 0};  Point(4) = {r + t, r + t, 0};
+Point(5) = {r + t, 9, 0};
+Point(11) = {-12, t, 0};  Point(12) = {0, t, 0};  Point(14) = {r, r + t, 0};  Point(15) = {r, 9, 0};
+Line(1) = {1, 2};  Circle(2) = {2, 3, 4};  Line(3) = {4, 5};
+Line(4) = {11, 12};  Circle(5) = {12, 3, 14};  Line(6) = {14, 15};
+Line(7) = {1, 11};  Line(8) = {2, 12};  Line(9) = {4, 14};  Line(10) = {5, 15};
+Curve Loop(1) = {1, 8, -4, -7};  Plane Surface(1) = {1};
+Curve Loop(2) = {2, 9, -5, -8};  Plane Surface(2) = {2};
+Curve Loop(3) = {3, 10, -6, -9};  Plane Surface(3) = {3};
+Transfinite Curve{1, 4} = Round(20*refine) + 1;
+Transfinite Curve{2, 5} = Round(8*refine) + 1;
+Transfinite Curve{3, 6} = Round(14*refine) + 1;
+Transfinite Curve{7, 8, 9, 10} = Round(3*refine) + 1;
+Transfinite Surface{1, 2, 3};
+Recombine Surface{1, 2, 3};
+Physical Surface("sheet") = {1, 2, 3};
+Physical Curve("bottom") = {1, 2};
+Physical Curve("outside") = {3};
+Physical Curve("back") = {7};
