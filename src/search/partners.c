@@ -1,4 +1,4 @@
-/* Slave points of a body that may meet other sides of the same body: which of them can have a partner at all. */
+/* Slave points where any side of the bodies may meet any other one: which of them can have a partner at all. */
 #include "searchimpl.h"
 
 /* A test is good as long as slave points, with their offsets, and master together have moved by less than this part of
@@ -271,10 +271,12 @@ static PetscErrorCode NoteAny(ContactSearch s)
 /* Tests all points at a state, which becomes that of the last test, or leaves the test to SearchPartnersLearn(). */
 static PetscErrorCode TestAll(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion)
 {
-  Partners           *at    = &s->partners;
-  const PartnersSight sight = (at->motion = motion, SightAhead(s));
+  Partners     *at = &s->partners;
+  PartnersSight sight;
 
   PetscFunctionBeginUser;
+  at->motion = motion;
+  sight      = SightAhead(s);
   PetscCall(PetscArraycpy(at->u, u, s->mesh->n_nodes * s->mesh->dim));
   at->learns = (PetscBool)!SearchTestsPartners(s);
   if (at->learns)
