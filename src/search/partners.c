@@ -160,14 +160,15 @@ static void FaceNormals(ContactSearch s, const PetscReal *u, PetscReal t, PetscR
 static PetscBool TestPoint(ContactSearch s, const SearchField *field, NeighbourLists lists, BoxTree tree,
                            const PartnersSight *sight, PetscInt q, const PetscReal *normal, const PetscReal *x)
 {
-  const PetscReal   entered = SEARCH_ENTERED * s->slaves->height[q];
-  const BoxTreeSide side    = {.own     = normal,
-                               .opposed = s->one_body ? SEARCH_OPPOSED_NOT - 2 * sight->turn : -INFINITY,
-                               .behind  = (s->one_body ? entered : PetscMax(entered, s->slaves->size[q])) + sight->shift,
-                               .shift   = sight->shift,
-                               .lean    = sight->turn};
-  PointTest         test    = {field, lists, &side, x, PETSC_FALSE};
-  double            bound   = sight->radius;
+  const PetscReal entered = SEARCH_ENTERED * s->slaves->height[q],
+                  behind  = s->one_body ? entered : PetscMax(entered, s->slaves->size[q]);
+  const BoxTreeSide side  = {.own     = normal,
+                             .opposed = s->one_body ? SEARCH_OPPOSED_NOT - 2 * sight->turn : -INFINITY,
+                             .behind  = behind + sight->shift,
+                             .shift   = sight->shift,
+                             .lean    = sight->turn};
+  PointTest         test  = {field, lists, &side, x, PETSC_FALSE};
+  double            bound = sight->radius;
 
   BoxTreeClosest(tree, x, &side, &bound, TestFacet, &test);
   return test.found;
