@@ -550,8 +550,8 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
     const PetscInt    r    = field->candidates[c].record;
     double            area[FACE_RULE_POINTS];
     Ring              ring[FACE_RULE_POINTS];
-    const PetscInt    n = s->fit->revolved ? CandidateRings(s, lists, field, &field->candidates[c], area, ring)
-                                           : FaceRuleGet(type, 0)->n;
+    const PetscInt    n =
+      s->fit->revolved ? CandidateRings(s, lists, field, &field->candidates[c], area, ring) : FaceRuleGet(type, 0)->n;
 
     points += n;
     entries += n * (field->maps.n ? field->maps.ptr[r + 1] - field->maps.ptr[r] : ElementGet(type)->nodes);

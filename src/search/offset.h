@@ -8,11 +8,10 @@
    the nodes, within a solve too, and are part of the points' variations. The offsets of a rigid tool move with the tool
    and are always held ones.
 
-   OffsetsCreate() makes offsets of 0, and OffsetsWant() leaves out faces that no search will see, which OffsetsFollow()
-   says is of use. OffsetsExtrapolate()
-   is called at the beginning of a step and OffsetsTake() when lists are made anew, and OffsetsDamp() where these
-   replace those of the solve. OffsetsGet() and OffsetsMaps() give the result to the search, and OffsetsArchive() writes
-   or reads the state of the extrapolation. */
+   OffsetsCreate() makes offsets of 0, and OffsetsWant() leaves out faces that no search will see. OffsetsFollow() says
+   whether that is of any use. OffsetsExtrapolate() is called at the beginning of a step and OffsetsTake() when lists
+   are made anew, and OffsetsDamp() where these replace those of the solve. OffsetsGet() and OffsetsMaps() give the
+   result to the search, and OffsetsArchive() writes or reads the state of the extrapolation. */
 #pragma once
 #include "files/archive.h"
 #include "search/facemap.h"

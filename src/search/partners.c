@@ -1,4 +1,4 @@
-/* Slave points of a body that may meet other sides of the same body: which of them can have a partner at all. */
+/* Slave points where any side of the bodies may meet any other one: which of them can have a partner at all. */
 #include "searchimpl.h"
 
 /* A test is good as long as slave points, with their offsets, and master together have moved by less than this part of
@@ -160,14 +160,15 @@ static void FaceNormals(ContactSearch s, const PetscReal *u, PetscReal t, PetscR
 static PetscBool TestPoint(ContactSearch s, const SearchField *field, NeighbourLists lists, BoxTree tree,
                            const PartnersSight *sight, PetscInt q, const PetscReal *normal, const PetscReal *x)
 {
-  const PetscReal   entered = SEARCH_ENTERED * s->slaves->height[q];
-  const BoxTreeSide side    = {.own     = normal,
-                               .opposed = s->one_body ? SEARCH_OPPOSED_NOT - 2 * sight->turn : -INFINITY,
-                               .behind  = (s->one_body ? entered : PetscMax(entered, s->slaves->size[q])) + sight->shift,
-                               .shift   = sight->shift,
-                               .lean    = sight->turn};
-  PointTest         test    = {field, lists, &side, x, PETSC_FALSE};
-  double            bound   = sight->radius;
+  const PetscReal entered = SEARCH_ENTERED * s->slaves->height[q],
+                  behind  = s->one_body ? entered : PetscMax(entered, s->slaves->size[q]);
+  const BoxTreeSide side  = {.own     = normal,
+                             .opposed = s->one_body ? SEARCH_OPPOSED_NOT - 2 * sight->turn : -INFINITY,
+                             .behind  = behind + sight->shift,
+                             .shift   = sight->shift,
+                             .lean    = sight->turn};
+  PointTest         test  = {field, lists, &side, x, PETSC_FALSE};
+  double            bound = sight->radius;
 
   BoxTreeClosest(tree, x, &side, &bound, TestFacet, &test);
   return test.found;
@@ -271,10 +272,12 @@ static PetscErrorCode NoteAny(ContactSearch s)
 /* Tests all points at a state, which becomes that of the last test, or leaves the test to SearchPartnersLearn(). */
 static PetscErrorCode TestAll(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion)
 {
-  Partners           *at    = &s->partners;
-  const PartnersSight sight = (at->motion = motion, SightAhead(s));
+  Partners     *at = &s->partners;
+  PartnersSight sight;
 
   PetscFunctionBeginUser;
+  at->motion = motion;
+  sight      = SightAhead(s);
   PetscCall(PetscArraycpy(at->u, u, s->mesh->n_nodes * s->mesh->dim));
   at->learns = (PetscBool)!SearchTestsPartners(s);
   if (at->learns)
