@@ -616,7 +616,7 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
 {
   Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS] = {{0}};
   BatchCall call = StartCall(kernel, lanes_constants);
-  const int dofs                                    = ElementNodes(kernel) * call.e->dim;
+  const int dofs = ElementNodes(kernel) * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
     lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], lanes_state[ELEMENT_MAX_POINTS * MAX_STATE * KERNEL_LANES],
     lanes_pressure[ELEMENT_MAX_POINTS * KERNEL_LANES] = {0}, lanes_multiplier[MIXED_PRESSURES * KERNEL_LANES];
