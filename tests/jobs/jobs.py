@@ -291,6 +291,10 @@ JOBS = [
     Job("hole_expanded", "hole in a sheet expanded by a cone", [
         Answer("hole", 3.111, 0.7, "limit"),
     ], steps=15, picture=["--mirror", "x"], stiff=["stepping.dt_max=0.02"]),
+    Job("flange_wiped", "flange wiped at an aluminium sheet, with friction", [
+        Answer("end_x", -14.253, 0.1, "limit"),
+        Answer("end_y", -14.840, 0.06, "limit"),
+    ], steps=40, pairs=2, levels=(1, 1.33, 1.77), stiff=["stepping.dt_max=0.03"]),
     Job("rivet", "rivet headed by force and let go", [
         Answer("height", -1.738, 1, "limit"),
     ], steps=30, pairs=2, picture=["--mirror", "x"], levels=(0.5, 0.75, 1.125)),
