@@ -70,10 +70,10 @@ PetscInt ContactSideAdd(ContactPair *pair, PetscInt c)
 - scene - the scene
 
   Note:
-  Elastic bodies with friction between them have none: with them of three jobs one step each fails (a tool drawn over a
-  slab, a shaft pressed into a hub, a cam), and answers stay. What a fluid between surfaces reaches is told by the means
-of nodes, and changes with them. On planes of symmetry faces go on, whether the pair has images beyond them or not. A
-node whose sides have one term has one for their ends, too.
+  Elastic bodies with friction between them have none: with them a shaft pressed into a hub fails a step, and answers
+  stay. What a fluid between surfaces reaches is told by the means of nodes, and changes with them. On planes of
+  symmetry faces go on, whether the pair has images beyond them or not. A node whose sides have one term has one for
+  their ends, too.
 @*/
 PetscErrorCode ContactEndsFind(ContactPair *pair, Scene scene)
 {
