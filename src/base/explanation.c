@@ -338,10 +338,9 @@ static const Explanation Warnings[] = {
   {"B154",
    {"and no contact pressed"},
    "warning: surfaces cross, and no contact pressed",
-   "An edge or a corner sinks into coarse faces by less than they can see: surface to surface holds an edge that comes "
-   "first from 0.05 of a face on, and edges of a master between the nodes of its slave later. The results are those of "
-   "no contact.",
-   "Finer faces on both sides there, or the body with the edge as `slave`."},
+   "An elastic edge or corner sinks into coarse faces by less than they can see: in surface to surface contact by up to "
+   "a third of a face. The results are those of no contact.",
+   "Finer faces on both sides there, or `formulation: node_to_surface` with the body of the edge as `slave`."},
   {"B507",
    {"face sizes behind its master", "face sizes deep in its slave"},
    "warning: nodes stood more than a face size behind the other surface",

@@ -133,7 +133,7 @@ PetscErrorCode ContactCornersAdd(ContactPair *pair)
   PetscCall(PetscMalloc2(pair->n_nodes + 1, &pair->first_side, pair->n_nodes, &pair->whole));
   PetscCall(PetscArraycpy(pair->whole, pair->area, pair->n_nodes));
   for (PetscInt c = 0; c <= pair->n_nodes; c++) pair->first_side[c] = pair->n;
-  if (!pair->formulation.surface) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ContactSidesServe(pair)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(slaves->n_faces * FACE_MAX_NODES, &pair->corner));
   for (PetscInt i = 0; i < slaves->n_faces * FACE_MAX_NODES; i++) pair->corner[i] = -1;
   PetscCall(FacesAround(slaves, &ptr, &face));
@@ -142,7 +142,7 @@ PetscErrorCode ContactCornersAdd(ContactPair *pair)
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
     const PetscInt i = NodeKeysFind(slaves->n_nodes, slaves->nodes, pair->mesh->node_id[pair->node[c]]);
 
-    if (ContactSidesServe(pair)) AddSides(pair, c, ptr[i + 1] - ptr[i], &face[ptr[i]], side, term);
+    AddSides(pair, c, ptr[i + 1] - ptr[i], &face[ptr[i]], side, term);
     ContactEndsAdd(pair, c, ptr[i + 1] - ptr[i], &face[ptr[i]], term);
     pair->first_side[c + 1] = pair->n;
   }
