@@ -71,10 +71,9 @@ PetscInt ContactSideAdd(ContactPair *pair, PetscInt c)
 
   Note:
   They serve where sides of sharp edges have terms and bodies yield. Elastic bodies are not crushed at their edges, and
-  such terms cost failed steps: with friction a cone clutch fails 2 of 9, and three loose plates under a load, listed, do
-  not get to the end. What a fluid between surfaces
-  reaches is told by the means of nodes, and changes with them. On planes of symmetry faces go on, whether the pair has
-  images beyond them or not.
+  such terms cost failed steps: with friction a cone clutch fails 2 of 9, and three loose plates, listed, do not get to
+  the end. What a fluid between surfaces reaches is told by the means of nodes, and changes with them. On planes of
+  symmetry faces go on, whether the pair has images beyond them or not.
 @*/
 PetscErrorCode ContactEndsFind(ContactPair *pair, Scene scene)
 {
