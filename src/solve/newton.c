@@ -148,7 +148,8 @@ static PetscErrorCode ModelCreateReference(Model model)
   PetscCall(PetscOptionsHasName(NULL, NULL, "-snes_test_jacobian", &test));
   PetscCall(ElasticityExtrapolates(model->problem->elasticity, &any));
   if (test || !any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc2(n, &model->work->solved, n, &model->work->from));
+  /* not NULL on a rank without nodes */
+  PetscCall(PetscCalloc2(n + 1, &model->work->solved, n + 1, &model->work->from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
