@@ -176,10 +176,13 @@ static void PairKeepRungs(ContactPair *pair)
   }
 }
 
-/* Cosine of the angle between two unit vectors. */
-static PetscReal Cosine(const PetscReal *a, const PetscReal *b)
+/* Cosine of the angle between the normals of two frames. */
+static PetscReal FrameCosine(int dim, const PetscReal *a, const PetscReal *b)
 {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  PetscReal cosine = 0;
+
+  for (int d = 0; d < dim; d++) cosine += a[d] * b[d];
+  return cosine;
 }
 
 /* A fit whose frame turns back a second time within a step keeps the frame that the next lists have, to the end of the
@@ -194,8 +197,8 @@ static void PairKeepFrames(ContactPair *pair)
                     *next  = &pair->next->frame[9 * q + 3 * (dim - 1)];
     PetscReal      *before = &pair->frame_before[3 * q];
     const PetscBool turns =
-      (PetscBool)(pair->lists->fit_n[q] && pair->next->fit_n[q] && Cosine(now, next) < CONTACT_FRAME_COSINE);
-    const PetscBool back = (PetscBool)(turns && Cosine(before, next) >= CONTACT_FRAME_COSINE);
+      (PetscBool)(pair->lists->fit_n[q] && pair->next->fit_n[q] && FrameCosine(dim, now, next) < CONTACT_FRAME_COSINE);
+    const PetscBool back = (PetscBool)(turns && FrameCosine(dim, before, next) >= CONTACT_FRAME_COSINE);
 
     for (int d = 0; d < 3; d++) {
       if (back && pair->turned_back[q]) pair->frame_kept[3 * q + d] = next[d];
@@ -431,11 +434,9 @@ static PetscBool FitHoldsPoints(NeighbourLists old, NeighbourLists fresh, PetscI
    whether the frame has stayed. alike: PointsAlike() of both lists. */
 static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscBool alike, PetscInt q)
 {
-  const int        last  = old->dim - 1;
-  const PetscReal *frame = &old->frame[9 * q], *turned = &fresh->frame[9 * q];
-  PetscReal        cosine = 0;
+  const PetscInt  normal = 9 * q + 3 * (old->dim - 1);
+  const PetscReal cosine = FrameCosine(old->dim, &old->frame[normal], &fresh->frame[normal]);
 
-  for (int d = 0; d < old->dim; d++) cosine += frame[3 * last + d] * turned[3 * last + d];
   if (cosine < CONTACT_FRAME_COSINE || old->degree[q] % FIT_BENT != fresh->degree[q] % FIT_BENT) return PETSC_FALSE;
   if (alike && fresh->fit_n[q] <= old->fit_n[q] &&
       !memcmp(&old->list_point[old->list_ptr[q]], &fresh->list_point[fresh->list_ptr[q]],
