@@ -11,3 +11,4 @@ PetscErrorCode MeshGlobalToLocal(Mesh, Vec x, PetscReal *u);
 PetscErrorCode MeshCollectFree(Mesh, const PetscReal *u, Vec x);
 PetscErrorCode MeshLocalToGlobal(Mesh, const PetscReal *f, Vec F);
 PetscErrorCode MeshSumNodes(Mesh, PetscInt block, PetscReal *values);
+PetscErrorCode MeshCreateLocal(Mesh, PetscInt block, PetscReal **values);

@@ -54,7 +54,8 @@ PetscErrorCode SurfaceDestroy(ContactSurface *);
 PetscBool      SurfaceOnPlane(Mesh, const SurfaceImage *, const PetscReal *x);
 PetscErrorCode SurfaceFindFreeEdges(ContactSurface, int n_images, const SurfaceImage *);
 PetscErrorCode SurfaceNodeEnds(ContactSurface, const PetscReal *u, PetscReal *end);
-PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, PetscReal *area, PetscReal *normal);
+PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, PetscReal *area);
+PetscErrorCode SurfaceNodeNormals(ContactSurface, const PetscReal *u, PetscReal *area, PetscReal *normal);
 PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, int n_images, const SurfaceImage *, PetscReal *size,
                                 PetscReal *turn, PetscReal *share);
 PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, ContactSurface slave, ContactSurface master,
