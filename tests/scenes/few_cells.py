@@ -45,9 +45,8 @@ PHASES = [
 # name: overrides, ranks, exit status. Of 3 ranks one has none of the four elements, of 7 two have none of the nine.
 CASES = {
     "errors of rubber": ([*RUBBER, ERRORS, LISTED], 3, 0),
-    "errors": ([ERRORS, PRESSED], 7, 0),
     "derivatives": ([*NODES, SENSITIVITY, PRESSED], 3, 0),
-    "tool": (TOOL, 7, 0),
+    "tool": ([*TOOL, ERRORS], 7, 0),
     "fluid and springs": (SPRINGS, 3, 0),
     "multipliers": ([*SOLID, *MULTIPLIERS], 3, 0),
     "iterative solver": ([*SOLID, "solver.type=iterative"], 3, 0),
@@ -71,7 +70,7 @@ def same(name, ours, theirs, size=None):
 def estimates(summary):
     """Errors of probes by cause, over the probes' values."""
     return [part / error["value"] for error in summary["error"].values()
-            for part in error["causes"].values() if not isinstance(part, str)]  # a text: not known
+            for part in error.get("causes", {}).values() if not isinstance(part, str)]  # a text: not known
 
 
 def derivatives(finished):
