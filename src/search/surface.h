@@ -4,10 +4,9 @@
 
    SurfaceCreate() makes a surface. SurfaceImages() makes the mirror images of a pair, and SurfaceFindFreeEdges()
    needs them to mark the edges at which a master ends. SurfaceImageBeyondAxis() finds those at negative radii.
-   SurfaceNodeEnds() says where a surface ends, and which way. SurfaceNodeAreas() and SurfaceNodeSizes() measure
-   deformable surfaces around their nodes. SurfaceFaces() checks that
-   two surfaces face each other at all. SurfaceReflect() and SurfaceImageFacet() take positions and faces to a mirror
-   image. */
+   SurfaceNodeEnds() says where a surface ends, and which way. SurfaceNodeAreas(), SurfaceNodeNormals() and
+   SurfaceNodeSizes() measure deformable surfaces around their nodes. SurfaceFaces() checks that two surfaces face each
+   other at all. SurfaceReflect() and SurfaceImageFacet() take positions and faces to a mirror image. */
 #pragma once
 #include "bodies/elasticity.h"
 #include "smooth/facet.h"
