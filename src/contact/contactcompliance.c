@@ -106,7 +106,7 @@ static PetscErrorCode PairChangeCreate(const ContactPair *pair, PairChange *chan
   *change = (PairChange){.on_point = NULL};
   PetscCall(PetscCalloc4(points, &change->on_point, 3 * points, &change->friction, pair->n_nodes, &change->force,
                          3 * pair->n, &change->on_node));
-  if (pair->scene->share < 1) PetscCall(PetscCalloc1(pair->mesh->n_nodes * pair->mesh->dim, &change->reaction));
+  if (pair->scene->share < 1) PetscCall(MeshCreateLocal(pair->mesh, pair->mesh->dim, &change->reaction));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

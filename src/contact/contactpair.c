@@ -109,7 +109,7 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
   if (hats)
     PetscCall(SlavePointsHatAreas(pair->slaves, scene->geometry, NULL, area));
   else
-    PetscCall(SurfaceNodeAreas(pair->slave, scene->geometry, NULL, area, NULL));
+    PetscCall(SurfaceNodeAreas(pair->slave, scene->geometry, NULL, area));
   PetscCall(PetscMalloc4(room, &pair->node, room, &pair->area, room, &pair->size, room, &pair->turn));
   for (PetscInt i = 0; i < group->n_nodes; i++) {
     if (mesh->node_owner[group->nodes[i]] != rank) continue;
@@ -416,7 +416,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
                          pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL, &pair->search));
   if (contact->listed && pair->master) PetscCall(PairIsOneBody(mesh, scene, pair, &pair->one_body));
   if (contact->listed) SearchAllSides(pair->search, pair->one_body);
-  if (contact->share < 1) PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &pair->reaction));
+  if (contact->share < 1) PetscCall(MeshCreateLocal(mesh, mesh->dim, &pair->reaction));
   pair->tool = ToolOfPair(mesh, scene, (int)(contact - scene->contacts));
   SearchSetTool(pair->search, pair->tool);
   SearchSetRungs(pair->search, pair->first_rung);

@@ -326,7 +326,7 @@ static PetscErrorCode PairCheckFacing(Contact contact, const ContactPair *pair)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(mesh->n_nodes, &area, 3 * mesh->n_nodes, &normal));
-  PetscCall(SurfaceNodeAreas(pair->slave, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, NULL, area, normal));
+  PetscCall(SurfaceNodeNormals(pair->slave, NULL, area, normal));
   PetscCall(SurfaceFaces(pair->master, pair->n_nodes, pair->node, normal, &facing));
   PetscCall(PetscFree2(area, normal));
   if (!facing) {

@@ -199,7 +199,7 @@ static PetscErrorCode AddPartner(Contact contact, const ContactPair *pair, const
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(contact->mesh->n_nodes, &area));
-  PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
+  PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area));
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
     const PetscInt  node  = pair->node[c];
     const PetscReal own   = pair->scene->share * pressure[c];
@@ -244,7 +244,7 @@ PetscErrorCode ContactNodePressures(Contact contact, int p, const PetscReal *u, 
   if (pair->formulation.surface)
     PetscCall(SlavePointsHatAreas(pair->slaves, pair->geometry, u, area));
   else
-    PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
+    PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area));
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
     area[pair->node[c]] *= pair->scene->share;
     pressure[c] = force[c] / area[pair->node[c]];

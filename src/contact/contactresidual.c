@@ -179,7 +179,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
 
   Input Parameters:
 + contact - the contact
-- outer   - [n_nodes*dim], to which ContactResidual() adds as to its own; borrowed. NULL ends it
+- outer   - [n_nodes*dim], of MeshCreateLocal(), to which ContactResidual() adds as to its own; borrowed. NULL ends it
 @*/
 void ContactWatchOuter(Contact contact, PetscReal *outer)
 {
@@ -271,7 +271,7 @@ PetscErrorCode ContactHoldExpected(Contact contact, PetscBool *any)
 
   Notes:
   With f, the gaps, status and nodal forces become the present state. Each of the three is NULL on all ranks or on
-  none.
+  none, see MeshCreateLocal().
 
   Source: Chamoret et al. (2004), eqs 12 and 15.
 @*/

@@ -55,9 +55,11 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
   PetscFunctionBeginUser;
   error->why = adjoint->known ? NULL : "the transposed tangent cannot be solved with";
   error->sum = error->magnitude = error->spread = 0;
+  error->shared                                 = PETSC_FALSE;
   error->cells                                  = NULL;
   for (int c = 0; c < ERROR_CAUSES; c++) error->part[c] = NAN;
   if (error->why) PetscFunctionReturn(PETSC_SUCCESS);
+  error->shared = PETSC_TRUE;
   PetscCall(PetscMalloc1(model->mesh->n_cells, &error->cells));
   PetscCall(BodyErrorEvaluate(bodies, adjoint->y, error->cells, &sums));
   error->part[ERROR_BODIES] = sums.error;
@@ -144,6 +146,7 @@ PetscErrorCode QuantityErrorShares(Model model, PetscReal value, QuantityError *
 
   PetscFunctionBeginUser;
   for (int c = 0; c < ERROR_CAUSES; c++) error->part[c] = NAN;
+  error->shared = PETSC_TRUE;
   PetscCall(PetscMalloc1(model->mesh->n_cells, &error->cells));
   PetscCall(
     BodyErrorCreate(model->mesh, model->problem->elasticity, model->scene->kinematics, model->problem->trial, &bodies));
@@ -166,6 +169,7 @@ PetscErrorCode QuantityErrorShares(Model model, PetscReal value, QuantityError *
 PetscErrorCode QuantityErrorReset(QuantityError *error)
 {
   PetscFunctionBeginUser;
+  error->shared = PETSC_FALSE;
   PetscCall(PetscFree(error->cells));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

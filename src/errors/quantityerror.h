@@ -32,7 +32,8 @@ typedef struct {
   PetscReal   sum;       /* of the known parts */
   PetscReal   magnitude; /* sum of their absolute values */
   PetscReal   spread;    /* sum of the magnitudes of the cells' shares in that of the bodies */
-  PetscReal  *cells;     /* share of each local cell in that of the bodies; NULL: not known */
+  PetscBool   shared;    /* the cells' shares are known; the same on all ranks */
+  PetscReal  *cells;     /* share of each local cell in that of the bodies; NULL on a rank without cells, too */
 } QuantityError;
 
 PetscErrorCode QuantityErrorsEstimate(Model, int n, const Functional[], QuantityError[]);

@@ -27,7 +27,7 @@ PetscErrorCode MemorySave(Memory *memory, const char *name, size_t bytes, const 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&entry));
   PetscCall(PetscStrallocpy(name, &entry->name));
-  PetscCall(PetscMalloc1(bytes, &entry->value));
+  PetscCall(PetscMalloc1(bytes + 1, &entry->value)); /* a value without bytes is there too */
   PetscCall(PetscMemcpy(entry->value, value, bytes));
   entry->bytes  = bytes;
   entry->before = *memory;

@@ -225,3 +225,26 @@ PetscErrorCode MeshSumNodes(Mesh mesh, PetscInt block, PetscReal *values)
   PetscCall(CopyNodes(mesh, block, values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  MeshCreateLocal - makes room for nodal values, which are 0.
+
+  Not collective
+
+  Input Parameters:
++ mesh  - the mesh
+- block - values per node
+
+  Output Parameter:
+. values - values[n_nodes*block]; the caller frees them with PetscFree()
+
+  Note:
+  They are not NULL on a rank without nodes, on which other allocations of no bytes are. Functions in which NULL stands
+  for values that are not there then go the same way on all ranks.
+@*/
+PetscErrorCode MeshCreateLocal(Mesh mesh, PetscInt block, PetscReal **values)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes * block + 1, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

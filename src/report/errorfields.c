@@ -58,7 +58,7 @@ PetscErrorCode ErrorFieldsWrite(Mesh mesh, Scene scene, ProbeErrors errors, cons
     const char          *why;
     const QuantityError *error = ProbeErrorsGet(errors, i, &value, &why);
 
-    if (why || !error->cells) continue;
+    if (why || !error->shared) continue;
     PetscCall(PetscSNPrintf(name, sizeof(name), "/error/%s", scene->probes[i].name));
     PetscCall(Hdf5TableWriteReals(file, name, &rows, 1, error->cells));
   }

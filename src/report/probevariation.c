@@ -2,14 +2,6 @@
 #include "report/probevariation.h"
 #include "probeimpl.h"
 
-/* Makes room for a vector over the local dofs, of zeros. */
-static PetscErrorCode NewVector(Mesh mesh, PetscReal **vector)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, vector));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A reaction is the residual at the prescribed dofs. */
 static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional *f, const char **why)
 {
@@ -21,7 +13,7 @@ static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional
     *why = "springs under a surface bear a part of the reactions";
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(NewVector(mesh, &f->held));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->held));
   for (PetscInt i = 0; i < probe->group->n_nodes; i++) {
     const PetscInt dof = probe->group->nodes[i] * mesh->dim + probe->scene->component;
 
@@ -65,7 +57,7 @@ static PetscErrorCode VaryContactForce(Probes probes, const Probe *probe, Functi
   if (shared)
     *why = "slave and master of the pair share nodes";
   else {
-    PetscCall(NewVector(mesh, &f->pressed));
+    PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->pressed));
     f->pair = probe->pair;
     for (PetscInt n = 0; n < mesh->n_nodes; n++) f->pressed[n * mesh->dim + probe->scene->component] = mark[n];
   }
@@ -79,7 +71,7 @@ static PetscErrorCode VaryDisplacement(Probes probes, const Probe *probe, Functi
 
   PetscFunctionBeginUser;
   (void)why;
-  PetscCall(NewVector(mesh, &f->direct));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->direct));
   if (probe->node[0] >= 0) f->direct[probe->node[0] * mesh->dim + probe->scene->component] = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -99,7 +91,7 @@ static PetscErrorCode VaryDistance(Probes probes, const Probe *probe, Functional
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, x, 6, MPIU_REAL, MPIU_SUM, mesh->comm));
   for (int i = 0; i < dim; i++) length += PetscSqr(x[3 + i] - x[i]);
   length = PetscSqrtReal(length);
-  PetscCall(NewVector(mesh, &f->direct));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->direct));
   for (int k = 0; k < 2; k++)
     for (int i = 0; i < dim && probe->node[k] >= 0 && length > 0; i++)
       f->direct[probe->node[k] * dim + i] += (k ? 1 : -1) * (x[3 + i] - x[i]) / length;
@@ -136,7 +128,7 @@ static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functi
   PetscCall(ContactGetNodes(probes->model->contact, probe->pair, probes->model->u, &slaves));
   for (PetscInt k = 0; k < slaves.n; k++) area += NodePatchWeight(probe, mesh, slaves.node[k]) * slaves.area[k];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
-  PetscCall(NewVector(mesh, &f->pressed));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->pressed));
   f->pair = probe->pair;
   for (PetscInt k = 0; k < slaves.n; k++) {
     const PetscReal weight = NodePatchWeight(probe, mesh, slaves.node[k]) *

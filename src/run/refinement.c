@@ -262,7 +262,7 @@ static PetscErrorCode Record(Refinement *r, double planned)
 
   PetscFunctionBeginUser;
   PetscCall(ResultsGetError(r->run->results, r->wish.probe, &mesh->value, &why, &error));
-  if (!error->cells)
+  if (!error->shared)
     PetscCall(RefuseInput(r->run->comm, "%s: the error of '%s' has no estimate: %s",
                           SceneWhere(r->run->scene, "accuracy", "probe"), r->probe, why));
   PetscCall(ResultsGetUsage(r->run->results, &usage));

@@ -195,10 +195,13 @@ static PetscErrorCode RunAgain(const Run *run, const RunInput *input, PetscReal 
   const PetscReal *found;
   BurnishStatus    status;
   PetscErrorCode   code;
+  char            *message = NULL;
 
   PetscFunctionBeginUser;
   code = RunScene(&again, input, &status);
   if (code && code != REFUSED) PetscCall(code);
+  if (code) PetscCall(RefusalTake(&message)); /* nobody is told, and the next refusal has its own */
+  PetscCall(PetscFree(message));
   *known = (PetscBool)(!code && status == BURNISH_DONE);
   if (*known) {
     PetscCall(ResultsGetProbes(again.results, &found));

@@ -459,8 +459,7 @@ PetscErrorCode NodeDepthsSagitta(NodeDepths depths, PetscReal feature_angle, Pet
   PetscCall(PetscArrayzero(sagitta, depths->slave->n_faces));
   if (mesh->order > 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(mesh->n_nodes, &area, 3 * mesh->n_nodes, &normal));
-  PetscCall(
-    SurfaceNodeAreas(depths->slave, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, NULL, area, normal));
+  PetscCall(SurfaceNodeNormals(depths->slave, NULL, area, normal));
   for (PetscInt f = 0; f < depths->slave->n_faces; f++)
     sagitta[f] = PetscMax(0, -FaceHeight(depths, &depths->slave->faces[f], normal, cosine));
   PetscCall(PetscFree2(area, normal));

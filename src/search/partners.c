@@ -368,6 +368,23 @@ PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Marks the faces of the slave on this rank that have a possible point on some rank. */
+static PetscErrorCode MarkFaces(SlavePoints points, const PetscBool *possible, PetscBool *faces)
+{
+  int *at_points, *at_faces;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(points->n_faces, &at_points, points->surface->n_faces, &at_faces));
+  for (PetscInt f = 0; f < points->n_faces; f++)
+    for (int q = 0; q < FaceRuleOf(points->faces[f].type, points->finer, points->ends[f])->n; q++)
+      at_points[f] = at_points[f] || possible[points->first[f] + q];
+  PetscCall(PetscSFReduceBegin(points->face_sf, MPI_INT, at_points, at_faces, MPI_MAX));
+  PetscCall(PetscSFReduceEnd(points->face_sf, MPI_INT, at_points, at_faces, MPI_MAX));
+  for (PetscInt f = 0; f < points->surface->n_faces; f++) faces[f] = (PetscBool)at_faces[f];
+  PetscCall(PetscFree2(at_points, at_faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SearchPartnersFaces - finds the faces of the slave on this rank on which a point may have a partner.
 
@@ -391,32 +408,19 @@ PetscErrorCode SearchPartnersFaces(ContactSearch s, const PetscReal *u, PetscRea
   const SlavePoints   points = s->slaves;
   const PartnersSight sight  = {s->reach + motion, 0, 0};
   PetscBool          *possible;
-  int                *at_points, *at_faces;
   PetscReal          *normal;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(faces, points->surface->n_faces));
   PetscCall(SlavePointsMove(points, u));
-  PetscCall(PetscMalloc3(points->n, &possible, points->n_faces, &at_points, 3 * points->n, &normal));
-  PetscCall(PetscCalloc1(points->surface->n_faces, &at_faces));
+  PetscCall(PetscMalloc2(points->n, &possible, 3 * points->n, &normal));
   PetscCall(SearchPartners(s, u, t, motion, normal));
   PetscCall(Normalise(points->n, normal));
-  if (!s->partners.any) {
-    PetscCall(PetscFree3(possible, at_points, normal));
-    PetscCall(PetscFree(at_faces));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->partners.any) {
+    PetscCall(TestPoints(s, u, t, &sight, normal, s->partners.possible, possible));
+    PetscCall(MarkFaces(points, possible, faces));
   }
-  PetscCall(TestPoints(s, u, t, &sight, normal, s->partners.possible, possible));
-  for (PetscInt f = 0; f < points->n_faces; f++) {
-    at_points[f] = 0;
-    for (int q = 0; q < FaceRuleOf(points->faces[f].type, points->finer, points->ends[f])->n; q++)
-      at_points[f] = at_points[f] || possible[points->first[f] + q];
-  }
-  PetscCall(PetscSFReduceBegin(points->face_sf, MPI_INT, at_points, at_faces, MPI_MAX));
-  PetscCall(PetscSFReduceEnd(points->face_sf, MPI_INT, at_points, at_faces, MPI_MAX));
-  for (PetscInt f = 0; f < points->surface->n_faces; f++) faces[f] = (PetscBool)at_faces[f];
-  PetscCall(PetscFree3(possible, at_points, normal));
-  PetscCall(PetscFree(at_faces));
+  PetscCall(PetscFree2(possible, normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

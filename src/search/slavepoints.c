@@ -336,7 +336,7 @@ static PetscErrorCode NodeNormals(SlavePoints points, const PetscReal *u, PetscR
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(mesh->n_nodes, &area, 3 * mesh->n_nodes, &all));
-  PetscCall(SurfaceNodeAreas(points->surface, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, u, area, all));
+  PetscCall(SurfaceNodeNormals(points->surface, u, area, all));
   for (PetscInt q = 0; q < points->n; q++) /* slave nodes are owned */
     for (int d = 0; d < 3; d++) normals[3 * q + d] = all[3 * points->nodes[points->node[q]].local + d];
   PetscCall(PetscFree2(area, all));

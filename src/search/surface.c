@@ -432,31 +432,16 @@ PetscErrorCode SurfaceNodeEnds(ContactSurface surface, const PetscReal *u, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceNodeAreas - computes tributary areas int N_a dA and normals int N_a n dA of all local nodes, summed over the
-  faces of all ranks.
-
-  Collective
-
-  Input Parameters:
-+ surface  - a deformable surface
-. geometry - axisymmetric areas are over 360 degrees
-- u        - local displacements u[n_nodes*dim] (length); NULL: reference configuration
-
-  Output Parameters:
-+ area   - area[n_nodes], complete on every copy of a node, 0 off the surface
-- normal - normal[n_nodes*3], likewise, with an area as length; may be NULL
-@*/
-PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const PetscReal *u, PetscReal *area,
-                                PetscReal *normal)
+/* Sums up the areas of this rank's faces at their nodes, and their normals; normal may be NULL. */
+static PetscErrorCode AddFaces(ContactSurface surface, Geometry geometry, const PetscReal *u, PetscReal *area,
+                               PetscReal *normal)
 {
-  Mesh      mesh = surface->mesh;
-  const int dim  = mesh->dim;
+  const int dim = surface->mesh->dim;
   double    X[FACE_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(area, mesh->n_nodes));
-  if (normal) PetscCall(PetscArrayzero(normal, 3 * mesh->n_nodes));
+  PetscCall(PetscArrayzero(area, surface->mesh->n_nodes));
+  if (normal) PetscCall(PetscArrayzero(normal, 3 * surface->mesh->n_nodes));
   for (PetscInt f = 0; f < surface->n_faces; f++) {
     const Facet *face              = &surface->faces[f];
     double       a[FACE_MAX_NODES] = {0}, n[FACE_MAX_NODES * 3] = {0};
@@ -468,8 +453,50 @@ PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const
       for (int d = 0; normal && d < dim; d++) normal[3 * face->nodes[i] + d] += n[i * dim + d];
     }
   }
-  PetscCall(MeshSumNodes(mesh, 1, area));
-  if (normal) PetscCall(MeshSumNodes(mesh, 3, normal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SurfaceNodeAreas - computes tributary areas int N_a dA of all local nodes, summed over the faces of all ranks.
+
+  Collective
+
+  Input Parameters:
++ surface  - a deformable surface
+. geometry - axisymmetric areas are over 360 degrees
+- u        - local displacements u[n_nodes*dim] (length); NULL: reference configuration
+
+  Output Parameter:
+. area - area[n_nodes], complete on every copy of a node, 0 off the surface
+@*/
+PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const PetscReal *u, PetscReal *area)
+{
+  PetscFunctionBeginUser;
+  PetscCall(AddFaces(surface, geometry, u, area, NULL));
+  PetscCall(MeshSumNodes(surface->mesh, 1, area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SurfaceNodeNormals - computes normals int N_a n dA of all local nodes beside their tributary areas, both without the
+  circumference of axisymmetric scenes.
+
+  Collective
+
+  Input Parameters:
++ surface - a deformable surface
+- u       - local displacements u[n_nodes*dim] (length); NULL: reference configuration
+
+  Output Parameters:
++ area   - as of SurfaceNodeAreas()
+- normal - normal[n_nodes*3], likewise, with an area as length
+@*/
+PetscErrorCode SurfaceNodeNormals(ContactSurface surface, const PetscReal *u, PetscReal *area, PetscReal *normal)
+{
+  PetscFunctionBeginUser;
+  PetscCall(AddFaces(surface, surface->mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, u, area, normal));
+  PetscCall(MeshSumNodes(surface->mesh, 1, area));
+  PetscCall(MeshSumNodes(surface->mesh, 3, normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -532,11 +559,10 @@ PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, int n
                                 PetscReal *size, PetscReal *turn, PetscReal *share)
 {
   enum { SIZE, FACES, AREA, SUMS };
-  Mesh           mesh  = surface->mesh;
-  const Geometry plane = mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
-  PetscReal     *sum, *normal, *area, *around;
-  PetscBool     *ends;
-  double         X[FACE_MAX_NODES * 3];
+  Mesh       mesh = surface->mesh;
+  PetscReal *sum, *normal, *area, *around;
+  PetscBool *ends;
+  double     X[FACE_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc5(SUMS * mesh->n_nodes, &sum, 3 * mesh->n_nodes, &normal, mesh->n_nodes, &area, mesh->n_nodes,
@@ -559,12 +585,12 @@ PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, int n
     }
   }
   PetscCall(MeshSumNodes(mesh, SUMS, sum));
-  PetscCall(SurfaceNodeAreas(surface, geometry, NULL, area, NULL));
+  PetscCall(SurfaceNodeAreas(surface, geometry, NULL, area));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
     size[n]  = sum[SUMS * n + FACES] > 0 ? sum[SUMS * n + SIZE] / sum[SUMS * n + FACES] : 0;
     share[n] = sum[SUMS * n + AREA] > 0 ? area[n] / sum[SUMS * n + AREA] : 0;
   }
-  PetscCall(SurfaceNodeAreas(surface, plane, NULL, area, normal));
+  PetscCall(SurfaceNodeNormals(surface, NULL, area, normal));
   for (PetscInt n = 0; n < mesh->n_nodes; n++)
     turn[n] = NodeTurn(mesh, n, n_images, images, area[n], &normal[3 * n], &ends[n]);
   PetscCall(FaceTurns(surface, turn, around));

@@ -4,10 +4,9 @@
 
    SurfaceCreate() makes a surface. SurfaceImages() makes the mirror images of a pair, and SurfaceFindFreeEdges()
    needs them to mark the edges at which a master ends. SurfaceImageBeyondAxis() finds those at negative radii.
-   SurfaceNodeEnds() says where a surface ends, and which way. SurfaceNodeAreas() and SurfaceNodeSizes() measure
-   deformable surfaces around their nodes. SurfaceFaces() checks that
-   two surfaces face each other at all. SurfaceReflect() and SurfaceImageFacet() take positions and faces to a mirror
-   image. */
+   SurfaceNodeEnds() says where a surface ends, and which way. SurfaceNodeAreas(), SurfaceNodeNormals() and
+   SurfaceNodeSizes() measure deformable surfaces around their nodes. SurfaceFaces() checks that two surfaces face each
+   other at all. SurfaceReflect() and SurfaceImageFacet() take positions and faces to a mirror image. */
 #pragma once
 #include "bodies/elasticity.h"
 #include "smooth/facet.h"
@@ -54,7 +53,8 @@ PetscErrorCode SurfaceDestroy(ContactSurface *);
 PetscBool      SurfaceOnPlane(Mesh, const SurfaceImage *, const PetscReal *x);
 PetscErrorCode SurfaceFindFreeEdges(ContactSurface, int n_images, const SurfaceImage *);
 PetscErrorCode SurfaceNodeEnds(ContactSurface, const PetscReal *u, PetscReal *end);
-PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, PetscReal *area, PetscReal *normal);
+PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, PetscReal *area);
+PetscErrorCode SurfaceNodeNormals(ContactSurface, const PetscReal *u, PetscReal *area, PetscReal *normal);
 PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, int n_images, const SurfaceImage *, PetscReal *size,
                                 PetscReal *turn, PetscReal *share);
 PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, ContactSurface slave, ContactSurface master,

@@ -276,7 +276,7 @@ PetscErrorCode ToolSideFind(ContactSurface tool, ContactSurface slave, Loads loa
   PetscCall(ToolPositions(tool, loads, &x));
   PetscCall(FindPieces(tool, &pieces));
   PetscCall(PetscMalloc2(mesh->n_nodes, &area, 3 * mesh->n_nodes, &normals));
-  PetscCall(SurfaceNodeAreas(slave, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, NULL, area, normals));
+  PetscCall(SurfaceNodeNormals(slave, NULL, area, normals));
   PetscCall(PetscMalloc2(tool->n_faces, &faces, tool->n_faces, &turn));
   for (int f = 0; f < (int)tool->n_faces; f++) PieceRoot(&pieces, f, &turn[f]);
   for (int f = 0; f < (int)tool->n_faces; f++)

@@ -22,6 +22,7 @@
 #pragma once
 #include "solve/model.h"
 
+/* Each of the three is NULL on all ranks or on none: MeshCreateLocal() */
 typedef struct {
   PetscReal *direct;  /* this rank's share [n_nodes*dim]; NULL: none */
   PetscReal *held;    /* [n_nodes*dim], ghosts included; NULL: none */

@@ -78,7 +78,8 @@ PetscErrorCode ForceBalanceFind(Problem problem, const PetscReal *u, PetscReal t
   PetscMPIInt    rank;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(n, &inner, n, &outer));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &inner));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &outer));
   if (problem->contact) ContactWatchOuter(problem->contact, outer);
   PetscCall(ProblemResidual(problem, u, t, t, ok));
   if (problem->contact) ContactWatchOuter(problem->contact, NULL);
@@ -87,7 +88,8 @@ PetscErrorCode ForceBalanceFind(Problem problem, const PetscReal *u, PetscReal t
   PetscCall(MeshSumNodes(mesh, mesh->dim, inner));
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   SumNodes(problem, rank, u, inner, &sums);
-  PetscCall(PetscFree2(inner, outer));
+  PetscCall(PetscFree(inner));
+  PetscCall(PetscFree(outer));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sums, sizeof(sums) / sizeof(PetscReal), MPIU_REAL, MPI_SUM, mesh->comm));
   scale    = ProblemForceScale(problem);
   *balance = (ForceBalance){.force  = Part(Amount(sums.force), PetscMax(sums.forces, scale)),

@@ -52,7 +52,8 @@ PetscErrorCode ModelStepFrom(Model model, const PetscReal *u)
 {
   PetscFunctionBeginUser;
   model->work->shortened = model->work->uphill = PETSC_FALSE;
-  if (model->work->from) PetscCall(PetscArraycpy(model->work->from, u, model->mesh->n_nodes * model->mesh->dim));
+  if (model->work->extrapolates)
+    PetscCall(PetscArraycpy(model->work->from, u, model->mesh->n_nodes * model->mesh->dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -69,7 +70,8 @@ PetscErrorCode ModelStepFromSolved(Model model, const PetscReal *u)
 {
   PetscFunctionBeginUser;
   PetscCall(ModelStepFrom(model, u));
-  if (model->work->solved) PetscCall(PetscArraycpy(model->work->solved, u, model->mesh->n_nodes * model->mesh->dim));
+  if (model->work->extrapolates)
+    PetscCall(PetscArraycpy(model->work->solved, u, model->mesh->n_nodes * model->mesh->dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -126,7 +128,7 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   (void)J;
   (void)P;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
-  extrapolates = (PetscBool)(model->work->from && !model->work->uphill);
+  extrapolates = (PetscBool)(model->work->extrapolates && !model->work->uphill);
   if (extrapolates) {
     PetscCall(ModelReference(model, &reference, &part));
     PetscCall(ModelFollow(model, x, &reference, part));
@@ -142,14 +144,13 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
 static PetscErrorCode ModelCreateReference(Model model)
 {
   const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
-  PetscBool      test, any;
+  PetscBool      test;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsHasName(NULL, NULL, "-snes_test_jacobian", &test));
-  PetscCall(ElasticityExtrapolates(model->problem->elasticity, &any));
-  if (test || !any) PetscFunctionReturn(PETSC_SUCCESS);
-  /* not NULL on a rank without nodes */
-  PetscCall(PetscCalloc2(n + 1, &model->work->solved, n + 1, &model->work->from));
+  if (test) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ElasticityExtrapolates(model->problem->elasticity, &model->work->extrapolates));
+  if (model->work->extrapolates) PetscCall(PetscCalloc2(n, &model->work->solved, n, &model->work->from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

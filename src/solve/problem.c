@@ -42,8 +42,7 @@ static PetscErrorCode ShortestEdge(Mesh mesh, PetscReal *length)
 @*/
 PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, PetscInt phase, Problem *out)
 {
-  const PetscInt n = mesh->n_nodes * mesh->dim;
-  Problem        problem;
+  Problem problem;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&problem));
@@ -59,7 +58,8 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, PetscInt phase, Problem *ou
   PetscCall(ElasticitySetSymmetric(problem->elasticity, ProblemConservative(problem)));
   PetscCall(ElasticitySetEnclosed(problem->elasticity, scene, LoadsConstrained(problem->loads)));
   PetscCall(FluidCreate(mesh, scene, problem->loads, problem->contact, &problem->fluids));
-  PetscCall(PetscCalloc2(n, &problem->f, n, &problem->trial));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &problem->f));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &problem->trial));
   PetscCall(ElasticityTangent(problem->elasticity, problem->trial, NULL));
   PetscCall(LoadsTangent(problem->loads, 0, problem->trial, problem->elasticity));
   PetscCall(ElasticityMatrix(problem->elasticity, NULL, NULL, &problem->P));
@@ -99,7 +99,8 @@ PetscErrorCode ProblemDestroy(Problem *problem)
   PetscCall(ContactDestroy(&p->contact));
   PetscCall(ElasticityDestroy(&p->elasticity));
   PetscCall(LoadsDestroy(&p->loads));
-  PetscCall(PetscFree2(p->f, p->trial));
+  PetscCall(PetscFree(p->f));
+  PetscCall(PetscFree(p->trial));
   PetscCall(PetscFree(*problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

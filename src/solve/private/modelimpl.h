@@ -97,10 +97,11 @@ typedef struct _n_ModelWork {
   PetscBool augmented;    /* multipliers of the volume were changed at the solution from which the next solve starts */
   char      cycle[256];   /* the last repetition in words */
 
-  PetscReal *solved;    /* local displacements (length) at the last equilibrium; NULL: no stresses are extrapolated */
-  PetscReal *from;      /* those from which the last step led to the iterate */
-  PetscBool  shortened; /* that step was shortened */
-  PetscBool  uphill;    /* all of it was turned round: the next tangent is the derivative of the residual */
+  PetscBool  extrapolates; /* stresses are extrapolated; the same on all ranks, some of which may have no nodes */
+  PetscReal *solved;       /* local displacements (length) at the last equilibrium, where stresses are extrapolated */
+  PetscReal *from;         /* those from which the last step led to the iterate */
+  PetscBool  shortened;    /* that step was shortened */
+  PetscBool  uphill;       /* all of it was turned round: the next tangent is the derivative of the residual */
 
   /* One solve by SNES */
   Objective   objective;
