@@ -164,8 +164,20 @@ void SearchMasterBox(ContactSearch s, const PetscReal *u, PetscReal t, const Pet
   }
 }
 
-/* Does any mirror image of a face come within the distance of a box? */
-static PetscBool SomeImageMeets(ContactSearch s, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance)
+/*@
+  SearchSomeImageMeets - tests whether any mirror image of a face comes within a distance of a box.
+
+  Not collective
+
+  Input Parameters:
++ s        - the search
+. n        - number of nodes of the face
+. x        - x[n*dim], their positions (length)
+. box      - lower then upper corner
+- distance - the distance (length)
+@*/
+PetscBool SearchSomeImageMeets(ContactSearch s, int n, const PetscReal *x, const PetscReal box[6],
+                               PetscReal distance)
 {
   const int dim = s->mesh->dim;
 
@@ -197,8 +209,8 @@ static PetscBool ReachesBox(const void *context, PetscInt f, PetscMPIInt r)
   PetscReal    x[FACE_MAX_NODES * 3];
 
   SearchFacePositions(reach->s, reach->s->master, f, reach->u, 0, x);
-  return SomeImageMeets(reach->s, ElementGet(reach->s->master->faces[f].type)->nodes, x, &reach->boxes[6 * r],
-                        reach->distance);
+  return SearchSomeImageMeets(reach->s, ElementGet(reach->s->master->faces[f].type)->nodes, x, &reach->boxes[6 * r],
+                              reach->distance);
 }
 
 /*@
@@ -255,7 +267,7 @@ PetscErrorCode SearchPickRigidFaces(ContactSearch s, const NodeGeometry *geometr
     PetscReal x[FACE_MAX_NODES * 3];
 
     SearchFacePositions(s, s->master, f, NULL, t, x);
-    if (!SomeImageMeets(s, ElementGet(s->master->faces[f].type)->nodes, x, box, distance)) continue;
+    if (!SearchSomeImageMeets(s, ElementGet(s->master->faces[f].type)->nodes, x, box, distance)) continue;
     FaceRecordFromSurface(s->master, geometry, s->offset, f, &(*records)[(*n_records)++]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
