@@ -26,6 +26,9 @@ typedef struct {
   PetscReal *x, *normal, *face_normal; /* of slave points and master faces */
   PetscReal  thin;                     /* thinnest element or largest face, whichever is less (length) */
   PetscReal *u, motion; /* of the mesh's nodes (length); motion for which lists were to be good (length) */
+  /* Displacements of the slave points' nodes (length); how far points and normals of a face move at most for each
+     length by which its nodes part, of the slave's faces and then of the master's. NULL: points are nodes. */
+  PetscReal *slave_u, *lever;
 } Partners;
 
 struct _n_ContactSearch {
