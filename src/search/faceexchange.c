@@ -101,7 +101,10 @@ void SearchFacePositions(ContactSearch s, ContactSurface surface, PetscInt f, co
   for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
     PetscReal y[3];
 
-    if (surface->rigid) SearchRigidPosition(s, facet->nodes[a], t, y);
+    if (surface->rigid && s->rigid_x)
+      for (int d = 0; d < dim; d++) y[d] = s->rigid_x[facet->nodes[a] * dim + d];
+    else if (surface->rigid)
+      SearchRigidPosition(s, facet->nodes[a], t, y);
     for (int d = 0; d < dim; d++)
       x[a * dim + d] =
         surface->rigid ? y[d] : s->mesh->coords[facet->nodes[a] * dim + d] + u[facet->nodes[a] * dim + d];
@@ -176,8 +179,7 @@ void SearchMasterBox(ContactSearch s, const PetscReal *u, PetscReal t, const Pet
 . box      - lower then upper corner
 - distance - the distance (length)
 @*/
-PetscBool SearchSomeImageMeets(ContactSearch s, int n, const PetscReal *x, const PetscReal box[6],
-                               PetscReal distance)
+PetscBool SearchSomeImageMeets(ContactSearch s, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance)
 {
   const int dim = s->mesh->dim;
 

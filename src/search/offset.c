@@ -3,6 +3,7 @@
 #include "search/offset.h"
 #include "search/surfaceends.h"
 #include "searchimpl.h"
+#include "base/timing.h"
 
 /* Offsets that a solve turns back are damped where what is left of their change is more than this part of the change
    before. Less than that settles by itself. */
@@ -137,7 +138,9 @@ static PetscErrorCode FitAt(FitSupport *fit, const OffsetFace *face, int q, FitP
     at.foot[d]    = at.X[d];
     at.outward[d] = face->normal[3 * q + d];
   }
+  TimingBegin(TIMING_FIT);
   PetscCall(FitSupportClimb(fit, &at, face->rung, problem, result, rung));
+  TimingEnd(TIMING_FIT);
   for (int a = 0; a < n && *rung != RUNG_FACET; a++) {
     for (int k = 0; k < dim - 1; k++) {
       nodes[a][k] = 0;

@@ -86,10 +86,13 @@ static PetscErrorCode MarkFaces(ContactSearch s, const PetscReal *u, PetscReal t
   enum { RINGS = 2 };
   const ContactSurface master = s->master;
   const int            dim    = s->mesh->dim;
-  PetscReal            x[FACE_MAX_NODES * 3], face[6], extent = 0;
+  /* Faces of a tool keep their extent, along any axis that between their corners where they have no other nodes. */
+  const PetscBool straight = (PetscBool)(master->rigid && master->order == 1);
+  PetscReal       x[FACE_MAX_NODES * 3], face[6], extent = 0;
 
   PetscFunctionBeginUser;
-  for (int pass = 0; pass < 2; pass++) {
+  if (straight) extent = master->max_extent;
+  for (int pass = straight ? 1 : 0; pass < 2; pass++) {
     for (PetscInt f = 0; f < master->n_faces; f++) {
       const int nodes  = ElementGet(master->faces[f].type)->nodes;
       PetscReal square = 0;
@@ -108,6 +111,22 @@ static PetscErrorCode MarkFaces(ContactSearch s, const PetscReal *u, PetscReal t
     }
     if (!pass && !master->rigid)
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent, 1, MPIU_REAL, MPIU_MAX, s->mesh->comm));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Places the nodes of a tool once for all its faces. */
+static PetscErrorCode PlaceTool(ContactSearch s, PetscReal t)
+{
+  const int dim = s->mesh->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->master->rigid->n_nodes * dim, &s->rigid_x));
+  for (PetscInt i = 0; i < s->master->rigid->n_nodes; i++) {
+    PetscReal x[3];
+
+    SearchRigidPosition(s, i, t, x);
+    for (int d = 0; d < dim; d++) s->rigid_x[i * dim + d] = x[d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -159,6 +178,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   *field     = (SearchField){0};
   lists->dim = mesh->dim;
   ToolsPlace(mesh, u, t);
+  if (rigid) PetscCall(PlaceTool(s, t));
   PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
   PetscCall(PetscMalloc1(6 * size, &boxes));
   if (s->master && !rigid) PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, mesh->comm));
@@ -173,6 +193,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   else
     PetscCall(SearchExchangeFaces(s, geometry, u, boxes, distance, &field->n_records, &field->records));
   PetscCall(PetscFree(boxes));
+  PetscCall(PetscFree(s->rigid_x));
   FaceRecordsSort(field->n_records, field->records);
   PetscCall(PetscFree(geometry));
   if (s->maps && s->maps->ptr) PetscCall(FetchMaps(s, field)); /* partners are sought before there are maps */

@@ -51,6 +51,7 @@ struct _n_ContactSearch {
   const FaceMarks    *marks;         /* of each slave point, where other pairs treat some of its partners; else NULL */
   PetscReal           reach, margin; /* lengths, without the motion */
   PetscReal           fit_reach;     /* SearchFitReach() */
+  PetscReal          *rigid_x;       /* of a tool's nodes (length), while faces are collected; else NULL */
   PetscInt            room, points_room; /* of the facets and points of the last lists */
   Partners            partners;
 };
