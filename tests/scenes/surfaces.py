@@ -9,6 +9,7 @@ SIDES = 4e-3  # of a force of friction: between a list and one role of slave and
 BEAMS, BLOCK, BLADE = SCENES / "crossed_beams.yaml", SCENES / "patch.yaml", SCENES / "knife.yaml"
 PRESSED = ["supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_min, uz: 0}]",
            "loads=[{surface: y_max, uy: -0.1}]", "contact=[{name: own, surfaces: all}]"]
+PLATE = SCENES / "plate_block.yaml"
 BUMPER_SPREAD = 5e-3  # of its force: the two formulations on its coarse mesh
 EXACT = 1e-6  # forces and pressures of the same problem written in another way
 SMOOTHED = 1e-3  # the smooth surface of a bent tip of four faces is not its faces: forces, and the largest pressure
@@ -165,6 +166,17 @@ def ranks():
         check.holds(f"iterations on {n} ranks", other["newton_iterations"] == one["newton_iterations"])
 
 
+def still():
+    """A plate and a block on it with all their faces: pairs in which nothing can meet keep their empty lists, on any number
+    of ranks."""
+    one, *others = (run(args, PLATE, out=f"still_{n}", ranks=n).summary() for n in (1, 2, 3))
+    check.holds("only plate and block are in contact",
+                [pair["nodes"] > 0 for pair in one["contact"]] == [False, True, True, False])
+    for n, other in enumerate(others, 2):
+        check.near(f"force on {n} ranks", other["probes"]["force"] / one["probes"]["force"], 1, 1e-9)
+        check.holds(f"iterations on {n} ranks", other["newton_iterations"] == one["newton_iterations"])
+
+
 def override():
     """A pair by slave and master takes its surfaces from a list of all bodies, in both formulations."""
     for formulation in ("node_to_surface", "surface_to_surface"):
@@ -289,7 +301,7 @@ def refusals():
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, refined, mirror, walls, ranks, refusals, override, friction, overlap, bumper, edges, knife or live"))
+args = arguments(("case", "frame, refined, mirror, walls, ranks, refusals, override, friction, overlap, bumper, edges, knife, live or still"))
 check = Check()
 if args.case == "frame":
     for smoother in ("facet", "diffuse"):
@@ -300,5 +312,5 @@ elif args.case == "mirror":
     mirror("surface_to_surface")
 else:
     {"walls": walls, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
-     "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "live": live, "refined": refined}[args.case]()
+     "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "live": live, "refined": refined, "still": still}[args.case]()
 check.finish()
