@@ -42,6 +42,12 @@ static const Explanation Input[] = {
    "The sides of a sector cannot be tied to each other by a rotation.",
    "Take a sector whose sides are planes of symmetry: hold their normal displacement by supports, and name them by "
    "`symmetry` under contact. Parts that twist, such as fans, need the whole model."},
+  {"B137",
+   {"lie on the same side of the face between them"},
+   "a body is meshed twice",
+   "Two cells of a body lie in the same place. Both would carry load, so that the body would be twice as stiff there. "
+   "The volume group of the body names two volumes that overlap, as boolean operations of gmsh leave them, or one twice.",
+   "Delete what was cut or united (`Delete` in gmsh's booleans), and list each volume once in the group."},
   {"B122",
    {"names a step, but there are none", "is no step;", "does not follow the step named before",
     "stands beside a history"},

@@ -73,6 +73,7 @@ static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists,
 static PetscErrorCode PairSetOffsets(ContactPair *pair)
 {
   PetscFunctionBeginUser;
+  if (pair->slave_offsets && OffsetsBlank(pair->slave_offsets)) PetscFunctionReturn(PETSC_SUCCESS);
   if (pair->slave_offsets && OffsetsMaps(pair->slave_offsets))
     PetscCall(SlavePointsSetMaps(pair->slaves, OffsetsMaps(pair->slave_offsets)));
   else if (pair->slave_offsets)
@@ -80,15 +81,19 @@ static PetscErrorCode PairSetOffsets(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes fresh lists and area factors, which become the pair's next ones. */
+/* Makes fresh lists and area factors, which become the pair's next ones. Empty lists stay where fresh ones would be
+   empty. */
 static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   PetscFunctionBeginUser;
   PetscCall(NeighbourListsDestroy(&pair->next));
   PetscCall(PairSetOffsets(pair));
+  pair->next_motion = motion;
+  pair->stays       = PETSC_FALSE;
+  if (pair->lists && pair->lists->empty) PetscCall(SearchFindsNothing(pair->search, u, t, motion, &pair->stays));
+  if (pair->stays) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SearchLists(pair->search, u, t, motion, &pair->next));
   PetscCall(PairFactors(pair, pair->next, pair->next_factor));
-  pair->next_motion = motion;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,14 +103,14 @@ static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, Pets
                                      PetscBool changed, PetscBool *serve)
 {
   NeighbourLists  lists = pair->next ? pair->next : pair->lists;
-  const PetscReal made  = pair->next ? pair->next_motion : pair->motion;
+  const PetscReal made  = pair->next || pair->stays ? pair->next_motion : pair->motion;
   PetscBool       moved = PETSC_TRUE;
   int             all;
 
   PetscFunctionBeginUser;
   if (lists && motion <= made * (1 + CONTACT_SAME_MOTION))
     PetscCall(NeighbourListsUpdate(pair->search, lists, u, t, &moved));
-  all = !moved && !changed && (pair->next || pair->fresh);
+  all = !moved && !changed && (pair->next || pair->stays || pair->fresh);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, pair->mesh->comm));
   *serve = all ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -229,10 +234,14 @@ static PetscErrorCode PairFreeFits(ContactPair *pair, PetscBool *changed)
 static PetscErrorCode PairTakeNext(ContactPair *pair)
 {
   PetscFunctionBeginUser;
+  pair->motion = pair->next_motion;
+  pair->fresh  = PETSC_TRUE;
+  if (pair->stays) {
+    pair->stays = PETSC_FALSE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(NeighbourListsDestroy(&pair->lists));
   pair->lists     = pair->next;
-  pair->motion    = pair->next_motion;
-  pair->fresh     = PETSC_TRUE;
   pair->next      = NULL;
   pair->projected = PETSC_FALSE;
   PetscCall(PetscArraycpy(pair->factor, pair->next_factor, pair->lists->n_slaves));
@@ -282,6 +291,15 @@ static PetscErrorCode PairListsMotion(Contact contact, const ContactPair *pair, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Keeps within a step what would turn to and fro with the next lists. */
+static void PairDamp(ContactPair *pair)
+{
+  if (pair->stays) return; /* nothing has a partner */
+  PairDampFactors(pair);
+  PairKeepRungs(pair);
+  PairKeepFrames(pair);
+}
+
 /* The lists in force take the offsets that are extrapolated to the end of the step. They were made with those of the
    accepted state. A second search for a change that is far less than the motion of a step would double its cost. */
 static PetscErrorCode PairExtrapolateOffsets(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal t_next)
@@ -292,6 +310,7 @@ static PetscErrorCode PairExtrapolateOffsets(ContactPair *pair, const PetscReal 
   if (!pair->slave_offsets) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next));
   if (pair->master_offsets) PetscCall(OffsetsExtrapolate(pair->master_offsets, u, t, t_next));
+  if (pair->lists->empty && OffsetsBlank(pair->slave_offsets)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PairSetOffsets(pair));
   PetscCall(NeighbourListsTakeOffsets(pair->search, pair->lists, &changed));
   if (changed) pair->projected = PETSC_FALSE;
@@ -359,7 +378,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscCall(PairFreeFits(pair, &changed));
     PetscCall(PairListsServe(pair, u, t, needed, changed, &serve));
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
-    if (pair->next) PetscCall(PairTakeNext(pair));
+    if (pair->next || pair->stays) PetscCall(PairTakeNext(pair));
     PetscCall(PairExtrapolateOffsets(pair, u, t, t_next));
     PetscCall(PetscArrayzero(pair->factor_change, pair->lists->n_slaves));
     for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
@@ -566,10 +585,8 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
 
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     PetscCall(PairSearch(pair, u, t, needed));
-    PetscCall(ContactNoteLost(pair, t));
-    PairDampFactors(pair);
-    PairKeepRungs(pair);
-    PairKeepFrames(pair);
+    if (!pair->stays) PetscCall(ContactNoteLost(pair, t));
+    PairDamp(pair);
     PetscCall(PairTakeNext(pair));
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
@@ -615,10 +632,12 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     PetscCall(PairTakeOffsets(pair, u, t, needed, PETSC_FALSE));
     PetscCall(PairSearch(pair, u, t, needed));
-    PetscCall(ContactNoteLost(pair, t));
-    ContactNoteTunnelled(pair, t);
-    ContactNoteJumps(pair, motion);
-    PetscCall(PairNextAgrees(contact, pair, t, lag, &agrees));
+    if (!pair->stays) {
+      PetscCall(ContactNoteLost(pair, t));
+      ContactNoteTunnelled(pair, t);
+      ContactNoteJumps(pair, motion);
+      PetscCall(PairNextAgrees(contact, pair, t, lag, &agrees));
+    }
     pair->fresh = PETSC_FALSE;
     agree       = agree && agrees && !late;
   }
@@ -626,9 +645,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;
   for (int p = 0; p < contact->n_pairs && !agree; p++) {
     PetscCall(PairDampOffsets(&contact->pairs[p], u, t));
-    PairDampFactors(&contact->pairs[p]);
-    PairKeepRungs(&contact->pairs[p]);
-    PairKeepFrames(&contact->pairs[p]);
+    PairDamp(&contact->pairs[p]);
     PetscCall(PairTakeNext(&contact->pairs[p]));
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
@@ -657,7 +674,11 @@ PetscErrorCode ContactListsArchive(Contact contact, Archive archive, const Petsc
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(contact->n_pairs, &motion));
-  for (int p = 0; p < contact->n_pairs; p++) motion[p] = contact->pairs[p].next ? contact->pairs[p].next_motion : -1;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    motion[p] = pair->next || pair->stays ? pair->next_motion : -1;
+  }
   PetscCall(ArchiveReals(archive, "contact/next_motion", contact->n_pairs, motion));
   if (ArchiveLoads(archive)) PetscCall(ContactGather(contact, u, t, t, 0));
   for (int p = 0; p < contact->n_pairs && ArchiveLoads(archive); p++)

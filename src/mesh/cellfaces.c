@@ -1,6 +1,9 @@
 /* Faces of all cells on rank 0, sorted by their corners, and the graph of cells that share faces. */
 #include "cellfaces.h"
 
+/* A corner that is off the plane of a face by less than this part of the face's size tells no side. */
+#define CELL_FACE_FLAT 1e-6
+
 /* Sorts the corners in ascending order and fills up with PETSC_MAX_INT where there are fewer. */
 static void SortCorners(int n, const PetscInt vertices[], PetscInt corner[CELL_FACE_CORNERS])
 {
@@ -171,4 +174,98 @@ PetscErrorCode CellFacesNeighbours(const RootMesh *root, PetscInt **offsets, Pet
   }
   PetscCall(PetscFree(next));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* On which side of a face with a normal through a place all other corners of a cell lie: 1, -1, or 0 where they lie on
+   both. */
+static int CellSide(const RootMesh *root, const CellFace *face, const PetscReal normal[3], const PetscReal place[3],
+                    PetscReal flat)
+{
+  const Element  *e      = root->cell_block[face->cell]->element;
+  const PetscInt *nodes  = RootMeshCellNodes(root, face->cell);
+  PetscReal       lowest = PETSC_MAX_REAL, highest = PETSC_MIN_REAL;
+
+  for (int a = 0; a < e->corners; a++) {
+    PetscReal height = 0;
+    PetscBool on     = PETSC_FALSE;
+
+    for (int k = 0; k < CELL_FACE_CORNERS; k++)
+      on = (PetscBool)(on || root->vertex[root->id[nodes[a]]] == face->corner[k]);
+    if (on) continue;
+    for (int d = 0; d < 3; d++) height += normal[d] * (root->gmsh.coords[3 * nodes[a] + d] - place[d]);
+    lowest  = PetscMin(lowest, height);
+    highest = PetscMax(highest, height);
+  }
+  return lowest > flat ? 1 : highest < -flat ? -1 : 0;
+}
+
+/* Mean place, normal and size of a face: in 2D across the edge, of a quadrangle across its diagonals. */
+static void FacePlane(const RootMesh *root, const CellFace *face, PetscReal place[3], PetscReal normal[3],
+                      PetscReal *size)
+{
+  const Element  *e                       = root->cell_block[face->cell]->element;
+  const PetscInt *nodes                   = RootMeshCellNodes(root, face->cell);
+  const int       corners                 = ElementGet((ElementType)e->face_type)->corners;
+  PetscReal       x[CELL_FACE_CORNERS][3] = {{0}}, a[3], b[3] = {0, 0, 1}, square = 0, length = 0;
+
+  for (int d = 0; d < 3; d++) {
+    place[d] = 0;
+    for (int k = 0; k < corners; k++) {
+      x[k][d] = root->gmsh.coords[3 * nodes[e->face_nodes[face->number][k]] + d];
+      place[d] += x[k][d] / corners;
+    }
+    a[d] = x[corners == 4 ? 2 : 1][d] - x[0][d];
+    if (corners > 2) b[d] = x[corners == 4 ? 3 : 2][d] - x[corners == 4 ? 1 : 0][d];
+    square += PetscSqr(a[d]);
+  }
+  for (int d = 0; d < 3; d++) {
+    normal[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+    length += PetscSqr(normal[d]);
+  }
+  for (int d = 0; d < 3 && length > 0; d++) normal[d] /= PetscSqrtReal(length);
+  *size = PetscSqrtReal(square);
+}
+
+/*@
+  CellFacesCheck - complains of a body that is meshed twice somewhere: two of its cells lie on the same side of a face
+  that they share.
+
+  Not collective, on rank 0
+
+  Input Parameters:
++ scene - the scene
+. file  - the mesh file, for the message
+- root  - after CellFacesCreate()
+
+  Output Parameter:
+. complaint - what is wrong
+
+  Note:
+  Both cells would carry load, so that the body would be twice as stiff there, and it would have no skin.
+@*/
+void CellFacesCheck(Scene scene, const char *file, const RootMesh *root, Complaint *complaint)
+{
+  const CellFace *end = root->cell_faces + root->corner_faces[root->n_vertices];
+  PetscReal       place[3], normal[3], again[3], size;
+
+  for (const CellFace *face = root->cell_faces; face + 1 < end; face++) {
+    const PetscInt cell = face->cell, other = face[1].cell;
+    int            side;
+
+    if (CompareCorners(face->corner, face[1].corner) || root->cell_body[cell] != root->cell_body[other]) continue;
+    FacePlane(root, &face[1], place, again, &size);
+    FacePlane(root, face, place, normal, &size);
+    /* Cells beside each other go round their face in opposite ways, also where one of them is inverted. */
+    if (normal[0] * again[0] + normal[1] * again[1] + normal[2] * again[2] <= 0) continue;
+    side = CellSide(root, face, normal, place, CELL_FACE_FLAT * size);
+    if (side == 0 || side != CellSide(root, &face[1], normal, place, CELL_FACE_FLAT * size)) continue;
+    Complain(complaint,
+             "%s: cells %" PetscInt_FMT " and %" PetscInt_FMT
+             " of '%s' lie on the same side of the face between them, at (%g, %g, %g): the body is meshed twice there; "
+             "name each of its parts once",
+             file, root->cell_block[cell]->tag[root->cell_item[cell]],
+             root->cell_block[other]->tag[root->cell_item[other]], scene->bodies[root->cell_body[cell]].name, place[0],
+             place[1], place[2]);
+    return;
+  }
 }

@@ -102,7 +102,8 @@ static PetscErrorCode CreateTopology(Scene scene, const char *file, RootMesh *ro
   PetscCall(RootGroupsShare(mesh->dm, scene, mesh, root));
   if (root) {
     PetscCall(CellFacesCreate(root));
-    PetscCall(RootTopologyPlaceNodes(mesh->dm, file, root, &complaint));
+    CellFacesCheck(scene, file, root, &complaint);
+    if (!complaint.text[0]) PetscCall(RootTopologyPlaceNodes(mesh->dm, file, root, &complaint));
     if (!complaint.text[0]) PetscCall(RootGroupsFind(mesh->dm, scene, file, root, mesh, &complaint));
     if (!complaint.text[0]) RootGroupsCheckUses(scene, root, mesh, &complaint);
   }

@@ -101,7 +101,10 @@ void SearchFacePositions(ContactSearch s, ContactSurface surface, PetscInt f, co
   for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
     PetscReal y[3];
 
-    if (surface->rigid) SearchRigidPosition(s, facet->nodes[a], t, y);
+    if (surface->rigid && s->rigid_x)
+      for (int d = 0; d < dim; d++) y[d] = s->rigid_x[facet->nodes[a] * dim + d];
+    else if (surface->rigid)
+      SearchRigidPosition(s, facet->nodes[a], t, y);
     for (int d = 0; d < dim; d++)
       x[a * dim + d] =
         surface->rigid ? y[d] : s->mesh->coords[facet->nodes[a] * dim + d] + u[facet->nodes[a] * dim + d];
@@ -164,8 +167,19 @@ void SearchMasterBox(ContactSearch s, const PetscReal *u, PetscReal t, const Pet
   }
 }
 
-/* Does any mirror image of a face come within the distance of a box? */
-static PetscBool SomeImageMeets(ContactSearch s, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance)
+/*@
+  SearchSomeImageMeets - tests whether any mirror image of a face comes within a distance of a box.
+
+  Not collective
+
+  Input Parameters:
++ s        - the search
+. n        - number of nodes of the face
+. x        - x[n*dim], their positions (length)
+. box      - lower then upper corner
+- distance - the distance (length)
+@*/
+PetscBool SearchSomeImageMeets(ContactSearch s, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance)
 {
   const int dim = s->mesh->dim;
 
@@ -197,8 +211,8 @@ static PetscBool ReachesBox(const void *context, PetscInt f, PetscMPIInt r)
   PetscReal    x[FACE_MAX_NODES * 3];
 
   SearchFacePositions(reach->s, reach->s->master, f, reach->u, 0, x);
-  return SomeImageMeets(reach->s, ElementGet(reach->s->master->faces[f].type)->nodes, x, &reach->boxes[6 * r],
-                        reach->distance);
+  return SearchSomeImageMeets(reach->s, ElementGet(reach->s->master->faces[f].type)->nodes, x, &reach->boxes[6 * r],
+                              reach->distance);
 }
 
 /*@
@@ -255,7 +269,7 @@ PetscErrorCode SearchPickRigidFaces(ContactSearch s, const NodeGeometry *geometr
     PetscReal x[FACE_MAX_NODES * 3];
 
     SearchFacePositions(s, s->master, f, NULL, t, x);
-    if (!SomeImageMeets(s, ElementGet(s->master->faces[f].type)->nodes, x, box, distance)) continue;
+    if (!SearchSomeImageMeets(s, ElementGet(s->master->faces[f].type)->nodes, x, box, distance)) continue;
     FaceRecordFromSurface(s->master, geometry, s->offset, f, &(*records)[(*n_records)++]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

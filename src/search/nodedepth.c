@@ -173,7 +173,7 @@ static PetscErrorCode NearNodes(NodeDepths depths, const PetscReal *u, PetscReal
   PetscFunctionBeginUser;
   PetscCall(SlaveBox(depths, u, t, slave));
   PetscCall(PetscMalloc1(depths->master->rigid ? depths->master->rigid->n_nodes : mesh->n_nodes, &geometry));
-  PetscCall(SurfaceNodeGeometry(depths->master, depths->search->scene->geometry, depths->loads, u, t, geometry));
+  PetscCall(SurfaceNodeGeometry(depths->master, depths->search->scene->geometry, depths->loads, u, t, NULL, geometry));
   for (int d = 0; d < 3; d++) {
     box[d]     = PETSC_MAX_REAL;
     box[3 + d] = PETSC_MIN_REAL;

@@ -87,14 +87,15 @@ static void AddFace(ContactSurface surface, Geometry geometry, const Facet *face
 }
 
 /* Averages the covariances over the nodes of the faces around a node. */
-static PetscErrorCode AverageOverRing(ContactSurface surface, PetscInt n, const PetscReal *sums, PetscReal *ring)
+static PetscErrorCode AverageOverRing(ContactSurface surface, const PetscBool *some, const PetscReal *sums,
+                                      PetscReal *ring)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(ring, 7 * n));
   for (PetscInt f = 0; f < surface->n_faces; f++) {
     const Facet *face = &surface->faces[f];
     const int    m    = ElementGet(face->type)->nodes;
 
+    if (some && !some[f]) continue;
     for (int a = 0; a < m; a++) {
       for (int b = 0; b < m; b++) {
         const PetscReal *sum = &sums[face->nodes[b] * SUMS];
@@ -104,18 +105,18 @@ static PetscErrorCode AverageOverRing(ContactSurface surface, PetscInt n, const 
       }
     }
   }
-  PetscCall(SumOverRanks(surface, 7, ring));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Present positions of all nodes of the surface's mesh or tool. */
+/* Present positions of the nodes of the surface's mesh or tool, of all or of those that are counted. */
 static PetscErrorCode Positions(ContactSurface surface, Loads loads, const PetscReal *u, PetscReal t, PetscInt n,
-                                PetscReal *x)
+                                const PetscBool *counts, PetscReal *x)
 {
   const int dim = surface->mesh->dim;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
+    if (counts && !counts[i]) continue;
     if (surface->group) {
       for (int d = 0; d < dim; d++) x[i * dim + d] = surface->mesh->coords[i * dim + d] + u[i * dim + d];
     } else {
@@ -129,8 +130,25 @@ static PetscErrorCode Positions(ContactSurface surface, Loads loads, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Marks the nodes of some faces. Where ranks sum the values of nodes, all nodes have values. */
+static PetscErrorCode MarkNodes(ContactSurface surface, const PetscBool *some, PetscInt n, PetscBool *counts)
+{
+  PetscMPIInt ranks;
+  PetscBool   all;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(surface->mesh->comm, &ranks));
+  all = (PetscBool)(!some || (surface->group && ranks > 1));
+  for (PetscInt i = 0; i < n; i++) counts[i] = all;
+  for (PetscInt f = 0; f < surface->n_faces && !all; f++) {
+    if (!some[f]) continue;
+    for (int a = 0; a < ElementGet(surface->faces[f].type)->nodes; a++) counts[surface->faces[f].nodes[a]] = PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  SurfaceNodeGeometry - computes normals, spacing with its shape, and fit weights of all nodes of a master surface.
+  SurfaceNodeGeometry - computes normals, spacing with its shape, and fit weights of the nodes of a master surface.
 
   Collective
 
@@ -139,18 +157,19 @@ static PetscErrorCode Positions(ContactSurface surface, Loads loads, const Petsc
 . geometry - of the scene; axisymmetric weights grow with the radius
 . loads    - gives the position of rigid tools
 . u        - local displacements u[n_nodes*dim] (length)
-- t        - load parameter
+. t        - load parameter
+- some     - which faces of this rank count; NULL: all
 
   Output Parameter:
 . nodes - one for each local node of the mesh, or of the rigid tool, complete on every copy of a node; those off the
-          surface are 0
+          surface are 0. With `some` only nodes are set around which two rings of faces count, on all ranks
 
   Note:
   The shape of the spacing comes from the covariance of the one-ring, averaged over the ring's nodes. Its size comes
   from the mean area of the faces. So a support of s spacings holds about pi s^2 nodes on any mesh.
 @*/
 PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Geometry geometry, Loads loads, const PetscReal *u,
-                                   PetscReal t, NodeGeometry *nodes)
+                                   PetscReal t, const PetscBool *some, NodeGeometry *nodes)
 {
   const int        dim       = surface->mesh->dim;
   const PetscInt   n         = surface->group ? surface->mesh->n_nodes : surface->rigid->n_nodes;
@@ -158,18 +177,28 @@ PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Geometry geometry, Lo
   const PetscBool  weighted  = (PetscBool)(surface->order > 1 || geometry == GEOMETRY_AXISYMMETRIC);
   const PetscReal  area_unit = PetscPowRealInt(surface->mean_size, geometry == GEOMETRY_PLANE_STRAIN ? 1 : 2);
   PetscReal       *x, *sums, *ring;
+  PetscBool       *counts;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(n * dim, &x, n * SUMS, &sums, n * 7, &ring));
-  PetscCall(PetscArrayzero(sums, n * SUMS));
-  PetscCall(Positions(surface, loads, u, t, n, x));
-  for (PetscInt f = 0; f < surface->n_faces; f++) AddFace(surface, geometry, &surface->faces[f], x, reference, sums);
-  PetscCall(SumOverRanks(surface, SUMS, sums));
-  PetscCall(AverageOverRing(surface, n, sums, ring));
+  PetscCall(PetscMalloc4(n * dim, &x, n * SUMS, &sums, n * 7, &ring, n, &counts));
+  PetscCall(MarkNodes(surface, some, n, counts));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscReal *sum  = &sums[i * SUMS];
-    PetscReal        area = sum[SUM_FACES] > 0 ? sum[SUM_AREA] / sum[SUM_FACES] : 0, length = 0;
+    if (!counts[i]) continue;
+    PetscCall(PetscArrayzero(&sums[i * SUMS], SUMS));
+    PetscCall(PetscArrayzero(&ring[i * 7], 7));
+  }
+  PetscCall(Positions(surface, loads, u, t, n, counts, x));
+  for (PetscInt f = 0; f < surface->n_faces; f++)
+    if (!some || some[f]) AddFace(surface, geometry, &surface->faces[f], x, reference, sums);
+  PetscCall(SumOverRanks(surface, SUMS, sums));
+  PetscCall(AverageOverRing(surface, some, sums, ring));
+  PetscCall(SumOverRanks(surface, 7, ring));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal *sum = &sums[i * SUMS];
+    PetscReal        area, length = 0;
 
+    if (!counts[i]) continue;
+    area = sum[SUM_FACES] > 0 ? sum[SUM_AREA] / sum[SUM_FACES] : 0;
     nodes[i] = (NodeGeometry){.spacing = dim == 3 ? PetscSqrtReal(area) : area,
                               .weight  = weighted ? sum[SUM_TRIBUTARY] / area_unit : 1};
     for (int d = 0; d < 3; d++) length += PetscSqr(sum[SUM_NORMAL + d]);
@@ -177,7 +206,7 @@ PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Geometry geometry, Lo
     for (int d = 0; d < 3 && length > 0; d++) nodes[i].normal[d] = sum[SUM_NORMAL + d] / length;
     for (int k = 0; k < 6 && ring[7 * i + 6] > 0; k++) nodes[i].covariance[k] = ring[7 * i + k] / ring[7 * i + 6];
   }
-  PetscCall(PetscFree3(x, sums, ring));
+  PetscCall(PetscFree4(x, sums, ring, counts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -225,7 +254,7 @@ PetscErrorCode SurfaceMeanNormal(ContactSurface surface, Loads loads, int n_imag
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n * surface->mesh->dim, &x));
-  PetscCall(Positions(surface, loads, u, t, n, x));
+  PetscCall(Positions(surface, loads, u, t, n, NULL, x));
   normal[0] = normal[1] = normal[2] = 0;
   for (PetscInt f = 0; f < surface->n_faces; f++) {
     FaceVector(surface, &surface->faces[f], x, vector);

@@ -1,7 +1,7 @@
 /* Geometry of the master surface at its nodes in the present position, as a fit needs it: normals, spacing and its
    anisotropy, weights.
 
-   SurfaceNodeGeometry() computes it for all nodes when lists are made. SurfaceMeanNormal() gives the normal of one
+   SurfaceNodeGeometry() computes it for the nodes near the other side when lists are made. SurfaceMeanNormal() gives the normal of one
    reference plane for the whole surface. SurfaceNodesPerFace() relates the area of a face to the area per node. */
 #pragma once
 #include "bodies/loads.h"
@@ -18,6 +18,6 @@ typedef struct {
 
 PetscReal      SurfaceNodesPerFace(ElementType);
 PetscErrorCode SurfaceNodeGeometry(ContactSurface, Geometry, Loads, const PetscReal *u, PetscReal t,
-                                   NodeGeometry *nodes);
+                                   const PetscBool *some, NodeGeometry *nodes);
 PetscErrorCode SurfaceMeanNormal(ContactSurface, Loads, int n_images, const SurfaceImage *, const PetscReal *u,
                                  PetscReal t, PetscReal normal[3], PetscReal *cosine);

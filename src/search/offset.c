@@ -3,6 +3,7 @@
 #include "search/offset.h"
 #include "search/surfaceends.h"
 #include "searchimpl.h"
+#include "base/timing.h"
 
 /* Offsets that a solve turns back are damped where what is left of their change is more than this part of the change
    before. Less than that settles by itself. */
@@ -29,6 +30,8 @@ struct _n_Offsets {
   PetscReal *used, *now, *before; /* used: those of the present solve; now, before: of the last two accepted states */
   PetscReal  t_now, t_before;
   PetscBool *wanted; /* of each face: its offsets are taken; others are NAN in now, before and last, and 0 in use */
+  /* Faces that have ever been wanted, once the first wish is known. All values of the others are blank. */
+  PetscBool *touched, tracked, blank; /* blank: no face on any rank is touched */
   /* The offsets that were taken last, with the displacements and the load parameter there. t_last is NAN before the
      first. */
   PetscReal *last, *u_last, t_last;
@@ -82,8 +85,8 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
   PetscCall(PetscCalloc5(o->n, &o->used, o->n, &o->now, o->n, &o->before, o->n, &o->last, mesh->n_nodes * mesh->dim,
                          &o->u_last));
   PetscCall(PetscCalloc3(o->n, &o->held, o->n, &o->asked, o->n, &o->change));
-  PetscCall(PetscMalloc1(surface->n_faces, &o->wanted));
-  for (PetscInt f = 0; f < surface->n_faces; f++) o->wanted[f] = PETSC_TRUE;
+  PetscCall(PetscMalloc2(surface->n_faces, &o->wanted, surface->n_faces, &o->touched));
+  for (PetscInt f = 0; f < surface->n_faces; f++) o->wanted[f] = o->touched[f] = PETSC_TRUE;
   PetscCall(SearchCreate(mesh, scene, loads, surface, surface->max_size, n_images, images, &o->fit, NULL, NULL, NULL,
                          &o->search));
   *out = o;
@@ -106,7 +109,7 @@ PetscErrorCode OffsetsDestroy(Offsets *offsets)
   PetscCall(FaceMapsDestroy(&(*offsets)->maps));
   PetscCall(PetscFree5((*offsets)->used, (*offsets)->now, (*offsets)->before, (*offsets)->last, (*offsets)->u_last));
   PetscCall(PetscFree3((*offsets)->held, (*offsets)->asked, (*offsets)->change));
-  PetscCall(PetscFree((*offsets)->wanted));
+  PetscCall(PetscFree2((*offsets)->wanted, (*offsets)->touched));
   PetscCall(PetscFree(*offsets));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -135,7 +138,9 @@ static PetscErrorCode FitAt(FitSupport *fit, const OffsetFace *face, int q, FitP
     at.foot[d]    = at.X[d];
     at.outward[d] = face->normal[3 * q + d];
   }
+  TimingBegin(TIMING_FIT);
   PetscCall(FitSupportClimb(fit, &at, face->rung, problem, result, rung));
+  TimingEnd(TIMING_FIT);
   for (int a = 0; a < n && *rung != RUNG_FACET; a++) {
     for (int k = 0; k < dim - 1; k++) {
       nodes[a][k] = 0;
@@ -349,11 +354,30 @@ static PetscErrorCode TakeWanted(Offsets o, const PetscReal *u, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Number of values of a face. */
+static PetscInt FaceBlock(Offsets o)
+{
+  return FACE_RULE_POINTS * o->search->mesh->dim;
+}
+
+/* The values from *first to the returned end belong to the next touched face from face *f on, which becomes the one
+   after it. Returns *first where there is none. */
+static PetscInt NextTouched(Offsets o, PetscInt *f, PetscInt *first)
+{
+  const PetscInt block = FaceBlock(o);
+
+  while (*f < o->surface->n_faces && !o->touched[*f]) (*f)++;
+  *first = *f * block;
+  if (*f == o->surface->n_faces) return *first;
+  (*f)++;
+  return *first + block;
+}
+
 /* The offsets at (u, t), NAN on faces that are not wanted. They are asked for twice for each solution: when its lists
    are checked, and where the next step begins. The second time the stored ones are used. */
 static PetscErrorCode OffsetsAt(Offsets o, const PetscReal *u, PetscReal t, PetscReal *values)
 {
-  const PetscInt n = o->search->mesh->n_nodes * o->search->mesh->dim, block = FACE_RULE_POINTS * o->search->mesh->dim;
+  const PetscInt n = o->search->mesh->n_nodes * o->search->mesh->dim;
   PetscBool      same;
   int            all;
 
@@ -362,12 +386,14 @@ static PetscErrorCode OffsetsAt(Offsets o, const PetscReal *u, PetscReal t, Pets
   all = same && t == o->t_last;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, o->search->mesh->comm));
   if (!all) {
-    for (PetscInt i = 0; i < o->n; i++) o->last[i] = NAN;
+    for (PetscInt f = 0, i, end; (end = NextTouched(o, &f, &i)) > i;)
+      for (; i < end; i++) o->last[i] = NAN;
     PetscCall(PetscArraycpy(o->u_last, u, n));
     o->t_last = t;
   }
   PetscCall(TakeWanted(o, u, t));
-  for (PetscInt i = 0; i < o->n; i++) values[i] = o->wanted[i / block] ? o->last[i] : NAN;
+  for (PetscInt f = 0, i, end; (end = NextTouched(o, &f, &i)) > i;)
+    for (const PetscBool wanted = o->wanted[f - 1]; i < end; i++) values[i] = wanted ? o->last[i] : NAN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -406,9 +432,36 @@ PetscBool OffsetsFollow(Offsets o)
 @*/
 PetscErrorCode OffsetsWant(Offsets o, const PetscBool *wanted, PetscBool anew)
 {
+  const PetscBool first = (PetscBool)(!o->tracked && PetscIsNanReal(o->t_last) && o->t_now < 0);
+  int             any   = 0;
+
   PetscFunctionBeginUser;
-  for (PetscInt f = 0; f < o->surface->n_faces; f++) o->wanted[f] = (PetscBool)(wanted[f] || (!anew && o->wanted[f]));
+  if (first) {
+    for (PetscInt i = 0; i < o->n; i++) o->last[i] = o->now[i] = o->before[i] = NAN;
+    PetscCall(PetscArrayzero(o->touched, o->surface->n_faces));
+    o->tracked = PETSC_TRUE;
+  }
+  for (PetscInt f = 0; f < o->surface->n_faces; f++) {
+    o->wanted[f]  = (PetscBool)(wanted[f] || (!anew && o->wanted[f]));
+    o->touched[f] = (PetscBool)(o->touched[f] || o->wanted[f]);
+    any           = any || o->touched[f];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, o->search->mesh->comm));
+  o->blank = any ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  OffsetsBlank - says whether no face on any rank has ever been wanted, so that all offsets in use are 0.
+
+  Not collective
+
+  Input Parameter:
+. o - the offsets
+@*/
+PetscBool OffsetsBlank(Offsets o)
+{
+  return o->blank;
 }
 
 /*@
@@ -443,11 +496,11 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
     o->t_before = o->t_now;
     o->t_now    = t;
   }
-  PetscCall(OffsetsAt(o, u, t, o->now));
+  if (!o->blank) PetscCall(OffsetsAt(o, u, t, o->now));
   /* Past a breakpoint the loads take another direction. */
   if (o->t_before >= 0 && !SceneBreaks(o->search->scene, t)) ahead = (t_next - t) / (t - o->t_before);
-  for (PetscInt i = 0; i < o->n; i++) o->used[i] = InUse(o->now[i]) + ahead * InUse(o->now[i] - o->before[i]);
-  PetscCall(PetscArraycpy(o->held, o->used, o->n));
+  for (PetscInt f = 0, i, end; (end = NextTouched(o, &f, &i)) > i;)
+    for (; i < end; i++) o->held[i] = o->used[i] = InUse(o->now[i]) + ahead * InUse(o->now[i] - o->before[i]);
   o->replaced = o->turning = PETSC_FALSE;
   o->turns                 = 0;
   o->taken                 = PETSC_TRUE;
@@ -471,8 +524,10 @@ PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
   PetscFunctionBeginUser;
   PetscCall(TakeOnce(o, &done));
   if (done) PetscFunctionReturn(PETSC_SUCCESS);
+  if (o->blank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OffsetsAt(o, u, t, o->used));
-  for (PetscInt i = 0; i < o->n; i++) o->used[i] = InUse(o->used[i]);
+  for (PetscInt f = 0, i, end; (end = NextTouched(o, &f, &i)) > i;)
+    for (; i < end; i++) o->used[i] = InUse(o->used[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -503,12 +558,14 @@ PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
   if (!OffsetsFollow(o)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < o->n; i++) {
-    const PetscReal change = o->used[i] - o->held[i];
+  for (PetscInt f = 0, i, end; (end = NextTouched(o, &f, &i)) > i;) {
+    for (; i < end; i++) {
+      const PetscReal change = o->used[i] - o->held[i];
 
-    sum[0] += PetscSqr(o->change[i]);
-    sum[1] += change * o->change[i];
-    sum[2] += PetscSqr(change);
+      sum[0] += PetscSqr(o->change[i]);
+      sum[1] += change * o->change[i];
+      sum[2] += PetscSqr(change);
+    }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, o->search->mesh->comm));
   turns      = (PetscBool)(o->replaced && sum[1] < 0 && sum[2] > PetscSqr(OFFSET_SETTLES) * sum[0]);
@@ -516,13 +573,15 @@ PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
   o->turning = (PetscBool)(o->turning || o->turns == OFFSET_TURNS);
   *changed   = (PetscBool)(o->turning && sum[2] > 0);
   part       = *changed ? PetscMax(-1, (sum[2] - sum[1]) / (sum[2] - 2 * sum[1] + sum[0])) : 0;
-  for (PetscInt i = 0; i < o->n; i++) {
-    const PetscReal asked = o->used[i];
+  for (PetscInt f = 0, i, end; (end = NextTouched(o, &f, &i)) > i;) {
+    for (; i < end; i++) {
+      const PetscReal asked = o->used[i];
 
-    o->change[i] = asked - o->held[i];
-    o->used[i] -= part * (asked - o->asked[i]);
-    o->asked[i] = asked;
-    o->held[i]  = o->used[i];
+      o->change[i] = asked - o->held[i];
+      o->used[i] -= part * (asked - o->asked[i]);
+      o->asked[i] = asked;
+      o->held[i]  = o->used[i];
+    }
   }
   o->replaced = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -559,6 +618,20 @@ const PetscReal *OffsetsGet(Offsets o)
 const FaceMaps *OffsetsMaps(Offsets o)
 {
   return o->kind == OFFSETS_LIVE ? &o->maps : NULL;
+}
+
+/* Faces that have values after these were loaded have been wanted. */
+static PetscErrorCode FindTouched(Offsets o)
+{
+  const PetscInt block = FaceBlock(o);
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < o->n; i++) o->last[i] = NAN;
+  for (PetscInt f = 0; f < o->surface->n_faces; f++)
+    o->touched[f] = (PetscBool) !(PetscIsNanReal(o->now[f * block]) && PetscIsNanReal(o->before[f * block]));
+  o->tracked = PETSC_TRUE;
+  o->blank   = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -599,5 +672,6 @@ PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
   o->t_now    = time[0];
   o->t_before = time[1];
   PetscCall(Hdf5TableDestroy(&faces));
+  if (ArchiveLoads(archive)) PetscCall(FindTouched(o));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -26,6 +26,7 @@ PetscErrorCode   OffsetsCreate(Mesh, Scene, Loads, ContactSurface, int n_images,
                                PetscReal feature_angle, int finer, OffsetsKind, Offsets *);
 PetscErrorCode   OffsetsDestroy(Offsets *);
 PetscBool        OffsetsFollow(Offsets);
+PetscBool        OffsetsBlank(Offsets);
 PetscErrorCode   OffsetsWant(Offsets, const PetscBool *wanted, PetscBool anew);
 PetscErrorCode   OffsetsExtrapolate(Offsets, const PetscReal *u, PetscReal t, PetscReal t_next);
 PetscErrorCode   OffsetsTake(Offsets, const PetscReal *u, PetscReal t);

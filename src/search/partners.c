@@ -220,8 +220,164 @@ static PetscReal LargestChange(PetscInt n, int dim, const PetscReal *a, const Pe
   return PetscSqrtReal(most);
 }
 
-/* What has changed since the last test, over all ranks: positions of the points and of the nodes, offsets (lengths),
-   unit normals. */
+/* Entries of a face's lever: change of a unit normal for each length by which nodes part, for the square of that
+   length, and change of a point for the length. */
+enum { LEVER_NORMAL, LEVER_SQUARE, LEVER_POINT, LEVERS };
+
+/* Adds a point of a face to its lever. N and dN are the shape functions there, with dN[a * stride + k], x the nodes'
+   positions. Tangents change by no more than the sum of their derivatives' amounts times the length, and the unit
+   vector of a product by no more than twice its change over its amount. */
+static void LeverAdd(int dim, const Element *e, const double *N, const double *dN, int stride, const PetscReal *x,
+                     PetscReal *lever)
+{
+  PetscReal tangent[2][3] = {{0}}, length[2] = {0, 0}, sum[2] = {0, 0}, amount = 0, area = 0;
+
+  for (int a = 0; a < e->nodes; a++) {
+    amount += PetscAbsReal(N[a]);
+    for (int k = 0; k < e->dim; k++) {
+      sum[k] += PetscAbsReal(dN[a * stride + k]);
+      for (int d = 0; d < dim; d++) tangent[k][d] += dN[a * stride + k] * x[a * dim + d];
+    }
+  }
+  for (int k = 0; k < e->dim; k++) {
+    for (int d = 0; d < dim; d++) length[k] += PetscSqr(tangent[k][d]);
+    length[k] = PetscSqrtReal(length[k]);
+  }
+  for (int d = 0; d < 3 && e->dim == 2; d++)
+    area +=
+      PetscSqr(tangent[0][(d + 1) % 3] * tangent[1][(d + 2) % 3] - tangent[0][(d + 2) % 3] * tangent[1][(d + 1) % 3]);
+  area = e->dim == 2 ? PetscSqrtReal(area) : length[0];
+  if (e->order > 1) lever[LEVER_POINT] = PetscMax(lever[LEVER_POINT], amount);
+  if (!(area > 0)) {
+    lever[LEVER_NORMAL] = PETSC_INFINITY;
+    return;
+  }
+  lever[LEVER_NORMAL] =
+    PetscMax(lever[LEVER_NORMAL], 2 * (e->dim == 2 ? sum[0] * length[1] + sum[1] * length[0] : sum[0]) / area);
+  if (e->dim == 2) lever[LEVER_SQUARE] = PetscMax(lever[LEVER_SQUARE], 2 * sum[0] * sum[1] / area);
+}
+
+/* Positions of the nodes of a slave face after the last move. */
+static void SlaveFacePositions(SlavePoints points, PetscInt f, PetscReal *x)
+{
+  const Facet *facet = &points->faces[f];
+  const int    dim   = points->mesh->dim;
+
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+    for (int d = 0; d < dim; d++)
+      x[a * dim + d] = points->nodes[facet->nodes[a]].X[d] + points->u[facet->nodes[a] * dim + d];
+}
+
+/* Finds the levers of all faces at the state of the last test. */
+static void FindLevers(ContactSearch s, const PetscReal *u, PetscReal t)
+{
+  const SlavePoints points = s->slaves;
+  const int         dim    = s->mesh->dim;
+  PetscReal        *lever  = s->partners.lever, x[FACE_MAX_NODES * 3];
+
+  for (PetscInt f = 0; f < points->n_faces; f++, lever += LEVERS) {
+    const ElementType type = points->faces[f].type;
+    const FaceRule   *rule = FaceRuleOf(type, points->finer, points->ends[f]);
+
+    SlaveFacePositions(points, f, x);
+    for (int k = 0; k < LEVERS; k++) lever[k] = 0;
+    for (int q = 0; q < rule->n; q++) LeverAdd(dim, ElementGet(type), rule->N[q], &rule->dN[q][0][0], 2, x, lever);
+  }
+  for (PetscInt f = 0; f < s->master->n_faces; f++, lever += LEVERS) {
+    const Element *e     = ElementGet(s->master->faces[f].type);
+    double         xi[2] = {0, 0}, N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2];
+
+    if (e->corners == 3) xi[0] = xi[1] = 1.0 / 3;
+    ElementShape(e->type, xi, N, dN, NULL);
+    SearchFacePositions(s, s->master, f, u, t, x);
+    for (int k = 0; k < LEVERS; k++) lever[k] = 0;
+    LeverAdd(dim, e, N, dN, e->dim, x, lever);
+  }
+}
+
+/* Takes in by how much a face whose nodes have numbers node[] has moved at most, and turned. */
+static void FaceChange(int dim, int nodes, const int *node, const PetscReal *now, const PetscReal *before,
+                       const PetscReal *lever, PetscReal *moved, PetscReal *turned)
+{
+  PetscReal lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0}, part = 0, square = 0;
+
+  for (int a = 0; a < nodes; a++) {
+    PetscReal way = 0;
+
+    for (int d = 0; d < dim; d++) {
+      const PetscReal change = now[node[a] * dim + d] - before[node[a] * dim + d];
+
+      lower[d] = a ? PetscMin(lower[d], change) : change;
+      upper[d] = a ? PetscMax(upper[d], change) : change;
+      way += PetscSqr(change);
+    }
+    square = PetscMax(square, way);
+  }
+  for (int d = 0; d < dim; d++) part += PetscSqr(upper[d] - lower[d]);
+  part    = PetscSqrtReal(part);
+  *moved  = PetscMax(*moved, PetscSqrtReal(square) + lever[LEVER_POINT] * part);
+  *turned = PetscMax(*turned, part > 0 ? (lever[LEVER_NORMAL] + lever[LEVER_SQUARE] * part) * part : 0);
+}
+
+/* Largest offset of a slave point (length). */
+static PetscReal LargestOffset(ContactSearch s)
+{
+  const int dim  = s->mesh->dim;
+  PetscReal most = 0;
+
+  for (PetscInt q = 0; q < s->slaves->n; q++) {
+    PetscReal square = 0;
+
+    for (int d = 0; d < dim; d++) square += PetscSqr(s->slaves->offset[q * dim + d]);
+    most = PetscMax(most, square);
+  }
+  return PetscSqrtReal(most);
+}
+
+/* By how much positions of points and of the master's nodes have changed at most since the last test, with the offsets,
+   and unit normals, over all ranks: bounds from the motion of nodes alone. */
+static PetscErrorCode BoundChanges(ContactSearch s, const PetscReal *u, PetscReal *moved, PetscReal *turned)
+{
+  enum { POINT, NODE, OFFSET, NORMAL, CHANGES };
+  const SlavePoints points       = s->slaves;
+  const Partners   *at           = &s->partners;
+  const PetscReal  *lever        = at->lever;
+  PetscReal         all[CHANGES] = {0, 0, 0, 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < points->n_faces; f++, lever += LEVERS)
+    FaceChange(s->mesh->dim, ElementGet(points->faces[f].type)->nodes, points->faces[f].nodes, points->u, at->slave_u,
+               lever, &all[POINT], &all[NORMAL]);
+  for (PetscInt f = 0; f < s->master->n_faces; f++, lever += LEVERS)
+    FaceChange(s->mesh->dim, ElementGet(s->master->faces[f].type)->nodes, s->master->faces[f].nodes, u, at->u, lever,
+               &all[NODE], &all[NORMAL]);
+  all[OFFSET] = LargestOffset(s);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, CHANGES, MPIU_REAL, MPIU_MAX, s->mesh->comm));
+  *moved  = all[POINT] + all[NODE] + all[OFFSET];
+  *turned = all[NORMAL];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By how much nodes of the master's faces on this rank have moved at most since the last test (length). */
+static PetscReal MasterMotion(ContactSearch s, const PetscReal *u)
+{
+  const int dim  = s->mesh->dim;
+  PetscReal most = 0;
+
+  for (PetscInt f = 0; f < s->master->n_faces; f++) {
+    for (int a = 0; a < ElementGet(s->master->faces[f].type)->nodes; a++) {
+      const PetscInt i      = s->master->faces[f].nodes[a] * dim;
+      PetscReal      square = 0;
+
+      for (int d = 0; d < dim; d++) square += PetscSqr(u[i + d] - s->partners.u[i + d]);
+      most = PetscMax(most, square);
+    }
+  }
+  return PetscSqrtReal(most);
+}
+
+/* What has changed since the last test, over all ranks: positions of the points and of the master's nodes, offsets
+   (lengths), unit normals. */
 static PetscErrorCode Changes(ContactSearch s, const PetscReal *u, const PetscReal *x, const PetscReal *normal,
                               const PetscReal *face_normal, PetscReal *moved, PetscReal *turned)
 {
@@ -232,14 +388,8 @@ static PetscErrorCode Changes(ContactSearch s, const PetscReal *u, const PetscRe
 
   PetscFunctionBeginUser;
   all[POINT]  = LargestChange(s->slaves->n, dim, x, at->x);
-  all[NODE]   = LargestChange(s->mesh->n_nodes, dim, u, at->u);
-  all[OFFSET] = 0;
-  for (PetscInt q = 0; q < s->slaves->n; q++) {
-    PetscReal square = 0;
-
-    for (int d = 0; d < dim; d++) square += PetscSqr(s->slaves->offset[q * dim + d]);
-    all[OFFSET] = PetscMax(all[OFFSET], PetscSqrtReal(square));
-  }
+  all[NODE]   = MasterMotion(s, u);
+  all[OFFSET] = LargestOffset(s);
   all[NORMAL] = LargestChange(s->slaves->n, 3, normal, at->normal);
   all[FACE]   = LargestChange(s->master->n_faces, 3, face_normal, at->face_normal);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, CHANGES, MPIU_REAL, MPIU_MAX, s->mesh->comm));
@@ -279,6 +429,8 @@ static PetscErrorCode TestAll(ContactSearch s, const PetscReal *u, PetscReal t, 
   at->motion = motion;
   sight      = SightAhead(s);
   PetscCall(PetscArraycpy(at->u, u, s->mesh->n_nodes * s->mesh->dim));
+  if (at->lever) PetscCall(PetscArraycpy(at->slave_u, s->slaves->u, s->slaves->n_nodes * s->mesh->dim));
+  if (at->lever) FindLevers(s, u, t);
   at->learns = (PetscBool)!SearchTestsPartners(s);
   if (at->learns)
     for (PetscInt q = 0; q < s->slaves->n; q++) at->possible[q] = PETSC_TRUE;
@@ -318,28 +470,38 @@ PetscErrorCode SearchPartnersLearn(ContactSearch s, NeighbourLists lists, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SearchPartners - finds which slave points may have a partner; all others have none.
+/* Does the last test still hold, as far as the motion of nodes alone tells? */
+static PetscErrorCode StillHolds(ContactSearch s, const PetscReal *u, PetscReal motion, PetscBool *holds)
+{
+  const Partners *at = &s->partners;
+  PetscReal       moved, turned;
 
-  Collective
+  PetscFunctionBeginUser;
+  *holds = PETSC_FALSE;
+  if (!s->slaves->face_sf || at->thin == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BoundChanges(s, u, &moved, &turned));
+  *holds = (PetscBool)(PetscMax(0, motion - at->motion) + moved <= PARTNERS_SKIN * at->thin && turned <= PARTNERS_TURN);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-  Input Parameters:
-+ s      - the search, after SlavePointsMove() of its slave points
-. u      - local displacements u[mesh n_nodes*dim] (length), ghosts included
-. t      - load parameter
-- motion - relative motion (length) for which lists are to be good
+/* Allocates what a test leaves. */
+static PetscErrorCode MakeRoom(ContactSearch s)
+{
+  Partners      *at = &s->partners;
+  const PetscInt n = s->slaves->n, faces = s->master->n_faces;
+  const int      dim = s->mesh->dim;
 
-  Output Parameter:
-. normals - normals[3*n] of the slave points, as SlavePointsNormals() gives them
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc5(n, &at->possible, n * dim, &at->x, 3 * n, &at->normal, 3 * faces, &at->face_normal,
+                         s->mesh->n_nodes * dim, &at->u));
+  if (s->slaves->face_sf)
+    PetscCall(PetscMalloc2(s->slaves->n_nodes * dim, &at->slave_u, LEVERS * (s->slaves->n_faces + faces), &at->lever));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-  Note:
-  The answer is in the search's partners. Boxes are seen farther than a search would by a skin, and normals count as
-  opposed earlier. As long as nothing has moved or turned by more, the last answer is kept: a point that it leaves out
-  has no facet that opposes it, within the reach of a search and not hidden by its own body.
-
-  Source: Verlet, Computer experiments on classical fluids, Phys. Rev. 159 (1967) 98-103, for the skin.
-@*/
-PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal *normals)
+/* Compares positions and normals with those of the last test, and tests anew where they have changed too much. normals
+   are those of SlavePointsNormals(). */
+static PetscErrorCode TestAnew(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal *normals)
 {
   Partners      *at = &s->partners;
   const PetscInt n = s->slaves->n, faces = s->master->n_faces;
@@ -354,9 +516,7 @@ PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, 
   PetscCall(PointNormals(s, u, normals, normal));
   FaceNormals(s, u, t, face_normal);
   if (first) PetscCall(ThinnestPart(s, &at->thin));
-  if (first)
-    PetscCall(PetscMalloc5(n, &at->possible, n * dim, &at->x, 3 * n, &at->normal, 3 * faces, &at->face_normal,
-                           s->mesh->n_nodes * dim, &at->u));
+  if (first) PetscCall(MakeRoom(s));
   if (!first) PetscCall(Changes(s, u, x, normal, face_normal, &moved, &turned));
   if (first || PetscMax(0, motion - at->motion) + moved > PARTNERS_SKIN * at->thin || turned > PARTNERS_TURN) {
     PetscCall(PetscArraycpy(at->x, x, n * dim));
@@ -382,6 +542,72 @@ static PetscErrorCode MarkFaces(SlavePoints points, const PetscBool *possible, P
   PetscCall(PetscSFReduceEnd(points->face_sf, MPI_INT, at_points, at_faces, MPI_MAX));
   for (PetscInt f = 0; f < points->surface->n_faces; f++) faces[f] = (PetscBool)at_faces[f];
   PetscCall(PetscFree2(at_points, at_faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SearchPartners - finds which slave points may have a partner; all others have none.
+
+  Collective
+
+  Input Parameters:
++ s      - the search, after SlavePointsMove() of its slave points
+. u      - local displacements u[mesh n_nodes*dim] (length), ghosts included
+. t      - load parameter
+- motion - relative motion (length) for which lists are to be good
+
+  Output Parameter:
+. normals - normals[3*n] of the slave points, as SlavePointsNormals() gives them, or 0 where none may have a partner;
+            NULL: not asked for
+
+  Note:
+  The answer is in the search's partners. Boxes are seen farther than a search would by a skin, and normals count as
+  opposed earlier. As long as nothing has moved or turned by more, the last answer is kept: a point that it leaves out
+  has no facet that opposes it, within the reach of a search and not hidden by its own body.
+
+  Source: Verlet, Computer experiments on classical fluids, Phys. Rev. 159 (1967) 98-103, for the skin.
+@*/
+PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal *normals)
+{
+  PetscBool  holds;
+  PetscReal *own = normals;
+
+  PetscFunctionBeginUser;
+  PetscCall(StillHolds(s, u, motion, &holds));
+  if (holds) {
+    if (normals && s->partners.any) PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, normals));
+    if (normals && !s->partners.any) PetscCall(PetscArrayzero(normals, 3 * s->slaves->n));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (!normals) PetscCall(PetscMalloc1(3 * s->slaves->n, &own));
+  PetscCall(TestAnew(s, u, t, motion, own));
+  if (!normals) PetscCall(PetscFree(own));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SearchFindsNothing - says whether no slave point on any rank can have a partner, so that lists would be empty.
+
+  Collective
+
+  Input Parameters:
++ s      - the search
+. u      - local displacements u[mesh n_nodes*dim] (length), ghosts included
+. t      - load parameter
+- motion - relative motion (length) for which lists are to be good
+
+  Output Parameter:
+. nothing - the same on all ranks
+@*/
+PetscErrorCode SearchFindsNothing(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion,
+                                  PetscBool *nothing)
+{
+  PetscFunctionBeginUser;
+  *nothing = PETSC_FALSE;
+  if (!SearchHasPartners(s)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SlavePointsMove(s->slaves, u));
+  PetscCall(SearchPartners(s, u, t, motion, NULL));
+  *nothing = (PetscBool)!s->partners.any;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -438,5 +664,6 @@ PetscErrorCode SearchPartnersFree(ContactSearch s)
 
   PetscFunctionBeginUser;
   if (at->thin > 0) PetscCall(PetscFree5(at->possible, at->x, at->normal, at->face_normal, at->u));
+  if (at->thin > 0 && at->lever) PetscCall(PetscFree2(at->slave_u, at->lever));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -417,6 +417,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(SlavePointsMove(s->slaves, u));
   PetscCall(PetscMalloc1(3 * s->slaves->n, &normals));
   if (partners) PetscCall(SearchPartners(s, u, t, motion, normals));
+  lists->empty = (PetscBool)(partners && !s->partners.any);
   SearchSlaveBox(s, box);
   PetscCall(SearchFieldCreate(s, u, t, box, distance, (PetscBool)(s->fit->fitted && (!partners || s->partners.any)),
                               lists, &field));

@@ -47,6 +47,7 @@ void           SearchSetMarks(ContactSearch, const FaceMarks *);
 void           SearchSetRungs(ContactSearch, const int *first);
 void           SearchSetFrames(ContactSearch, const PetscReal *kept);
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
+PetscErrorCode SearchFindsNothing(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *nothing);
 PetscErrorCode SearchNearFaces(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *slave,
                                PetscBool *master);
 PetscErrorCode SearchLeastDistance(ContactSearch, const PetscReal *u, PetscReal t, PetscReal *distance);

@@ -77,6 +77,74 @@ static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Marks the faces of the master whose nodes' geometry is needed, or from which it comes: the geometry of a node takes
+   two rings of faces around it. Faces beyond the distance from the boxes by two present extents of the largest face
+   are no part of these rings. Ranks agree where they share nodes. */
+static PetscErrorCode MarkFaces(ContactSearch s, const PetscReal *u, PetscReal t, PetscInt n_boxes,
+                                const PetscReal *boxes, PetscReal distance, PetscBool *some)
+{
+  enum { RINGS = 2 };
+  const ContactSurface master = s->master;
+  const int            dim    = s->mesh->dim;
+  /* Faces of a tool keep their extent, along any axis that between their corners where they have no other nodes. */
+  const PetscBool straight = (PetscBool)(master->rigid && master->order == 1);
+  PetscReal       x[FACE_MAX_NODES * 3], face[6], extent = 0;
+
+  PetscFunctionBeginUser;
+  if (straight) extent = master->max_extent;
+  for (int pass = straight ? 1 : 0; pass < 2; pass++) {
+    for (PetscInt f = 0; f < master->n_faces; f++) {
+      const int nodes  = ElementGet(master->faces[f].type)->nodes;
+      PetscReal square = 0;
+
+      SearchFacePositions(s, master, f, u, t, x);
+      if (pass) {
+        some[f] = PETSC_FALSE;
+        for (PetscInt b = 0; b < n_boxes && !some[f]; b++)
+          some[f] = SearchSomeImageMeets(s, nodes, x, &boxes[6 * b], distance + RINGS * extent);
+        continue;
+      }
+      SearchBoxEmpty(face);
+      for (int a = 0; a < nodes; a++) SearchBoxAdd(face, dim, &x[a * dim]);
+      for (int d = 0; d < dim; d++) square += PetscSqr(face[3 + d] - face[d]);
+      extent = PetscMax(extent, PetscSqrtReal(square));
+    }
+    if (!pass && !master->rigid)
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent, 1, MPIU_REAL, MPIU_MAX, s->mesh->comm));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Places the nodes of a tool once for all its faces. */
+static PetscErrorCode PlaceTool(ContactSearch s, PetscReal t)
+{
+  const int dim = s->mesh->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->master->rigid->n_nodes * dim, &s->rigid_x));
+  for (PetscInt i = 0; i < s->master->rigid->n_nodes; i++) {
+    PetscReal x[3];
+
+    SearchRigidPosition(s, i, t, x);
+    for (int d = 0; d < dim; d++) s->rigid_x[i * dim + d] = x[d];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Computes the geometry of the nodes of the faces within a distance of the boxes. */
+static PetscErrorCode NodesGeometry(ContactSearch s, const PetscReal *u, PetscReal t, PetscInt n_boxes,
+                                    const PetscReal *boxes, PetscReal distance, NodeGeometry *geometry)
+{
+  PetscBool *some;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->master->n_faces, &some));
+  PetscCall(MarkFaces(s, u, t, n_boxes, boxes, distance, some));
+  PetscCall(SurfaceNodeGeometry(s->master, s->scene->geometry, s->loads, u, t, some, geometry));
+  PetscCall(PetscFree(some));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SearchFieldCreate - collects the faces around a box, and puts their nodes, images and points into lists.
 
@@ -104,26 +172,28 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   PetscMPIInt   size;
   PetscReal    *boxes;
   NodeGeometry *geometry = NULL;
+  const int     rigid    = s->master && s->master->rigid;
 
   PetscFunctionBeginUser;
   *field     = (SearchField){0};
   lists->dim = mesh->dim;
   ToolsPlace(mesh, u, t);
+  if (rigid) PetscCall(PlaceTool(s, t));
+  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+  PetscCall(PetscMalloc1(6 * size, &boxes));
+  if (s->master && !rigid) PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, mesh->comm));
   if (fits) {
-    PetscCall(PetscMalloc1(s->master->rigid ? s->master->rigid->n_nodes : mesh->n_nodes, &geometry));
-    PetscCall(SurfaceNodeGeometry(s->master, s->scene->geometry, s->loads, u, t, geometry));
+    PetscCall(PetscMalloc1(rigid ? s->master->rigid->n_nodes : mesh->n_nodes, &geometry));
+    PetscCall(NodesGeometry(s, u, t, rigid ? 1 : size, rigid ? box : boxes, distance, geometry));
   }
   if (!s->master)
     PetscCall(PetscMalloc1(0, &field->records));
-  else if (s->master->rigid)
+  else if (rigid)
     PetscCall(SearchPickRigidFaces(s, geometry, t, box, distance, &field->n_records, &field->records));
-  else {
-    PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
-    PetscCall(PetscMalloc1(6 * size, &boxes));
-    PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, mesh->comm));
+  else
     PetscCall(SearchExchangeFaces(s, geometry, u, boxes, distance, &field->n_records, &field->records));
-    PetscCall(PetscFree(boxes));
-  }
+  PetscCall(PetscFree(boxes));
+  PetscCall(PetscFree(s->rigid_x));
   FaceRecordsSort(field->n_records, field->records);
   PetscCall(PetscFree(geometry));
   if (s->maps && s->maps->ptr) PetscCall(FetchMaps(s, field)); /* partners are sought before there are maps */

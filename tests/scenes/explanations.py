@@ -48,6 +48,7 @@ INPUT = {
                        "mesh.order=2", "supports.0.ux=0", "supports.4={surface: right, ux: 0}"]),
     "B131": (BAR, (), ["supports.2={surface: high, uy: 0, spring: [1, 0], during: pull}"]),
     "B132": (BAR, (), ["cyclic={surfaces: [left, right], axis: z}"]),
+    "B137": (SQUARE, (), ["mesh.file={}/twice.geo"]),
     "B143": (STACK, (), ["sensitivity=[\"force:contact.0.name\"]"]),
     "B144": (STACK, (), ["sensitivity=[\"force:loads.0.uy\"]", "contact.0.friction={mu: 0.1}"]),
     "B145": (STACK, (), ["sensitivity=[\"force:mesh.parameters.n_lower\"]", "mesh.parameters.n_lower=6"]),
@@ -70,7 +71,13 @@ WARNINGS = {
     "B507": (STACK, (), ["contact.0.penalty.scale=1e-4", "loads.0.uy=-3.5", "stepping.initial=0.1", UNJUDGED]),
 }
 SQUARE_GEO = (ROOT / "meshes/square.geo").read_text()
-FILES = {"wrong.csv": "0,0\n0.5,much\n", "broken.geo": "Point(1) = {0, 0, 0;\n", "hostile.geo": SQUARE_GEO + 'SystemCall "true";\n'}
+TWICE = """Point(1) = {0, 0, 0, 0.5}; Point(2) = {1, 0, 0, 0.5}; Point(3) = {1, 1, 0, 0.5}; Point(4) = {0, 1, 0, 0.5};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1}; Plane Surface(2) = {1};
+Physical Surface("block") = {1, 2}; Physical Curve("y_min") = {1}; Physical Curve("x_max") = {2};
+Physical Curve("y_max") = {3}; Physical Curve("x_min") = {4};
+"""
+FILES = {"wrong.csv": "0,0\n0.5,much\n", "twice.geo": TWICE, "broken.geo": "Point(1) = {0, 0, 0;\n", "hostile.geo": SQUARE_GEO + 'SystemCall "true";\n'}
 
 
 def explained(code):

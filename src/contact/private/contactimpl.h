@@ -102,7 +102,8 @@ typedef struct {
   PetscReal   *weight;  /* of their entries there (area) */
   PetscInt     updates; /* of penalties or multipliers in this step */
 
-  NeighbourLists lists, next;          /* in force; fresh ones for the next step, or NULL */
+  NeighbourLists lists, next; /* in force; fresh ones for the next step, or NULL */
+  PetscBool      stays;       /* those in force are empty, and fresh ones would be too: they are the next ones */
   PetscReal      motion, next_motion;  /* relative motion that each was made for (length) */
   PetscReal     *factor, *next_factor; /* area factor of each slave point: frozen with the lists, fades out past a free
                                           edge of the master */

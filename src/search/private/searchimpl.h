@@ -26,6 +26,9 @@ typedef struct {
   PetscReal *x, *normal, *face_normal; /* of slave points and master faces */
   PetscReal  thin;                     /* thinnest element or largest face, whichever is less (length) */
   PetscReal *u, motion; /* of the mesh's nodes (length); motion for which lists were to be good (length) */
+  /* Displacements of the slave points' nodes (length); how far points and normals of a face move at most for each
+     length by which its nodes part, of the slave's faces and then of the master's. NULL: points are nodes. */
+  PetscReal *slave_u, *lever;
 } Partners;
 
 struct _n_ContactSearch {
@@ -48,6 +51,7 @@ struct _n_ContactSearch {
   const FaceMarks    *marks;         /* of each slave point, where other pairs treat some of its partners; else NULL */
   PetscReal           reach, margin; /* lengths, without the motion */
   PetscReal           fit_reach;     /* SearchFitReach() */
+  PetscReal          *rigid_x;       /* of a tool's nodes (length), while faces are collected; else NULL */
   PetscInt            room, points_room; /* of the facets and points of the last lists */
   Partners            partners;
 };
@@ -149,6 +153,7 @@ void      SearchBoxAdd(PetscReal box[6], int dim, const PetscReal *x);
 void      SearchFacePositions(ContactSearch, ContactSurface, PetscInt f, const PetscReal *u, PetscReal t, PetscReal *x);
 PetscBool SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, PetscReal distance);
 void      SearchRigidPosition(ContactSearch, PetscInt n, PetscReal t, PetscReal x[3]);
+PetscBool SearchSomeImageMeets(ContactSearch, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance);
 PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const PetscReal *u, const PetscReal *boxes,
                                    PetscReal distance, PetscInt *n, FaceRecord **);
 PetscErrorCode SearchPickRigidFaces(ContactSearch, const NodeGeometry *, PetscReal t, const PetscReal box[6],
