@@ -2,7 +2,7 @@
 displacement and the punch's force against the limit of second-order quadrilaterals of the same nu, which is
 extrapolated from three meshes by their own order. Solids are slices in plane strain. Punches that are narrower and
 wider tell how strongly the force depends on the place of the edge. Beside even meshes there are meshes that are graded
-towards the singular corner and the loaded end, or the edge of the punch. Writes runs/records/incompressible.csv.
+towards the singular corner and the loaded end, or the edge of the punch and the floor. Writes runs/records/incompressible.csv.
 
     build/venv/bin/python scripts/incompressible_table.py --burnish build/burnish [--graded]
 
@@ -33,8 +33,8 @@ CASES = {"cook": ("tip_uy", 48, (4, 8, 16)), "punch": ("force", 0.5, (4, 8, 16))
 FINE = {"cook": (16, 32, 64), "punch": (12, 24, 48)}
 EDGES = (0.48, 0.52)  # half of the punch's width, instead of 0.5
 EDGES_N = 16
-# case -> (length of the largest elements along a side over the smallest, elements of second order, of first order)
-GRADED = {"cook": (16, (4, 6, 8), (12, 16, 24, 32)), "punch": (16, (2, 3, 4), (4, 8, 12))}
+# case -> (parameter `grade` of the mesh, elements of second order along a side, of first order)
+GRADED = {"cook": (16, (4, 6, 8), (12, 16, 24, 32)), "punch": (16, (3, 4), (8, 12))}
 NUS = (0.3, 0.4999, 0.5)
 COLUMNS = ("case", "element", "nu", "n", "grade", "value", "error", "steps", "failed", "iterations", "cpu_s")
 EMPTY = ("", ) * 5  # of rows without an error
