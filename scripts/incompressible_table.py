@@ -1,8 +1,9 @@
 """Cook's membrane and a punch on a block with mixed elements of every kind, at nu = 0.3, 0.4999 and 0.5: the tip's
 displacement and the punch's force against the limit of second-order quadrilaterals of the same nu, which is
 extrapolated from three meshes by their own order. Solids are slices in plane strain. Punches that are narrower and
-wider tell how strongly the force depends on the place of the edge. Beside even meshes there are meshes that are graded
-towards the singular corner and the loaded end, or the edge of the punch and the floor. Writes runs/records/incompressible.csv.
+wider tell how strongly the force depends on the place of the edge. Beside even meshes there are graded ones, finer
+towards the singular corner and the loaded end, or towards the edge of the punch, the floor and the free side. Writes
+runs/records/incompressible.csv.
 
     build/venv/bin/python scripts/incompressible_table.py --burnish build/burnish [--graded]
 
