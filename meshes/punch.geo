@@ -2,8 +2,10 @@
 DefineConstant[
   n = {4, Name "elements under the punch"}, simplex = {0, Name "1: triangles or tetrahedra"},
   layers = {0, Name "elements across the slice; 0: plane"}, thick = {0.125, Name "thickness of the slice"},
-  edge = {0.5, Name "half of the punch's width"}
+  edge = {0.5, Name "half of the punch's width"},
+  grade = {1, Name "elements are smaller towards the edge of the punch and the corners, there by about this factor"}
 ];
+q = (n > 1) ? grade^(1 / (n - 1)) : 1;
 Point(1) = {0, 0, 0};
 Point(2) = {edge, 0, 0};
 Point(3) = {1, 0, 0};
@@ -18,8 +20,10 @@ Curve Loop(1) = {1, 7, 5, 6};
 Curve Loop(2) = {2, 3, 4, -7};
 Plane Surface(1) = {1};
 Plane Surface(2) = {2};
-Transfinite Curve{1, 2, 4, 5} = n + 1;
-Transfinite Curve{3, 6, 7} = 2 * n + 1;
+Transfinite Curve{5} = n + 1 Using Progression q;
+Transfinite Curve{1} = n + 1 Using Progression 1 / q;
+Transfinite Curve{2, 4} = n + 1 Using Bump 1 / grade;
+Transfinite Curve{3, 6, 7} = 2 * n + 1 Using Bump 1 / grade;
 Transfinite Surface{1, 2};
 If (!simplex)
   Recombine Surface{1, 2};

@@ -90,6 +90,15 @@ JOBS = [
     Job("u_cup", "U-cup between rod and bore, pressed by oil", [
         Answer("floor", -0.23298, 0.08, "limit"),
     ], steps=14, pairs=3),
+    Job("buffer_rough", "buffer with a hole between rough plates", [
+        Answer("force", 863.8, 0.42, "limit"),
+    ], steps=10, pairs=2, picture=["--mirror", "x"]),
+    Job("mount_turned", "bonded mount turned and pushed aside, in space", [
+        Answer("side", 482.0, 0.3, "limit"),
+    ], steps=10, pairs=0, levels=(1, 1.33, 1.67)),
+    Job("keypad_pressed", "key of a keypad snapped through onto its board", [
+        Answer("force", 10.02, 0.73, "limit"),
+    ], steps=12, pairs=2, picture=["--mirror", "x"], levels=(1.69, 2.25, 3)),
     Job("dovetail_ring", "square seal in a dovetail groove", [
         Answer("force", 13.662, 0.04, "limit"),
     ], steps=12, pairs=2),
