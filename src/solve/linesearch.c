@@ -255,6 +255,8 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
   PetscFunctionBeginUser;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
   if (model->contact) PetscCall(ModelFindStall(model, search));
+  PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
+  if (model->contact) PetscCall(ModelHoldMotion(model, x, F, y));
   PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, y));
   if (model->work->objective == OBJECTIVE_RESIDUAL || ContactHasFriction(model->contact))
     PetscFunctionReturn(PETSC_SUCCESS);

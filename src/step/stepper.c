@@ -462,6 +462,8 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   report->share    = solve->share;
   report->tied     = solve->tied;
   report->unstable = PetscMax(report->unstable, solve->unstable);
+  report->friction = PetscMax(report->friction, solve->friction);
+  report->held += solve->friction > 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -804,7 +806,7 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                               &report->share,   &report->tied,
                               &size.last_dt,    &size.last_iterations,
                               &report->damping, &size.failed_dt,
-                              &report->unstable};
+                              &report->unstable, &report->friction};
   PetscInt      *integer[] = {&report->steps,
                               &report->steps_failed,
                               &report->steps_repeated,
@@ -820,6 +822,7 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                               &report->cycles_cut,
                               &report->jumps,
                               &report->damped,
+                              &report->held,
                               &stepper->damped,
                               &size.tied};
 

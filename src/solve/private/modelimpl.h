@@ -51,6 +51,19 @@ typedef struct {
   Vec       x, y;     /* free displacements at its start, and the whole step (length) */
 } RelaxedStep;
 
+/* A soft motion that is held, see ModelHoldMotion() */
+typedef struct {
+  PetscBool on;         /* it is held */
+  PetscBool accepted;   /* it was in the accepted state */
+  PetscBool released;   /* in this load step it takes too much force */
+  PetscBool known;      /* b is the motion of this load step */
+  PetscBool anew;       /* it is found anew with the next tangent */
+  Vec       b;          /* displacements of the motion, of length 1 */
+  Vec       w;          /* its answer to the force b with the present tangent */
+  PetscReal compliance; /* of that force */
+  PetscReal friction;   /* coefficient of friction that would hold it at the last solution */
+} HeldMotion;
+
 typedef struct _n_ModelWork {
   LinearSolver   solver;
   PetscBool      ordered;       /* the linear solver has chosen the order of its unknowns */
@@ -105,6 +118,7 @@ typedef struct _n_ModelWork {
   /* One solve by SNES */
   Objective   objective;
   RelaxedStep relaxed;
+  HeldMotion  hold;
   PetscReal   norms[LINE_MEMORY]; /* residuals of the last iterates, where there is friction */
   PetscBool   stalled;            /* with friction: the last LINE_MEMORY iterations have hardly lowered the residual */
   PetscBool   soft;               /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
@@ -123,12 +137,20 @@ typedef struct _n_ModelWork {
 PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, PetscReal t);
 PetscErrorCode ModelReleaseTangent(Model);
 PetscErrorCode ModelLinearise(Model, KSP *);
+/* softmotion.c */
+PetscErrorCode ModelDropPressures(Model, Vec from, Vec to);
+PetscErrorCode ModelSoftMotion(Model, Vec y, Vec v, PetscReal *stiffness, PetscReal *part);
+PetscErrorCode ModelSoftPart(Model, Vec y, Vec soft, PetscReal *stiffness);
+/* heldmotion.c */
+PetscErrorCode ModelHoldInStep(Model, Vec y);
+PetscErrorCode ModelHoldInColumns(Model, Mat Z);
+PetscErrorCode ModelHoldMotion(Model, Vec x, Vec F, Vec y);
+PetscErrorCode ModelHeldResidual(Model, Vec F, PetscReal *norm, PetscReal *force);
+PetscErrorCode ModelReleaseHeld(Model, PetscReal force, PetscBool *released);
 /* linearcontact.c */
 PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
 /* linecuts.c */
 PetscErrorCode ModelCountCut(Model, Vec x);
-/* softmotion.c */
-PetscErrorCode ModelSoftPart(Model, Vec y, Vec soft, PetscReal *stiffness);
 /* slopesearch.c */
 PetscErrorCode ModelSearchSlope(Model, SNESLineSearch, PetscReal slope, PetscReal first, PetscReal *part);
 /* relaxedsearch.c */

@@ -1,0 +1,232 @@
+/* A soft motion that is held, see ModelHoldMotion(). */
+#include "mesh/meshdofs.h"
+#include "mesh/pressurenodes.h"
+#include "modelimpl.h"
+
+/* What holds a motion may be what friction of this coefficient at the surfaces in contact would hold. The least that is
+   measured between lubricated solids is about as much; seals have 0.01 to 1. */
+#define HELD_FRICTION 1e-3
+
+/* Takes out of free displacements what they have along the motion, by a force on it. The result is what the tangent
+   gives for the body whose motion is held. */
+static PetscErrorCode TakeOut(const HeldMotion *held, Vec z)
+{
+  PetscReal along;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDotRealPart(held->b, z, &along));
+  PetscCall(VecAXPY(z, -along / held->compliance, held->w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the soft motion of the present tangent and keeps it. start: any vector that has a part of it. */
+static PetscErrorCode KeepMotion(Model model, Vec start, PetscReal *stiffness, PetscReal *part)
+{
+  HeldMotion *held = &model->work->hold;
+  Vec         v;
+
+  PetscFunctionBeginUser;
+  if (!held->b) {
+    PetscCall(VecDuplicate(start, &held->b));
+    PetscCall(VecDuplicate(start, &held->w));
+  }
+  PetscCall(VecDuplicate(start, &v));
+  PetscCall(ModelSoftMotion(model, start, v, stiffness, part));
+  PetscCall(ModelDropPressures(model, v, held->b));
+  PetscCall(VecDestroy(&v));
+  held->known = PETSC_TRUE;
+  held->anew  = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelHoldInStep - takes the motion that is held out of a linear step.
+
+  Collective
+
+  Input Parameters:
++ model - after a solve with the tangent at the step's start
+- y     - the step (length)
+
+  Output Parameter:
+. y - without the motion; unchanged where none is held
+@*/
+PetscErrorCode ModelHoldInStep(Model model, Vec y)
+{
+  HeldMotion *held = &model->work->hold;
+  PetscReal   stiffness, part;
+  KSP         ksp;
+
+  PetscFunctionBeginUser;
+  if (!held->on) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!held->known || held->anew) PetscCall(KeepMotion(model, y, &stiffness, &part));
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(KSPSolve(ksp, held->b, held->w));
+  PetscCall(VecDotRealPart(held->b, held->w, &held->compliance));
+  if (held->compliance == 0) held->on = PETSC_FALSE;
+  if (held->on) PetscCall(TakeOut(held, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelHoldInColumns - takes the motion that is held out of columns of the factor.
+
+  Collective
+
+  Input Parameters:
++ model - after ModelHoldInStep() with the same tangent
+- Z     - dense columns of free displacements
+@*/
+PetscErrorCode ModelHoldInColumns(Model model, Mat Z)
+{
+  PetscInt m;
+  Vec      z;
+
+  PetscFunctionBeginUser;
+  if (!model->work->hold.on) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatGetSize(Z, NULL, &m));
+  for (PetscInt j = 0; j < m; j++) {
+    PetscCall(MatDenseGetColumnVecWrite(Z, j, &z));
+    PetscCall(TakeOut(&model->work->hold, z));
+    PetscCall(MatDenseRestoreColumnVecWrite(Z, j, &z));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far a step y from the iterate x turns a cell. */
+static PetscErrorCode TurnOf(Model model, Vec x, Vec y, PetscReal *turn)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *u, *v;
+  Vec            w;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &u, n, &v));
+  PetscCall(VecDuplicate(x, &w));
+  PetscCall(VecWAXPY(w, -1, y, x));
+  PetscCall(ProblemDisplacements(model->problem, x, model->t, u));
+  PetscCall(ProblemDisplacements(model->problem, w, model->t, v));
+  PetscCall(ModelLargestTurn(model, u, v, turn));
+  PetscCall(VecDestroy(&w));
+  PetscCall(PetscFree2(u, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelHoldMotion - decides whether the soft motion of bodies that contact alone holds is held from now on.
+
+  Collective
+
+  Input Parameters:
++ model - after a solve with the tangent at the iterate
+. x     - the iterate
+. F     - its residual
+- y     - Newton's step: it leads to x - y (length)
+
+  Notes:
+  Rubber that can roll along walls without friction has one motion that is softer than all others by orders of
+  magnitude. What drives it is of the order of the errors of the mesh, and so is its stiffness, which changes its sign
+  with each node that passes an edge. Newton's steps along it are arbitrary. Where a step goes too far or the tangent is
+  indefinite, and it is this motion that does it, the motion is held: the rest is solved for as if the body could not
+  go along it. What that takes is a force. It stays if next to no friction would hold as much, else the motion is
+  released.
+@*/
+PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y)
+{
+  HeldMotion *held = &model->work->hold;
+  PetscReal   turn, rest = 0, slope, stiffness, part;
+  Vec         r;
+
+  PetscFunctionBeginUser;
+  if (held->on || held->released || !model->problem->bodies || ProblemIsPlastic(model->problem) ||
+      ContactHasFriction(model->contact))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TurnOf(model, x, y, &turn));
+  PetscCall(VecDotRealPart(F, y, &slope));
+  if (turn <= MODEL_FARTHEST && slope >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KeepMotion(model, y, &stiffness, &part));
+  PetscCall(VecDuplicate(y, &r));
+  PetscCall(VecWAXPY(r, -part, held->b, y));
+  PetscCall(TurnOf(model, x, r, &rest));
+  PetscCall(VecDestroy(&r));
+  held->on = (PetscBool)(rest <= MODEL_FARTHEST && (stiffness < 0 || turn > MODEL_FARTHEST));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelHeldResidual - finds what is left of a residual without the force that holds a motion.
+
+  Collective
+
+  Input Parameters:
++ model - the model
+. F     - the residual (force)
+- norm  - of F
+
+  Output Parameters:
++ norm  - of what is left
+- force - that is held; 0 where no motion is
+@*/
+PetscErrorCode ModelHeldResidual(Model model, Vec F, PetscReal *norm, PetscReal *force)
+{
+  const HeldMotion *held = &model->work->hold;
+
+  PetscFunctionBeginUser;
+  *force = 0;
+  if (!held->on || !held->known) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDotRealPart(F, held->b, force));
+  *norm  = PetscSqrtReal(PetscMax(0, PetscSqr(*norm) - PetscSqr(*force)));
+  *force = PetscAbsReal(*force);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The force along the motion that friction with a coefficient of 1 would hold. */
+static PetscErrorCode Friction(Model model, PetscReal *sum)
+{
+  const Mesh mesh = model->mesh;
+  PetscReal *force, *b;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(mesh->n_nodes, &force, mesh->n_nodes * mesh->dim, &b));
+  PetscCall(MeshGlobalToLocal(mesh, model->work->hold.b, b));
+  for (int p = 0; p < ContactPairs(model->contact); p++)
+    PetscCall(ContactTermForces(model->contact, p, 0, force));
+  *sum = 0;
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
+    PetscReal square = 0;
+
+    for (int d = 0; d < mesh->dim; d++) square += PetscSqr(b[i * mesh->dim + d]);
+    *sum += force[i] * PetscSqrtReal(square);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 1, MPIU_REAL, MPI_SUM, mesh->comm));
+  PetscCall(PetscFree2(force, b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelReleaseHeld - releases the motion that is held, for the rest of the load step, if that takes too much force.
+
+  Collective
+
+  Input Parameters:
++ model - at a solution with the motion held, after its residual
+- force - that holds it
+
+  Output Parameter:
+. released - it was
+@*/
+PetscErrorCode ModelReleaseHeld(Model model, PetscReal force, PetscBool *released)
+{
+  HeldMotion *held = &model->work->hold;
+  PetscReal   sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(Friction(model, &sum));
+  held->friction = sum > 0 ? force / sum : PETSC_INFINITY;
+  *released      = (PetscBool)(held->friction > HELD_FRICTION);
+  if (*released) held->on = PETSC_FALSE;
+  if (*released) held->released = PETSC_TRUE;
+  PetscCall(PetscInfo(model->snes, "a soft motion is held as by a coefficient of friction of %g%s\n",
+                      (double)held->friction, *released ? ", too much" : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
