@@ -199,6 +199,8 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->hold.on            = work->hold.accepted;
   work->hold.released      = PETSC_FALSE;
   work->hold.known         = PETSC_FALSE;
+  work->hold.moves         = PETSC_FALSE;
+  work->hold.times         = 0;
   work->cycling            = PETSC_FALSE;
   work->cycles             = 0;
   work->augmented          = PETSC_FALSE;

@@ -3,9 +3,16 @@
 #include "mesh/pressurenodes.h"
 #include "modelimpl.h"
 
-/* What holds a motion may be what friction of this coefficient at the surfaces in contact would hold. The least that is
-   measured between lubricated solids is about as much; seals have 0.01 to 1. */
-#define HELD_FRICTION 1e-3
+/* What holds a motion may be what friction of this coefficient at the surfaces in contact would hold. Forces then change
+   by no more than this part, which is also what a penalty that the run chooses may change. Real surfaces have 0.01 to 1.
+ */
+#define HELD_FRICTION 4e-3
+/* What takes more than that moves on, at first so far that it turns cells by this part of MODEL_FARTHEST. The next move
+   may be as much longer if the force keeps its sign, and is as much shorter if it has changed. */
+#define HELD_FIRST 0.25
+#define HELD_GROW  2.0
+/* Moves in a load step until the motion is released */
+enum { HELD_MOVES = 8 };
 
 /* Takes out of free displacements what they have along the motion, by a force on it. The result is what the tangent
    gives for the body whose motion is held. */
@@ -39,6 +46,47 @@ static PetscErrorCode KeepMotion(Model model, Vec start, PetscReal *stiffness, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How far a step y from the iterate x turns a cell. */
+static PetscErrorCode TurnOf(Model model, Vec x, Vec y, PetscReal *turn)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *u, *v;
+  Vec            w;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &u, n, &v));
+  PetscCall(VecDuplicate(x, &w));
+  PetscCall(VecWAXPY(w, -1, y, x));
+  PetscCall(ProblemDisplacements(model->problem, x, model->t, u));
+  PetscCall(ProblemDisplacements(model->problem, w, model->t, v));
+  PetscCall(ModelLargestTurn(model, u, v, turn));
+  PetscCall(VecDestroy(&w));
+  PetscCall(PetscFree2(u, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds to the step y a part along the motion that goes down the force that holds it, as far as cells may turn. */
+static PetscErrorCode MoveOn(Model model, Vec y)
+{
+  HeldMotion     *held  = &model->work->hold;
+  const PetscReal along = (held->compliance > 0 ? 1 : -1) * held->force;
+  PetscReal       turn;
+  Vec             z;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(y, &z));
+  PetscCall(VecCopy(held->w, z));
+  PetscCall(VecScale(z, along));
+  PetscCall(TurnOf(model, model->x, z, &turn));
+  held->turn = PetscMin(turn, held->bound);
+  PetscCall(VecAXPY(y, turn > 0 ? held->turn / turn : 0, z));
+  PetscCall(PetscInfo(model->snes, "the motion moves on: turns cells by %g of %g\n", (double)held->turn, (double)turn));
+  PetscCall(VecDestroy(&z));
+  held->moves  = PETSC_FALSE;
+  held->moving = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelHoldInStep - takes the motion that is held out of a linear step.
 
@@ -49,7 +97,7 @@ static PetscErrorCode KeepMotion(Model model, Vec start, PetscReal *stiffness, P
 - y     - the step (length)
 
   Output Parameter:
-. y - without the motion; unchanged where none is held
+. y - without the motion, or with a bounded part of it where it is to move on; unchanged where none is held
 @*/
 PetscErrorCode ModelHoldInStep(Model model, Vec y)
 {
@@ -65,6 +113,8 @@ PetscErrorCode ModelHoldInStep(Model model, Vec y)
   PetscCall(VecDotRealPart(held->b, held->w, &held->compliance));
   if (held->compliance == 0) held->on = PETSC_FALSE;
   if (held->on) PetscCall(TakeOut(held, y));
+  held->moving = PETSC_FALSE;
+  if (held->on && held->moves) PetscCall(MoveOn(model, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,25 +143,6 @@ PetscErrorCode ModelHoldInColumns(Model model, Mat Z)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far a step y from the iterate x turns a cell. */
-static PetscErrorCode TurnOf(Model model, Vec x, Vec y, PetscReal *turn)
-{
-  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
-  PetscReal     *u, *v;
-  Vec            w;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n, &u, n, &v));
-  PetscCall(VecDuplicate(x, &w));
-  PetscCall(VecWAXPY(w, -1, y, x));
-  PetscCall(ProblemDisplacements(model->problem, x, model->t, u));
-  PetscCall(ProblemDisplacements(model->problem, w, model->t, v));
-  PetscCall(ModelLargestTurn(model, u, v, turn));
-  PetscCall(VecDestroy(&w));
-  PetscCall(PetscFree2(u, v));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   ModelHoldMotion - decides whether the soft motion of bodies that contact alone holds is held from now on.
 
@@ -128,8 +159,8 @@ static PetscErrorCode TurnOf(Model model, Vec x, Vec y, PetscReal *turn)
   magnitude. What drives it is of the order of the errors of the mesh, and so is its stiffness, which changes its sign
   with each node that passes an edge. Newton's steps along it are arbitrary. Where a step goes too far or the tangent is
   indefinite, and it is this motion that does it, the motion is held: the rest is solved for as if the body could not
-  go along it. What that takes is a force. It stays if next to no friction would hold as much, else the motion is
-  released.
+  go along it. What that takes is a force. It stays if next to no friction would hold as much, else the motion moves on
+  down that force, see ModelJudgeHeld().
 @*/
 PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y)
 {
@@ -165,7 +196,7 @@ PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y)
 
   Output Parameters:
 + norm  - of what is left
-- force - that is held; 0 where no motion is
+- force - that is held, with the sign of the motion; 0 where no motion is
 @*/
 PetscErrorCode ModelHeldResidual(Model model, Vec F, PetscReal *norm, PetscReal *force)
 {
@@ -176,7 +207,6 @@ PetscErrorCode ModelHeldResidual(Model model, Vec F, PetscReal *norm, PetscReal 
   if (!held->on || !held->known) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDotRealPart(F, held->b, force));
   *norm  = PetscSqrtReal(PetscMax(0, PetscSqr(*norm) - PetscSqr(*force)));
-  *force = PetscAbsReal(*force);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -204,29 +234,40 @@ static PetscErrorCode Friction(Model model, PetscReal *sum)
 }
 
 /*@
-  ModelReleaseHeld - releases the motion that is held, for the rest of the load step, if that takes too much force.
+  ModelJudgeHeld - judges the force that holds a motion. If that is too much, the motion moves on in the next step, and
+  after some moves it is released for the rest of the load step.
 
   Collective
 
   Input Parameters:
 + model - at a solution with the motion held, after its residual
-- force - that holds it
+- force - that holds it, with its sign
 
   Output Parameter:
-. released - it was
+. holds - it may stay as it is
 @*/
-PetscErrorCode ModelReleaseHeld(Model model, PetscReal force, PetscBool *released)
+PetscErrorCode ModelJudgeHeld(Model model, PetscReal force, PetscBool *holds)
 {
   HeldMotion *held = &model->work->hold;
   PetscReal   sum;
 
   PetscFunctionBeginUser;
   PetscCall(Friction(model, &sum));
-  held->friction = sum > 0 ? force / sum : PETSC_INFINITY;
-  *released      = (PetscBool)(held->friction > HELD_FRICTION);
-  if (*released) held->on = PETSC_FALSE;
-  if (*released) held->released = PETSC_TRUE;
+  held->friction = sum > 0 ? PetscAbsReal(force) / sum : PETSC_INFINITY;
+  *holds         = (PetscBool)(held->friction <= HELD_FRICTION);
   PetscCall(PetscInfo(model->snes, "a soft motion is held as by a coefficient of friction of %g%s\n",
-                      (double)held->friction, *released ? ", too much" : ""));
+                      (double)held->friction, *holds ? "" : ", too much"));
+  if (*holds) PetscFunctionReturn(PETSC_SUCCESS);
+  held->moves = (PetscBool)(++held->times <= HELD_MOVES);
+  if (held->times == 1)
+    held->bound = HELD_FIRST * MODEL_FARTHEST;
+  else if (force * held->force > 0)
+    held->bound = PetscMin(MODEL_FARTHEST, HELD_GROW * held->turn);
+  else
+    held->bound = held->turn / HELD_GROW;
+  held->force = force;
+  if (held->moves) PetscFunctionReturn(PETSC_SUCCESS);
+  held->on       = PETSC_FALSE;
+  held->released = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

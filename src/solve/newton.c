@@ -219,7 +219,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   const PetscReal scale = ProblemForceScale(model->problem);
   PetscReal       round_off, tolerance, allowed;
   PetscReal       force;
-  PetscBool       converged = PETSC_TRUE, released = PETSC_FALSE;
+  PetscBool       converged = PETSC_TRUE, holds = PETSC_TRUE;
   Vec             x, F;
 
   PetscFunctionBeginUser;
@@ -240,9 +240,9 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
     model->work->nearly = it;
   if (model->work->loosely) allowed = PetscMax(NEWTON_LOOSELY * scale, tolerance);
   if (model->work->soft) allowed = PetscMax(NEWTON_SOFT_ENOUGH * scale, round_off);
-  if (fnorm <= allowed && force > 0) PetscCall(ModelReleaseHeld(model, force, &released));
-  if (released) fnorm = PetscSqrtReal(PetscSqr(fnorm) + PetscSqr(force));
-  model->work->balanced = fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
+  if (fnorm <= PetscMax(NEWTON_LOOSELY * scale, allowed) && force != 0) PetscCall(ModelJudgeHeld(model, force, &holds));
+  if (!holds) fnorm = PetscSqrtReal(PetscSqr(fnorm) + PetscSqr(force));
+  model->work->balanced = holds && fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
   if (!it && model->work->start == 0 && !model->work->soft) model->work->start = fnorm;
   PetscCall(LinearSolverSetEnough(model->work->solver, model->work->soft ? allowed : tolerance));
   if (it > 0 && LinearCheckLost(model->linear))

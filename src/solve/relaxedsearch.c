@@ -507,6 +507,25 @@ static PetscErrorCode SearchByEnergy(const Search *s, PetscReal slope)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes a step in which a motion that was held moves on, or the part of it that inverts no element and that lists
+   reach. The energy may rise, as in Relax(): its bound is that of the motion. *taken: it could be. */
+static PetscErrorCode TakeMove(const Search *s, PetscBool *taken)
+{
+  ModelWork *work   = s->model->work;
+  PetscReal  lambda = 1;
+
+  PetscFunctionBeginUser;
+  *taken = PETSC_FALSE;
+  for (int i = 0; i <= SEARCH_HALVINGS && !*taken; i++, lambda /= *taken ? 1 : 2) PetscCall(Try(s, lambda, taken));
+  if (!*taken) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->model->contact) PetscCall(ContactCycleStart(work->watch));
+  work->relaxed.waits  = PETSC_FALSE;
+  work->relaxed.linear = PETSC_TRUE;
+  work->uphill         = PETSC_FALSE;
+  PetscCall(Take(s, lambda));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelSearchRelaxed - the line search of Newton's method without friction.
 
@@ -544,6 +563,8 @@ PetscErrorCode ModelSearchRelaxed(SNESLineSearch search, void *context)
   PetscCall(SNESLineSearchGetDamping(search, &lambda));
   PetscCall(SNESLineSearchPreCheck(search, s.x, s.y, &changed));
   work->relaxed.linear = PETSC_FALSE;
+  if (work->hold.on && work->hold.moving) PetscCall(TakeMove(&s, &taken));
+  if (taken) PetscFunctionReturn(PETSC_SUCCESS);
   if (lambda < 1) work->relaxed.waits = PETSC_FALSE;
   PetscCall(VecDotRealPart(s.F, s.y, &slope));
   if (!work->relaxed.waits && (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL || SearchJumps(&s))) {

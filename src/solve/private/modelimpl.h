@@ -61,6 +61,12 @@ typedef struct {
   Vec       b;          /* displacements of the motion, of length 1 */
   Vec       w;          /* its answer to the force b with the present tangent */
   PetscReal compliance; /* of that force */
+  PetscBool moves;      /* it moves on in the next step */
+  PetscBool moving;     /* the step at hand is such a step */
+  PetscInt  times;      /* such steps in this load step */
+  PetscReal force;      /* that held it before the last of them */
+  PetscReal bound;      /* by which that may turn a cell */
+  PetscReal turn;       /* by which it turned one */
   PetscReal friction;   /* coefficient of friction that would hold it at the last solution */
 } HeldMotion;
 
@@ -146,7 +152,7 @@ PetscErrorCode ModelHoldInStep(Model, Vec y);
 PetscErrorCode ModelHoldInColumns(Model, Mat Z);
 PetscErrorCode ModelHoldMotion(Model, Vec x, Vec F, Vec y);
 PetscErrorCode ModelHeldResidual(Model, Vec F, PetscReal *norm, PetscReal *force);
-PetscErrorCode ModelReleaseHeld(Model, PetscReal force, PetscBool *released);
+PetscErrorCode ModelJudgeHeld(Model, PetscReal force, PetscBool *holds);
 /* linearcontact.c */
 PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
 /* linecuts.c */
