@@ -3,8 +3,9 @@
 #include "mesh/pressurenodes.h"
 #include "modelimpl.h"
 
-/* What holds a motion may be what friction of this coefficient at the surfaces in contact would hold. Forces then change
-   by no more than this part, which is also what a penalty that the run chooses may change. Real surfaces have 0.01 to 1.
+/* What holds a motion may be what friction of this coefficient at the surfaces in contact would hold. Forces then
+   change by no more than this part, which is also what a penalty that the run chooses may change. Real surfaces have
+   0.01 to 1.
  */
 #define HELD_FRICTION 4e-3
 /* What takes more than that moves on, at first so far that it turns cells by this part of MODEL_FARTHEST. The next move
@@ -26,10 +27,12 @@ static PetscErrorCode TakeOut(const HeldMotion *held, Vec z)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the soft motion of the present tangent and keeps it. start: any vector that has a part of it. */
+/* Finds the soft motion of the present tangent and keeps it, with the direction that it had. start: any vector that has
+   a part of it. part: of the motion in that */
 static PetscErrorCode KeepMotion(Model model, Vec start, PetscReal *stiffness, PetscReal *part)
 {
-  HeldMotion *held = &model->work->hold;
+  HeldMotion *held  = &model->work->hold;
+  PetscReal   along = 1;
   Vec         v;
 
   PetscFunctionBeginUser;
@@ -39,6 +42,9 @@ static PetscErrorCode KeepMotion(Model model, Vec start, PetscReal *stiffness, P
   }
   PetscCall(VecDuplicate(start, &v));
   PetscCall(ModelSoftMotion(model, start, v, stiffness, part));
+  if (held->known) PetscCall(VecDotRealPart(v, held->b, &along));
+  if (along < 0) PetscCall(VecScale(v, -1));
+  if (along < 0) *part = -*part;
   PetscCall(ModelDropPressures(model, v, held->b));
   PetscCall(VecDestroy(&v));
   held->known = PETSC_TRUE;
@@ -160,18 +166,21 @@ PetscErrorCode ModelHoldInColumns(Model model, Mat Z)
   with each node that passes an edge. Newton's steps along it are arbitrary. Where a step goes too far or the tangent is
   indefinite, and it is this motion that does it, the motion is held: the rest is solved for as if the body could not
   go along it. What that takes is a force. It stays if next to no friction would hold as much, else the motion moves on
-  down that force, see ModelJudgeHeld().
+  down that force, see ModelJudgeHeld(). This needs a factor.
 @*/
 PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y)
 {
   HeldMotion *held = &model->work->hold;
   PetscReal   turn, rest = 0, slope, stiffness, part;
+  PetscBool   direct;
   Vec         r;
 
   PetscFunctionBeginUser;
   if (held->on || held->released || !model->problem->bodies || ProblemIsPlastic(model->problem) ||
       ContactHasFriction(model->contact))
     PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LinearSolverDirect(model->work->solver, &direct));
+  if (!direct) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TurnOf(model, x, y, &turn));
   PetscCall(VecDotRealPart(F, y, &slope));
   if (turn <= MODEL_FARTHEST && slope >= 0) PetscFunctionReturn(PETSC_SUCCESS);
@@ -206,7 +215,7 @@ PetscErrorCode ModelHeldResidual(Model model, Vec F, PetscReal *norm, PetscReal 
   *force = 0;
   if (!held->on || !held->known) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDotRealPart(F, held->b, force));
-  *norm  = PetscSqrtReal(PetscMax(0, PetscSqr(*norm) - PetscSqr(*force)));
+  *norm = PetscSqrtReal(PetscMax(0, PetscSqr(*norm) - PetscSqr(*force)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -219,8 +228,7 @@ static PetscErrorCode Friction(Model model, PetscReal *sum)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(mesh->n_nodes, &force, mesh->n_nodes * mesh->dim, &b));
   PetscCall(MeshGlobalToLocal(mesh, model->work->hold.b, b));
-  for (int p = 0; p < ContactPairs(model->contact); p++)
-    PetscCall(ContactTermForces(model->contact, p, 0, force));
+  for (int p = 0; p < ContactPairs(model->contact); p++) PetscCall(ContactTermForces(model->contact, p, 0, force));
   *sum = 0;
   for (PetscInt i = 0; i < mesh->n_nodes; i++) {
     PetscReal square = 0;

@@ -1,4 +1,5 @@
-/* The softest motion in a linear step, by inverse iterations. */
+/* The softest motion in a linear step, by inverse iterations, and how far a step turns cells. */
+#include "bodies/tools.h"
 #include "mesh/meshdofs.h"
 #include "mesh/pressurenodes.h"
 #include "modelimpl.h"
@@ -9,6 +10,46 @@ enum { SOFT_ITERATIONS = 2 };
    less of what is not the softest motion, or there is none. */
 #define SOFT_SAME 1e-2
 enum { SOFT_MOST = 8 };
+
+/*@
+  ModelLargestTurn - finds how far a step turns or stretches a cell, or turns a rigid tool.
+
+  Collective
+
+  Input Parameters:
++ model - the model
+. u     - local displacements u[n_nodes*dim] (length) at the start of the step
+- v     - those at its end
+
+  Output Parameter:
+. turn - largest motion of the two ends of a cell's edge against each other, over the length of the edge, or free
+         rotation of a tool (radians); of all ranks
+@*/
+PetscErrorCode ModelLargestTurn(Model model, const PetscReal *u, const PetscReal *v, PetscReal *turn)
+{
+  const Mesh mesh = model->mesh;
+
+  PetscFunctionBeginUser;
+  *turn = ToolsTurn(mesh, u, v, NULL);
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const Element  *element = ElementGet(mesh->cell_type[c]);
+    const PetscInt *nodes   = &mesh->cell_nodes[mesh->cell_ptr[c]];
+
+    for (int e = 0; e < element->edges; e++) {
+      const PetscInt a = nodes[element->edge_corners[e][0]] * mesh->dim,
+                     b = nodes[element->edge_corners[e][1]] * mesh->dim;
+      PetscReal motion = 0, length = 0;
+
+      for (int d = 0; d < mesh->dim; d++) {
+        motion += PetscSqr((v[b + d] - v[a + d]) - (u[b + d] - u[a + d]));
+        length += PetscSqr(mesh->coords[b + d] - mesh->coords[a + d]);
+      }
+      *turn = PetscMax(*turn, PetscSqrtReal(motion / length));
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, turn, 1, MPIU_REAL, MPI_MAX, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /*@
   ModelDropPressures - copies a vector of the free dofs without the pressures of nodes.
@@ -58,8 +99,8 @@ PetscErrorCode ModelDropPressures(Model model, Vec from, Vec to)
 
   Notes:
   Rubber that can roll or slide along rigid walls with next to no energy has one motion that is softer than all others
-by orders of magnitude. Newton's step may be much too long in this one motion alone, while the rest of the step is
-right. The motion keeps the volume where nodes have pressures.
+  by orders of magnitude. Newton's step may be much too long in this one motion alone, while the rest of the step is
+  right. The motion keeps the volume where nodes have pressures.
 @*/
 PetscErrorCode ModelSoftMotion(Model model, Vec y, Vec v, PetscReal *stiffness, PetscReal *part)
 {

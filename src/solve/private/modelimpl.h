@@ -2,15 +2,15 @@
    offers to those above it.
 
    problem.c is below all of them, and freebodies.c and rigidsearch.c below it. tangent.c makes the tangent and prepares
-   its linear solver. linearcontact.c finds the contact that is right at the end of a linear step. linecuts.c says why a
-   line search shortened its step. slopesearch.c finds how far a step of bodies that yield leads to balance,
-   softmotion.c finds the softest motion in a step, relaxedsearch.c is the line search, linesearch.c chooses what it
-   compares, and corrects steps for contact. newton.c runs SNES once with the present contact lists. prediction.c
-   finds a first iterate, penaltyramp.c improves it on softened penalties, dampedsolve.c follows the bodies in
-   pseudo-time where Newton's method finds no equilibrium. penaltyerror.c estimates what penetration leaves of error
-   and stiffens penalties, jump.c tells an equilibrium that was reached by a jump, adjoint.c weighs errors of a
-   solution. equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file
-   calls only those named before it. */
+   its linear solver. softmotion.c finds the softest motion in a linear step, heldmotion.c holds it. linearcontact.c
+   finds the contact that is right at the end of a linear step. linecuts.c says why a line search shortened its step.
+   slopesearch.c finds how far a step of bodies that yield leads to balance, relaxedsearch.c is the line search,
+   linesearch.c chooses what it compares, and corrects steps for contact. newton.c runs SNES once with the present
+   contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties, dampedsolve.c
+   follows the bodies in pseudo-time where Newton's method finds no equilibrium. penaltyerror.c estimates what
+   penetration leaves of error and stiffens penalties, jump.c tells an equilibrium that was reached by a jump, adjoint.c
+   weighs errors of a solution. equilibrium.c goes from an accepted state to the next one. model.c holds the accepted
+   state. Each file calls only those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "extrapolation.h"
@@ -144,6 +144,7 @@ PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, 
 PetscErrorCode ModelReleaseTangent(Model);
 PetscErrorCode ModelLinearise(Model, KSP *);
 /* softmotion.c */
+PetscErrorCode ModelLargestTurn(Model, const PetscReal *u, const PetscReal *v, PetscReal *turn);
 PetscErrorCode ModelDropPressures(Model, Vec from, Vec to);
 PetscErrorCode ModelSoftMotion(Model, Vec y, Vec v, PetscReal *stiffness, PetscReal *part);
 PetscErrorCode ModelSoftPart(Model, Vec y, Vec soft, PetscReal *stiffness);
@@ -160,7 +161,6 @@ PetscErrorCode ModelCountCut(Model, Vec x);
 /* slopesearch.c */
 PetscErrorCode ModelSearchSlope(Model, SNESLineSearch, PetscReal slope, PetscReal first, PetscReal *part);
 /* relaxedsearch.c */
-PetscErrorCode ModelLargestTurn(Model, const PetscReal *u, const PetscReal *v, PetscReal *turn);
 PetscErrorCode ModelSearchRelaxed(SNESLineSearch, void *model);
 /* linesearch.c */
 PetscErrorCode ModelCreateLineSearch(Model);
