@@ -3,17 +3,15 @@
 #include "mesh/pressurenodes.h"
 #include "modelimpl.h"
 
-/* What holds a motion may be what friction of this coefficient at the surfaces in contact would hold. Forces then
-   change by no more than this part, which is also what a penalty that the run chooses may change. Real surfaces have
-   0.01 to 1.
- */
-#define HELD_FRICTION 4e-3
+/* What holds a motion may be what friction of this coefficient at the surfaces in contact would hold. The least that is
+   measured between lubricated solids is about as much; seals have 0.01 to 1. */
+#define HELD_FRICTION 1e-3
 /* What takes more than that moves on, at first so far that it turns cells by this part of MODEL_FARTHEST. The next move
    may be as much longer if the force keeps its sign, and is as much shorter if it has changed. */
 #define HELD_FIRST 0.25
 #define HELD_GROW  2.0
 /* Moves in a load step until the motion is released */
-enum { HELD_MOVES = 8 };
+enum { HELD_MOVES = 40 };
 
 /* Takes out of free displacements what they have along the motion, by a force on it. The result is what the tangent
    gives for the body whose motion is held. */
@@ -171,7 +169,7 @@ PetscErrorCode ModelHoldInColumns(Model model, Mat Z)
 PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y)
 {
   HeldMotion *held = &model->work->hold;
-  PetscReal   turn, rest = 0, slope, stiffness, part;
+  PetscReal   turn, rest = 0, slope, downhill, stiffness, part;
   PetscBool   direct;
   Vec         r;
 
@@ -188,8 +186,11 @@ PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y)
   PetscCall(VecDuplicate(y, &r));
   PetscCall(VecWAXPY(r, -part, held->b, y));
   PetscCall(TurnOf(model, x, r, &rest));
+  PetscCall(VecDotRealPart(F, r, &downhill));
   PetscCall(VecDestroy(&r));
-  held->on = (PetscBool)(rest <= MODEL_FARTHEST && (stiffness < 0 || turn > MODEL_FARTHEST));
+  /* pressures of nodes have slopes of their own */
+  held->on = (PetscBool)(rest <= MODEL_FARTHEST &&
+                         ((stiffness < 0 && (model->mesh->saddle || downhill >= 0)) || turn > MODEL_FARTHEST));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
