@@ -156,7 +156,8 @@ PetscErrorCode ModelHoldInColumns(Model model, Mat Z)
 + model - after a solve with the tangent at the iterate
 . x     - the iterate
 . F     - its residual
-- y     - Newton's step: it leads to x - y (length)
+. y     - Newton's step: it leads to x - y (length)
+- near  - an equilibrium is near, so that short steps are right whether they lead uphill or not
 
   Notes:
   Rubber that can roll along walls without friction has one motion that is softer than all others by orders of
@@ -166,7 +167,7 @@ PetscErrorCode ModelHoldInColumns(Model model, Mat Z)
   go along it. What that takes is a force. It stays if next to no friction would hold as much, else the motion moves on
   down that force, see ModelJudgeHeld(). This needs a factor.
 @*/
-PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y)
+PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y, PetscBool near)
 {
   HeldMotion *held = &model->work->hold;
   PetscReal   turn, rest = 0, slope, downhill, stiffness, part;
@@ -181,7 +182,7 @@ PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y)
   if (!direct) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TurnOf(model, x, y, &turn));
   PetscCall(VecDotRealPart(F, y, &slope));
-  if (turn <= MODEL_FARTHEST && slope >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (turn <= MODEL_FARTHEST && (near || slope >= 0)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KeepMotion(model, y, &stiffness, &part));
   PetscCall(VecDuplicate(y, &r));
   PetscCall(VecWAXPY(r, -part, held->b, y));

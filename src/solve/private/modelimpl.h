@@ -151,7 +151,7 @@ PetscErrorCode ModelSoftPart(Model, Vec y, Vec soft, PetscReal *stiffness);
 /* heldmotion.c */
 PetscErrorCode ModelHoldInStep(Model, Vec y);
 PetscErrorCode ModelHoldInColumns(Model, Mat Z);
-PetscErrorCode ModelHoldMotion(Model, Vec x, Vec F, Vec y);
+PetscErrorCode ModelHoldMotion(Model, Vec x, Vec F, Vec y, PetscBool near);
 PetscErrorCode ModelHeldResidual(Model, Vec F, PetscReal *norm, PetscReal *force);
 PetscErrorCode ModelJudgeHeld(Model, PetscReal force, PetscBool *holds);
 /* linearcontact.c */
