@@ -128,6 +128,7 @@ static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m
   PetscCall(MatDestroy(&B));
   s->Z[s->rounds++] = Z;
   s->m += m;
+  if (*able) PetscCall(ModelHoldInColumns(model, Z));
   if (*able) PetscCall(LinearContactAddColumns(model, s, m, which, Z));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -252,6 +253,7 @@ PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const Pe
 
   PetscFunctionBeginUser;
   model->work->unsettled = PETSC_FALSE;
+  PetscCall(ModelHoldInStep(model, y));
   if (!model->contact || LinearCheckLost(model->linear)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LinearSolverDirect(model->work->solver, &able));
   if (!able) PetscFunctionReturn(PETSC_SUCCESS);

@@ -250,11 +250,15 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
   const PetscBool conservative = ProblemConservative(model->problem);
   SNES            snes;
   PetscReal       slope, energy;
+  PetscBool       near = PETSC_FALSE;
   Vec             F;
 
   PetscFunctionBeginUser;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
   if (model->contact) PetscCall(ModelFindStall(model, search));
+  PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
+  PetscCall(ModelNearEquilibrium(model, F, &near));
+  if (model->contact) PetscCall(ModelHoldMotion(model, x, F, y, near));
   PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, y));
   if (model->work->objective == OBJECTIVE_RESIDUAL || ContactHasFriction(model->contact))
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -219,8 +219,9 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   Model           model = context;
   const PetscReal scale = ProblemForceScale(model->problem);
   PetscReal       round_off, tolerance, allowed;
-  PetscBool       converged = PETSC_TRUE;
-  Vec             x;
+  PetscReal       force;
+  PetscBool       converged = PETSC_TRUE, holds = PETSC_TRUE;
+  Vec             x, F;
 
   PetscFunctionBeginUser;
   PetscCall(SNESGetSolution(snes, &x));
@@ -228,6 +229,8 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   (void)snorm;
   if (it > 0) PetscCall(ModelCountCut(model, x));
   PetscCall(ProblemRoundOff(model->problem, &round_off));
+  PetscCall(SNESGetFunction(snes, &F, NULL, NULL));
+  PetscCall(ModelHeldResidual(model, F, &fnorm, &force));
   if (model->contact) PetscCall(ContactGapsConverged(model->contact, &converged));
   *reason = SNES_CONVERGED_ITERATING;
   ModelChooseObjective(model, fnorm, NAN);
@@ -238,7 +241,9 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
     model->work->nearly = it;
   if (model->work->loosely) allowed = PetscMax(NEWTON_LOOSELY * scale, tolerance);
   if (model->work->soft) allowed = PetscMax(NEWTON_SOFT_ENOUGH * scale, round_off);
-  model->work->balanced = fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
+  if (fnorm <= PetscMax(NEWTON_LOOSELY * scale, allowed) && force != 0) PetscCall(ModelJudgeHeld(model, force, &holds));
+  if (!holds) fnorm = PetscSqrtReal(PetscSqr(fnorm) + PetscSqr(force));
+  model->work->balanced = holds && fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
   if (!it && model->work->start == 0 && !model->work->soft) model->work->start = fnorm;
   PetscCall(LinearSolverSetEnough(model->work->solver, model->work->soft ? allowed : tolerance));
   if (it > 0 && LinearCheckLost(model->linear))
@@ -420,6 +425,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   model->work->relaxed.waits    = PETSC_FALSE;
   model->work->relaxed.turns    = PETSC_FALSE;
   model->work->relaxed.farthest = MODEL_FARTHEST;
+  model->work->hold.anew        = PETSC_TRUE;
   PetscCall(PetscArrayzero(model->work->cuts, CUT_CAUSES));
   PetscCall(ModelIterate(model));
   PetscCall(SNESGetConvergedReason(model->snes, &reason));

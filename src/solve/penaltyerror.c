@@ -504,6 +504,7 @@ PetscErrorCode ModelPredictStiffer(Model model, const PetscReal factor[], PetscB
   report->krylov += its;
   PetscCall(ModelStepFromSolved(model, model->problem->trial));
   if (!LinearCheckLost(model->linear)) {
+    PetscCall(ModelHoldInStep(model, x));
     PetscCall(VecAYPX(x, 1, model->x));
     PetscCall(ProblemSetTrial(model->problem, x, model->t));
     PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));

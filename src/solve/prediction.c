@@ -335,6 +335,33 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Goes back to free displacements x if the linear step from there turns cells too far and ends farther from balance
+   than it began: no part of it is to be trusted. */
+static PetscErrorCode ModelTakeBack(Model model, Vec x)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal      turn, here, there, *u, *v;
+  PetscBool      ok, inside;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &u, n, &v));
+  PetscCall(ProblemDisplacements(model->problem, x, model->t, u));
+  PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
+  PetscCall(ModelLargestTurn(model, u, v, &turn));
+  if (turn > MODEL_FARTHEST) {
+    PetscCall(ModelTryStart(model, model->x, &inside, &there));
+    PetscCall(ModelTryStart(model, x, &ok, &here));
+    if (ok && (!inside || here < there)) {
+      PetscCall(PetscInfo(model->snes, "new lists: the first step goes too far and is left out\n"));
+      PetscCall(VecCopy(x, model->x));
+      PetscCall(ModelStepFromSolved(model, u));
+      model->problem->inverted = -1;
+    }
+  }
+  PetscCall(PetscFree2(u, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelFollowLists - makes the first iteration after lists have been replaced at a solution, in which contact is held.
 
@@ -352,8 +379,11 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
 {
   const Problem problem = model->problem;
   PetscBool     ok, tied;
+  Vec           x;
 
   PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(model->x, &x));
+  PetscCall(VecCopy(model->x, x));
   if (problem->bodies) {
     PetscCall(FreeBodiesTie(problem->bodies, problem->trial, model->t, model->t, PETSC_FALSE, PETSC_FALSE,
                             problem->springs, &tied));
@@ -365,5 +395,7 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
   PetscCall(ModelStepLinear(model, model->problem->trial, NULL, model->t, report));
   PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
+  if (report->result == SOLVE_CONVERGED) PetscCall(ModelTakeBack(model, x));
+  PetscCall(VecDestroy(&x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

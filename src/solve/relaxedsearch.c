@@ -1,5 +1,4 @@
 /* A line search that lets the energy rise over a step and looks on after the next ones whether it has paid. */
-#include "bodies/tools.h"
 #include "modelimpl.h"
 
 /* The energy must fall by this part of what its slope promises. */
@@ -29,46 +28,6 @@ typedef struct {
   SNES           snes;
   Vec            x, F, y, w, G; /* iterate, residual, step; a trial point and its residual */
 } Search;
-
-/*@
-  ModelLargestTurn - finds how far a step turns or stretches a cell, or turns a rigid tool.
-
-  Collective
-
-  Input Parameters:
-+ model - the model
-. u     - local displacements u[n_nodes*dim] (length) at the start of the step
-- v     - those at its end
-
-  Output Parameter:
-. turn - largest motion of the two ends of a cell's edge against each other, over the length of the edge, or free
-         rotation of a tool (radians); of all ranks
-@*/
-PetscErrorCode ModelLargestTurn(Model model, const PetscReal *u, const PetscReal *v, PetscReal *turn)
-{
-  const Mesh mesh = model->mesh;
-
-  PetscFunctionBeginUser;
-  *turn = ToolsTurn(mesh, u, v, NULL);
-  for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const Element  *element = ElementGet(mesh->cell_type[c]);
-    const PetscInt *nodes   = &mesh->cell_nodes[mesh->cell_ptr[c]];
-
-    for (int e = 0; e < element->edges; e++) {
-      const PetscInt a = nodes[element->edge_corners[e][0]] * mesh->dim,
-                     b = nodes[element->edge_corners[e][1]] * mesh->dim;
-      PetscReal motion = 0, length = 0;
-
-      for (int d = 0; d < mesh->dim; d++) {
-        motion += PetscSqr((v[b + d] - v[a + d]) - (u[b + d] - u[a + d]));
-        length += PetscSqr(mesh->coords[b + d] - mesh->coords[a + d]);
-      }
-      *turn = PetscMax(*turn, PetscSqrtReal(motion / length));
-    }
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, turn, 1, MPIU_REAL, MPI_MAX, mesh->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Evaluates the residual at x - lambda y, into G. *ok: no element is inverted there, and the contact lists reach. */
 static PetscErrorCode Try(const Search *s, PetscReal lambda, PetscBool *ok)
@@ -507,6 +466,25 @@ static PetscErrorCode SearchByEnergy(const Search *s, PetscReal slope)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes a step in which a motion that was held moves on, or the part of it that inverts no element and that lists
+   reach. The energy may rise, as in Relax(): its bound is that of the motion. *taken: it could be. */
+static PetscErrorCode TakeMove(const Search *s, PetscBool *taken)
+{
+  ModelWork *work   = s->model->work;
+  PetscReal  lambda = 1;
+
+  PetscFunctionBeginUser;
+  *taken = PETSC_FALSE;
+  for (int i = 0; i <= SEARCH_HALVINGS && !*taken; i++, lambda /= *taken ? 1 : 2) PetscCall(Try(s, lambda, taken));
+  if (!*taken) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->model->contact) PetscCall(ContactCycleStart(work->watch));
+  work->relaxed.waits  = PETSC_FALSE;
+  work->relaxed.linear = PETSC_TRUE;
+  work->uphill         = PETSC_FALSE;
+  PetscCall(Take(s, lambda));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelSearchRelaxed - the line search of Newton's method without friction.
 
@@ -544,6 +522,8 @@ PetscErrorCode ModelSearchRelaxed(SNESLineSearch search, void *context)
   PetscCall(SNESLineSearchGetDamping(search, &lambda));
   PetscCall(SNESLineSearchPreCheck(search, s.x, s.y, &changed));
   work->relaxed.linear = PETSC_FALSE;
+  if (work->hold.on && work->hold.moving) PetscCall(TakeMove(&s, &taken));
+  if (taken) PetscFunctionReturn(PETSC_SUCCESS);
   if (lambda < 1) work->relaxed.waits = PETSC_FALSE;
   PetscCall(VecDotRealPart(s.F, s.y, &slope));
   if (!work->relaxed.waits && (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL || SearchJumps(&s))) {

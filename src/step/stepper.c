@@ -462,6 +462,8 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   report->share    = solve->share;
   report->tied     = solve->tied;
   report->unstable = PetscMax(report->unstable, solve->unstable);
+  report->friction = PetscMax(report->friction, solve->friction);
+  report->held += solve->friction > 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -797,31 +799,23 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   StepperReport *report  = &stepper->report;
   StepSize       size    = ArchiveLoads(archive) ? stepper->size : stepper->start;
   PetscReal      initial = size.initial, dt = size.dt;
-  PetscReal     *real[]    = {&initial,         &dt,
-                              &size.beta,       &size.together,
-                              &size.shortfall,  &size.planned,
-                              &report->taken,   &report->left,
-                              &report->share,   &report->tied,
-                              &size.last_dt,    &size.last_iterations,
-                              &report->damping, &size.failed_dt,
-                              &report->unstable};
-  PetscInt      *integer[] = {&report->steps,
-                              &report->steps_failed,
-                              &report->steps_repeated,
-                              &report->newton_iterations,
-                              &report->newton_accepted,
-                              &report->krylov_iterations,
-                              &report->regathered,
-                              &report->adjusted,
-                              &report->wetted,
-                              &report->turned,
-                              &report->relaxed,
-                              &report->cycles,
-                              &report->cycles_cut,
-                              &report->jumps,
-                              &report->damped,
-                              &stepper->damped,
-                              &size.tied};
+  PetscReal     *real[]    = {&initial,          &dt,
+                              &size.beta,        &size.together,
+                              &size.shortfall,   &size.planned,
+                              &report->taken,    &report->left,
+                              &report->share,    &report->tied,
+                              &size.last_dt,     &size.last_iterations,
+                              &report->damping,  &size.failed_dt,
+                              &report->unstable, &report->friction};
+  PetscInt      *integer[] = {&report->steps,           &report->steps_failed,
+                              &report->steps_repeated,  &report->newton_iterations,
+                              &report->newton_accepted, &report->krylov_iterations,
+                              &report->regathered,      &report->adjusted,
+                              &report->wetted,          &report->turned,
+                              &report->relaxed,         &report->cycles,
+                              &report->cycles_cut,      &report->jumps,
+                              &report->damped,          &report->held,
+                              &stepper->damped,         &size.tied};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));

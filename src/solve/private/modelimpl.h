@@ -2,15 +2,15 @@
    offers to those above it.
 
    problem.c is below all of them, and freebodies.c and rigidsearch.c below it. tangent.c makes the tangent and prepares
-   its linear solver. linearcontact.c finds the contact that is right at the end of a linear step. linecuts.c says why a
-   line search shortened its step. slopesearch.c finds how far a step of bodies that yield leads to balance,
-   softmotion.c finds the softest motion in a step, relaxedsearch.c is the line search, linesearch.c chooses what it
-   compares, and corrects steps for contact. newton.c runs SNES once with the present contact lists. prediction.c
-   finds a first iterate, penaltyramp.c improves it on softened penalties, dampedsolve.c follows the bodies in
-   pseudo-time where Newton's method finds no equilibrium. penaltyerror.c estimates what penetration leaves of error
-   and stiffens penalties, jump.c tells an equilibrium that was reached by a jump, adjoint.c weighs errors of a
-   solution. equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file
-   calls only those named before it. */
+   its linear solver. softmotion.c finds the softest motion in a linear step, heldmotion.c holds it. linearcontact.c
+   finds the contact that is right at the end of a linear step. linecuts.c says why a line search shortened its step.
+   slopesearch.c finds how far a step of bodies that yield leads to balance, relaxedsearch.c is the line search,
+   linesearch.c chooses what it compares, and corrects steps for contact. newton.c runs SNES once with the present
+   contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties, dampedsolve.c
+   follows the bodies in pseudo-time where Newton's method finds no equilibrium. penaltyerror.c estimates what
+   penetration leaves of error and stiffens penalties, jump.c tells an equilibrium that was reached by a jump, adjoint.c
+   weighs errors of a solution. equilibrium.c goes from an accepted state to the next one. model.c holds the accepted
+   state. Each file calls only those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "extrapolation.h"
@@ -50,6 +50,25 @@ typedef struct {
   PetscReal farthest; /* by which the next one may */
   Vec       x, y;     /* free displacements at its start, and the whole step (length) */
 } RelaxedStep;
+
+/* A soft motion that is held, see ModelHoldMotion() */
+typedef struct {
+  PetscBool on;         /* it is held */
+  PetscBool accepted;   /* it was in the accepted state */
+  PetscBool released;   /* in this load step it takes too much force */
+  PetscBool known;      /* b is the motion of this load step */
+  PetscBool anew;       /* it is found anew with the next tangent */
+  Vec       b;          /* displacements of the motion, of length 1 */
+  Vec       w;          /* its answer to the force b with the present tangent */
+  PetscReal compliance; /* of that force */
+  PetscBool moves;      /* it moves on in the next step */
+  PetscBool moving;     /* the step at hand is such a step */
+  PetscInt  times;      /* such steps in this load step */
+  PetscReal force;      /* that held it before the last of them */
+  PetscReal bound;      /* by which that may turn a cell */
+  PetscReal turn;       /* by which it turned one */
+  PetscReal friction;   /* coefficient of friction that would hold it at the last solution */
+} HeldMotion;
 
 typedef struct _n_ModelWork {
   LinearSolver   solver;
@@ -106,6 +125,7 @@ typedef struct _n_ModelWork {
   /* One solve by SNES */
   Objective   objective;
   RelaxedStep relaxed;
+  HeldMotion  hold;
   PetscReal   norms[LINE_MEMORY]; /* residuals of the last iterates, where there is friction */
   PetscBool   stalled;            /* with friction: the last LINE_MEMORY iterations have hardly lowered the residual */
   PetscBool   soft;               /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
@@ -124,16 +144,24 @@ typedef struct _n_ModelWork {
 PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, PetscReal t);
 PetscErrorCode ModelReleaseTangent(Model);
 PetscErrorCode ModelLinearise(Model, KSP *);
+/* softmotion.c */
+PetscErrorCode ModelLargestTurn(Model, const PetscReal *u, const PetscReal *v, PetscReal *turn);
+PetscErrorCode ModelDropPressures(Model, Vec from, Vec to);
+PetscErrorCode ModelSoftMotion(Model, Vec y, Vec v, PetscReal *stiffness, PetscReal *part);
+PetscErrorCode ModelSoftPart(Model, Vec y, Vec soft, PetscReal *stiffness);
+/* heldmotion.c */
+PetscErrorCode ModelHoldInStep(Model, Vec y);
+PetscErrorCode ModelHoldInColumns(Model, Mat Z);
+PetscErrorCode ModelHoldMotion(Model, Vec x, Vec F, Vec y, PetscBool near);
+PetscErrorCode ModelHeldResidual(Model, Vec F, PetscReal *norm, PetscReal *force);
+PetscErrorCode ModelJudgeHeld(Model, PetscReal force, PetscBool *holds);
 /* linearcontact.c */
 PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
 /* linecuts.c */
 PetscErrorCode ModelCountCut(Model, Vec x);
-/* softmotion.c */
-PetscErrorCode ModelSoftPart(Model, Vec y, Vec soft, PetscReal *stiffness);
 /* slopesearch.c */
 PetscErrorCode ModelSearchSlope(Model, SNESLineSearch, PetscReal slope, PetscReal first, PetscReal *part);
 /* relaxedsearch.c */
-PetscErrorCode ModelLargestTurn(Model, const PetscReal *u, const PetscReal *v, PetscReal *turn);
 PetscErrorCode ModelSearchRelaxed(SNESLineSearch, void *model);
 /* linesearch.c */
 PetscErrorCode ModelCreateLineSearch(Model);
