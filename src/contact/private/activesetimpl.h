@@ -19,6 +19,13 @@ struct _n_Pressing {
   PetscBool      plain;        /* friction stays as residual and tangent have it */
 };
 
+/* activesetfollow.c */
+PetscBool      ActiveSetFollow(ActiveSet);
+PetscErrorCode ActiveSetFollowSets(ActiveSet, PetscInt most, PetscInt *m, PetscInt *which, PetscBool *regular,
+                                   PetscBool *changed);
+PetscInt       ActiveSetMissing(ActiveSet, PetscInt *which);
+PetscInt       ActiveSetMissingFriction(ActiveSet, PetscInt *which);
+void           ActiveSetLookAtSlips(ActiveSet);
 /* activesetlaw.c */
 void      ActiveSetPressureExcess(const ActiveSetTerm *, PetscBool pressed, PetscReal *start, PetscReal *rate);
 PetscReal ActiveSetExcess(ActiveSet, PetscInt component, PetscReal by[ACTIVE_SET_PARTS]);
