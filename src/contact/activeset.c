@@ -66,7 +66,8 @@ PetscErrorCode ActiveSetCreate(PetscInt n, PetscInt parts, PetscInt most, const 
   for (PetscInt i = 0; i < n; i++) p->pressed[i] = (PetscBool)(terms[i].opening + travel[i] < 0);
   for (PetscInt i = 0; i < parts * n; i++) p->column[i] = -1;
   if (parts > 1) PetscCall(BeginFriction(p));
-  *out = p;
+  p->part = 1;
+  *out    = p;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,6 +91,8 @@ PetscErrorCode ActiveSetDestroy(ActiveSet *pressing)
   PetscCall(PetscFree(p->G));
   PetscCall(PetscFree(p->excess));
   PetscCall(PetscFree(p->change));
+  PetscCall(PetscFree(p->whole));
+  PetscCall(PetscFree(p->kept));
   PetscCall(PetscFree(*pressing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -176,6 +179,19 @@ void ActiveSetLeaveRelaxation(ActiveSet p)
 }
 
 /*@
+  ActiveSetAllowPart - says that with friction the step may end at a part of itself.
+
+  Not collective
+
+  Input Parameter:
+. p - the active set
+@*/
+void ActiveSetAllowPart(ActiveSet p)
+{
+  p->partial = (PetscBool)(p->parts > 1);
+}
+
+/*@
   ActiveSetSolve - goes on with the contact problem of the step as far as the columns at hand allow.
 
   Not collective
@@ -189,9 +205,10 @@ void ActiveSetLeaveRelaxation(ActiveSet p)
 - converged - where it ended: with a set of terms that is right
 
   Notes:
-  Where friction keeps it from an end, it is solved with the friction that residual and tangent have. Without friction
-  sets may repeat themselves where bodies bend, because a force at one place opens gaps at others. Each step then ends
-  where the energy is least along it, which always comes to an end if the tangent is positive definite.
+  Where friction keeps it from an end, the step is gone by parts of it, if it may end at one; where that leads nowhere,
+  it is solved with the friction that residual and tangent have. Without friction sets may repeat themselves where
+  bodies bend, because a force at one place opens gaps at others. Each step then ends where the energy is least along
+  it, which always comes to an end if the tangent is positive definite.
 
   Newton's method is here that of active sets. Sources: Josephy, Newton's method for generalized equations, 1979 (the
   problem linearised except for its contact conditions); Hintermueller, Ito, Kunisch, The primal-dual active set
@@ -207,12 +224,18 @@ PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBo
   do {
     const PetscInt most = p->searches ? ACTIVE_SET_MAX_SEARCHES : ACTIVE_SET_MAX_SETS;
 
-    PetscCall(ActiveSetFollowSets(p, most, m, which, &regular, &changed));
-    *converged = (PetscBool)(!*m && (!p->m || (regular && !changed)));
-    if (*m || !p->m) PetscFunctionReturn(PETSC_SUCCESS);
-    for (PetscInt i = 0; i < p->n && p->parts > 1; i++) p->sticks[i] = PETSC_FALSE;
-    if (regular) *m = ActiveSetMissingFriction(p, which);
-    if (!*m && !*converged && p->parts > 1 && !p->unrelaxed) PetscCall(Relax(p, m, which, converged));
+    if (!p->on_path) {
+      PetscCall(ActiveSetFollowSets(p, most, m, which, &regular, &changed));
+      *converged = (PetscBool)(!*m && (!p->m || (regular && !changed)));
+      if (*m || !p->m) PetscFunctionReturn(PETSC_SUCCESS);
+      for (PetscInt i = 0; i < p->n && p->parts > 1; i++) p->sticks[i] = PETSC_FALSE;
+      if (regular) *m = ActiveSetMissingFriction(p, which);
+      if (!*m && !*converged && p->parts > 1 && !p->unrelaxed) PetscCall(Relax(p, m, which, converged));
+    }
+    if (p->on_path || (!*m && !*converged && p->partial && !p->left_path)) {
+      PetscCall(ActiveSetFollowPath(p, m, which, converged));
+      if (*converged) *m = ActiveSetMissingFriction(p, which);
+    }
     if (*m || *converged || p->plain || (p->parts == 1 && (p->searches || !regular)))
       PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(ChangeWay(p));
@@ -297,10 +320,12 @@ PetscErrorCode ActiveSetLimit(ActiveSet p, PetscInt most, PetscInt *m, PetscInt 
   Output Parameters:
 + excess  - for each column the excess of its component: the pressure or traction in residual and tangent, less the
             law's; belongs to the object
-- pressed - which terms press at the end, pressed[n]; belongs to the object
+. pressed - which terms press at the end, pressed[n]; belongs to the object
+- part    - of the step, at which it ends; 1 unless ActiveSetAllowPart() was called
 @*/
-void ActiveSetGet(ActiveSet p, const PetscReal **excess, const PetscBool **pressed)
+void ActiveSetGet(ActiveSet p, const PetscReal **excess, const PetscBool **pressed, PetscReal *part)
 {
+  *part    = p->part;
   *excess  = p->excess;
   *pressed = p->pressed;
 }

@@ -79,6 +79,7 @@ static double Step(const Case *t, PetscInt most, PetscBool *settled)
   PetscInt         which[N], order[N], m, n = 0;
   const PetscReal *excess;
   const PetscBool *pressed;
+  PetscReal        part;
   ActiveSet        pressing;
 
   for (int i = 0; i < N; i++) {
@@ -99,7 +100,7 @@ static double Step(const Case *t, PetscInt most, PetscBool *settled)
     }
     assert_int_equal(ActiveSetAddColumns(pressing, m, which, G), 0);
   }
-  ActiveSetGet(pressing, &excess, &pressed);
+  ActiveSetGet(pressing, &excess, &pressed, &part);
   for (int j = 0; j < n; j++)
     for (int i = 0; i < N; i++) x[i] -= excess[j] * column[j][i];
   for (int i = 0; i < N; i++) {
@@ -200,6 +201,7 @@ static void test_repeated_sets_are_left(void **state)
   PetscBool        settled;
   const PetscReal *excess;
   const PetscBool *pressed;
+  PetscReal        part;
   ActiveSet        active;
 
   (void)state;
@@ -227,7 +229,7 @@ static void test_repeated_sets_are_left(void **state)
     assert_int_equal(ActiveSetAddColumns(active, m, which, G), 0);
   }
   assert_true(settled);
-  ActiveSetGet(active, &excess, &pressed);
+  ActiveSetGet(active, &excess, &pressed, &part);
   for (int j = 0; j < n; j++) {
     memcpy(A, K, sizeof(A));
     for (int i = 0; i < N; i++) b[i] = i == order[j];
@@ -293,6 +295,7 @@ static double RubStep(Rub *r, FrictionState state, FrictionState *found)
   PetscBool        settled;
   const PetscReal *excess;
   const PetscBool *pressed;
+  PetscReal        part;
   FrictionTraction out;
   ActiveSet        active;
 
@@ -318,7 +321,7 @@ static double RubStep(Rub *r, FrictionState state, FrictionState *found)
     }
   }
   assert_true(settled);
-  ActiveSetGet(active, &excess, &pressed);
+  ActiveSetGet(active, &excess, &pressed, &part);
   for (int j = 0; j < n; j++)
     for (int i = 0; i < 3; i++) x[i] -= excess[j] * column[j][i];
   RubLaw(&r->term, x, FRICTION_DECIDES, &p, &out);
@@ -400,6 +403,7 @@ static double RubTogether(const double elastic[N][N], const double *load, const 
   PetscInt         which[N], m, n = 0;
   const PetscReal *excess;
   const PetscBool *pressed;
+  PetscReal        part;
   ActiveSet        active;
 
   SolveCopy(elastic, load, x);
@@ -413,7 +417,7 @@ static double RubTogether(const double elastic[N][N], const double *load, const 
       assert_int_equal(ActiveSetAddColumns(active, 1, &which[j], G), 0);
     }
   }
-  ActiveSetGet(active, &excess, &pressed);
+  ActiveSetGet(active, &excess, &pressed, &part);
   for (int j = 0; j < n; j++)
     for (int i = 0; i < N; i++) x[i] -= excess[j] * column[j][i];
   for (int i = 0; i < N; i++) {
@@ -476,6 +480,7 @@ static void test_sweeps_astray(void **state)
   PetscInt             which[N_ASTRAY];
   const PetscReal     *excess;
   const PetscBool     *pressed;
+  PetscReal            part;
   PetscBool            settled;
   ActiveSet            active;
 
@@ -493,7 +498,7 @@ static void test_sweeps_astray(void **state)
   assert_int_equal(ActiveSetAddColumns(active, N_ASTRAY, which, &G[0][0]), 0);
   assert_int_equal(ActiveSetRelax(active, 10, &settled), 0);
   assert_false(settled);
-  ActiveSetGet(active, &excess, &pressed);
+  ActiveSetGet(active, &excess, &pressed, &part);
   for (int j = 0; j < N_ASTRAY; j++) assert_true(excess[j] == 0 && pressed[j]);
   assert_int_equal(ActiveSetDestroy(&active), 0);
 }
