@@ -40,8 +40,9 @@ PetscErrorCode ActiveSetCreate(PetscInt n, PetscInt parts, PetscInt most, const 
                                const PetscReal *travel, ActiveSet *);
 PetscErrorCode ActiveSetDestroy(ActiveSet *);
 void           ActiveSetLeaveRelaxation(ActiveSet);
+void           ActiveSetAllowPart(ActiveSet);
 PetscErrorCode ActiveSetAddColumns(ActiveSet, PetscInt m, const PetscInt *which, const PetscReal *G);
 PetscErrorCode ActiveSetSolve(ActiveSet, PetscInt *m, PetscInt *which, PetscBool *converged);
 void           ActiveSetRest(ActiveSet, PetscInt *m, PetscInt *which);
 PetscErrorCode ActiveSetLimit(ActiveSet, PetscInt most, PetscInt *m, PetscInt *which);
-void           ActiveSetGet(ActiveSet, const PetscReal **excess, const PetscBool **pressed);
+void           ActiveSetGet(ActiveSet, const PetscReal **excess, const PetscBool **pressed, PetscReal *part);

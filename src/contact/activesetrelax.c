@@ -10,7 +10,7 @@
 /* A component is balanced to this part of that. */
 #define RELAX_BALANCED 0.1
 /* A pressure that changes by this many times all that the step as it is would make of the gaps belongs to sweeps that
-   go astray. */
+   go astray. So they do in steps of a strip of steel that few nodes hold between punch and die. */
 #define RELAX_FARTHEST 1e3
 
 /* By how much the law of the component of column j is out of balance where its excess is changed by `change`, and the
@@ -56,19 +56,22 @@ static PetscReal Balanced(ActiveSet p, PetscInt j, PetscReal enough)
   return change;
 }
 
-/* Balances all columns once. *most: the largest change of an excess, or what is left of imbalance. */
-static void Sweep(ActiveSet p, PetscReal enough, PetscReal *most)
+/* Balances all columns once. *most: the largest change of an excess, or what is left of imbalance. *strays: one changed
+   by more than `farthest`, or by no number. Columns that answer each other may grow by orders of magnitude within one
+   sweep, so that each is looked at. */
+static void Sweep(ActiveSet p, PetscReal enough, PetscReal farthest, PetscReal *most, PetscBool *strays)
 {
   const PetscInt all = p->parts * p->n;
   PetscReal      slope;
 
   *most = 0;
-  for (PetscInt j = 0; j < p->m; j++) {
+  for (PetscInt j = 0; j < p->m && !*strays; j++) {
     const PetscInt  i      = p->term[j] % p->n;
     const PetscReal change = Balanced(p, j, RELAX_BALANCED * enough);
+    const PetscReal left   = Imbalance(p, j, change, &slope);
 
-    *most = PetscMax(*most, PetscAbsReal(change));
-    *most = PetscMax(*most, PetscAbsReal(Imbalance(p, j, change, &slope)));
+    *strays = (PetscBool) !(PetscAbsReal(change) + PetscAbsReal(left) < farthest);
+    *most   = PetscMax(*most, PetscMax(PetscAbsReal(change), PetscAbsReal(left)));
     p->excess[j] += change;
     for (PetscInt k = 0; k < all && change != 0; k++) p->end[k] -= change * p->G[j * all + k];
     p->pressed[i] = (PetscBool)(p->terms[i].opening + p->end[i] < 0);
@@ -92,7 +95,8 @@ static void Sweep(ActiveSet p, PetscReal enough, PetscReal *most)
   Newton's method for all terms at once goes in cycles where friction is large: what one set lets slip presses another
   term off, which the next set brings back. Each term alone has one answer as a rule, whatever its neighbours do, and
   the sweeps come to rest in far more cases, though slowly. A component that has no balance of its own keeps them from
-  it: a step that is taken in spite of it leads a roller that is drawn along from one state to the next.
+  it: a step that is taken in spite of it leads a roller that is drawn along from one state to the next. Where sweeps go
+  astray, the excess stays as it was.
 
   Source: Jourdan, Alart, Jean, A Gauss-Seidel like algorithm to solve frictional contact problems, CMAME 155 (1998)
   31-47.
@@ -100,20 +104,25 @@ static void Sweep(ActiveSet p, PetscReal enough, PetscReal *most)
 PetscErrorCode ActiveSetRelax(ActiveSet p, PetscInt sweeps, PetscBool *settled)
 {
   const PetscReal enough = RELAX_ENOUGH * ActiveSetNegligible(p);
-  PetscReal       scale = 0, most = 0;
+  PetscReal       scale = 0, most = 0, *excess;
+  PetscBool       strays = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   *settled = PETSC_FALSE;
+  PetscCall(PetscMalloc1(p->m, &excess));
+  PetscCall(PetscArraycpy(excess, p->excess, p->m));
   for (PetscInt i = 0; i < p->n; i++) {
     const ActiveSetTerm *term = &p->terms[i];
 
     scale = PetscMax(scale, term->penalty * PetscMax(PetscAbsReal(term->opening), PetscAbsReal(p->travel[i])));
   }
-  for (PetscInt sweep = 0; sweep < sweeps && !*settled; sweep++) {
-    Sweep(p, enough, &most);
-    if (!(most < RELAX_FARTHEST * scale)) break; /* also NaN */
-    *settled = (PetscBool)(most <= enough);
+  for (PetscInt sweep = 0; sweep < sweeps && !*settled && !strays; sweep++) {
+    Sweep(p, enough, RELAX_FARTHEST * scale, &most, &strays);
+    *settled = (PetscBool)(!strays && most <= enough);
   }
+  if (strays) PetscCall(PetscArraycpy(p->excess, excess, p->m));
+  if (strays) (void)ActiveSetFollow(p);
+  PetscCall(PetscFree(excess));
   for (PetscInt i = 0; i < p->n; i++) p->pressed[i] = (PetscBool)(p->terms[i].opening + p->end[i] < 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -23,6 +23,9 @@
    The last one computes those of all terms if there is room: a thin body peels off another one term by term. */
 #define LINEAR_CONTACT_ROUNDS 16
 
+/* Newton's method converges with a step after which the residual is below this part of what it was. */
+#define LINEAR_CONTACT_CONVERGES 0.5
+
 /* The contact problem of a linear step. The first rank alone solves it and keeps the influence of the terms on each
    other; results differ in their last bits between ranks, and the ranks must go on together. */
 typedef struct {
@@ -71,6 +74,7 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
   PetscCall(PetscMalloc1(s->all, &s->travel));
   PetscCall(ContactStepChange(s->contact, s->du, t, model->t, s->travel));
   if (!s->rank) PetscCall(ActiveSetCreate(s->n, ContactStepParts(s->contact), s->most, terms, s->travel, &s->active));
+  if (!s->rank && !carried && t == model->t) ActiveSetAllowPart(s->active);
   if (!s->rank && model->work->stalled) ActiveSetLeaveRelaxation(s->active);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -166,9 +170,10 @@ static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives all ranks the solution of the first: the excess pressure of each changed term, and which terms are in contact.
-   The caller frees excess[m] and pressed[n] with PetscFree2(). */
-static PetscErrorCode LinearContactGet(Model model, const LinearContact *s, PetscReal **excess, PetscBool **pressed)
+/* Gives all ranks the solution of the first: the excess pressure of each changed term, which terms are in contact, and
+   the part of the step at which it ends. The caller frees excess[m] and pressed[n] with PetscFree2(). */
+static PetscErrorCode LinearContactGet(Model model, const LinearContact *s, PetscReal **excess, PetscBool **pressed,
+                                       PetscReal *part)
 {
   MPI_Comm         comm = model->mesh->comm;
   const PetscReal *found;
@@ -178,7 +183,7 @@ static PetscErrorCode LinearContactGet(Model model, const LinearContact *s, Pets
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(s->m, excess, s->n, pressed));
   if (!s->rank) {
-    ActiveSetGet(s->active, &found, &in_contact);
+    ActiveSetGet(s->active, &found, &in_contact, part);
     PetscCall(PetscArraycpy(*excess, found, s->m));
     PetscCall(PetscArraycpy(*pressed, in_contact, s->n));
   }
@@ -186,23 +191,64 @@ static PetscErrorCode LinearContactGet(Model model, const LinearContact *s, Pets
   PetscCall(PetscMPIIntCast(s->n * (PetscInt)sizeof(PetscBool), &n));
   PetscCallMPI(MPI_Bcast(*excess, m, MPIU_REAL, 0, comm));
   PetscCallMPI(MPI_Bcast(*pressed, n, MPI_BYTE, 0, comm));
+  PetscCallMPI(MPI_Bcast(part, 1, MPIU_REAL, 0, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Norm of the residual at the end of the step y from the iterate; infinite where an element is inverted or where the
+   contact lists do not reach. */
+static PetscErrorCode LinearContactResidual(Model model, Vec y, PetscReal *norm)
+{
+  const Problem problem = model->problem;
+  PetscBool     ok, within;
+  Vec           end, f;
+
+  PetscFunctionBeginUser;
+  *norm = PETSC_INFINITY;
+  PetscCall(VecDuplicate(y, &end));
+  PetscCall(VecDuplicate(y, &f));
+  PetscCall(VecWAXPY(end, -1, y, model->x));
+  PetscCall(ProblemSetTrial(problem, end, model->t));
+  PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
+  if (ok) PetscCall(ContactListsReach(model->contact, &within));
+  if (ok && within) {
+    PetscCall(ProblemCollectResidual(problem, end, f));
+    PetscCall(VecNorm(f, NORM_2, norm));
+  }
+  PetscCall(ProblemSetTrial(problem, model->x, model->t));
+  PetscCall(VecDestroy(&f));
+  PetscCall(VecDestroy(&end));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether the step y as it is, which keeps what sticks and slips, does not converge. */
+static PetscErrorCode LinearContactFails(Model model, Vec y, PetscBool *fails)
+{
+  PetscReal before, after;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetFunctionNorm(model->snes, &before));
+  PetscCall(LinearContactResidual(model, y, &after));
+  *fails = (PetscBool) !(after < LINEAR_CONTACT_CONVERGES * before);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Changes the step y by the excess pressures, which makes its contact right. *taken: that was done. It is not where the
-   changed step moves the surfaces further than the terms were chosen for, as with a body that has lost its support. */
+   changed step moves the surfaces further than the terms were chosen for, as with a body that has lost its support, nor
+   where it ends at a part of the step although the whole of it, with its wrong contact, converges. */
 static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, PetscReal t, LinearContact *s, Vec y,
                                         PetscBool *taken)
 {
-  PetscReal *excess;
+  PetscReal *excess, part;
   PetscBool *pressed;
   PetscInt   m, j = 0;
   Vec        z, end;
 
   PetscFunctionBeginUser;
-  PetscCall(LinearContactGet(model, s, &excess, &pressed));
+  PetscCall(LinearContactGet(model, s, &excess, &pressed, &part));
   PetscCall(VecDuplicate(y, &end));
   PetscCall(VecCopy(y, end));
+  PetscCall(VecScale(end, part));
   for (PetscInt r = 0; r < s->rounds; r++) {
     PetscCall(MatGetSize(s->Z[r], NULL, &m));
     for (PetscInt k = 0; k < m; k++, j++) {
@@ -213,6 +259,7 @@ static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, P
   }
   PetscCall(LocalChange(model, end, -1, carried, s->du));
   PetscCall(ContactStepWithin(s->contact, s->du, t, model->t, taken));
+  if (*taken && part < 1) PetscCall(LinearContactFails(model, y, taken));
   if (*taken) PetscCall(ContactStepMarkPredicted(s->contact, pressed));
   if (*taken) PetscCall(VecCopy(end, y));
   PetscCall(VecDestroy(&end));
@@ -234,7 +281,7 @@ static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, P
 
   Output Parameter:
 . y - the changed step; unchanged without contact, with an iterative solver, or where the contact problem has no
-      solution within the bounds at the top of this file
+      solution within the bounds at the top of this file. With friction it may be a part of the step
 
   Notes:
   The tangent holds terms that the step opens, and lacks terms that the step closes. Newton's method alone finds that

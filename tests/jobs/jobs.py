@@ -218,6 +218,9 @@ JOBS = [
         Answer("force", 68.07, 0.34, "limit"),
     ], steps=8),
     # Friction
+    Job("band_over_pins", "rubber band drawn over two pins", [
+        Answer("pull", 5.052, 0.05, "limit"),
+    ], steps=12, pairs=2, levels=(1, 1.25, 1.5)),
     Job("strip_in_rollers", "rubber strip drawn between rollers", [
         Answer("pull", 5.33, 0.8, "limit"),  # it varies by that as nodes come and go
     ], steps=15, pairs=2, stiff=["contact.*.formulation=node_to_surface"]),

@@ -24,6 +24,10 @@ CASES = {
     "belt": (SCENES / "belt.yaml", ["mesh.parameters.n=24"], BOTH),
     "mindlin_line": (RUNS / "mindlin_line.yaml", ["mesh.parameters.n=4", "stepping.initial=0.1"], ALL),
     "mindlin_sphere": (RUNS / "mindlin_sphere.yaml", ["mesh.parameters.n=2"], BOTH),
+    "mindlin_loop": (RUNS / "mindlin_loop.yaml", ["mesh.parameters.n=2"], PLAIN),
+    "shallow_ironing": (RUNS / "shallow_ironing.yaml", [
+        "mesh.parameters.n=2", "loads.1.ux=3", "stepping={control: fixed, initial: 0.05}"
+    ], PLAIN),
     "plate_greco": (RUNS / "plate_greco.yaml", [
         "mesh.parameters={n: 12, m: 12}", "probes=[{name: u_0, displacement: [0, 0], component: x}]"
     ], BOTH),

@@ -1,14 +1,14 @@
 /* A linear step with the wrong terms in its tangent ends in equilibrium with the right ones: bodies that overlap or
  * open on the way, terms that share their neighbours, pulled ones, terms with friction that begin or cease to stick;
  * where nothing holds a body once its term has opened, the step is left alone; sets that repeat themselves are left,
- * with friction they are relaxed. */
+ * with friction they are relaxed, and sweeps that go astray change nothing. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <setjmp.h>
 #include <string.h>
 #include <cmocka.h>
-#include "contact/activeset.h"
+#include "activesetimpl.h"
 
 enum { N = 8 };
 
@@ -79,6 +79,7 @@ static double Step(const Case *t, PetscInt most, PetscBool *settled)
   PetscInt         which[N], order[N], m, n = 0;
   const PetscReal *excess;
   const PetscBool *pressed;
+  PetscReal        part;
   ActiveSet        pressing;
 
   for (int i = 0; i < N; i++) {
@@ -99,7 +100,7 @@ static double Step(const Case *t, PetscInt most, PetscBool *settled)
     }
     assert_int_equal(ActiveSetAddColumns(pressing, m, which, G), 0);
   }
-  ActiveSetGet(pressing, &excess, &pressed);
+  ActiveSetGet(pressing, &excess, &pressed, &part);
   for (int j = 0; j < n; j++)
     for (int i = 0; i < N; i++) x[i] -= excess[j] * column[j][i];
   for (int i = 0; i < N; i++) {
@@ -200,6 +201,7 @@ static void test_repeated_sets_are_left(void **state)
   PetscBool        settled;
   const PetscReal *excess;
   const PetscBool *pressed;
+  PetscReal        part;
   ActiveSet        active;
 
   (void)state;
@@ -227,7 +229,7 @@ static void test_repeated_sets_are_left(void **state)
     assert_int_equal(ActiveSetAddColumns(active, m, which, G), 0);
   }
   assert_true(settled);
-  ActiveSetGet(active, &excess, &pressed);
+  ActiveSetGet(active, &excess, &pressed, &part);
   for (int j = 0; j < n; j++) {
     memcpy(A, K, sizeof(A));
     for (int i = 0; i < N; i++) b[i] = i == order[j];
@@ -293,6 +295,7 @@ static double RubStep(Rub *r, FrictionState state, FrictionState *found)
   PetscBool        settled;
   const PetscReal *excess;
   const PetscBool *pressed;
+  PetscReal        part;
   FrictionTraction out;
   ActiveSet        active;
 
@@ -318,7 +321,7 @@ static double RubStep(Rub *r, FrictionState state, FrictionState *found)
     }
   }
   assert_true(settled);
-  ActiveSetGet(active, &excess, &pressed);
+  ActiveSetGet(active, &excess, &pressed, &part);
   for (int j = 0; j < n; j++)
     for (int i = 0; i < 3; i++) x[i] -= excess[j] * column[j][i];
   RubLaw(&r->term, x, FRICTION_DECIDES, &p, &out);
@@ -400,6 +403,7 @@ static double RubTogether(const double elastic[N][N], const double *load, const 
   PetscInt         which[N], m, n = 0;
   const PetscReal *excess;
   const PetscBool *pressed;
+  PetscReal        part;
   ActiveSet        active;
 
   SolveCopy(elastic, load, x);
@@ -413,7 +417,7 @@ static double RubTogether(const double elastic[N][N], const double *load, const 
       assert_int_equal(ActiveSetAddColumns(active, 1, &which[j], G), 0);
     }
   }
-  ActiveSetGet(active, &excess, &pressed);
+  ActiveSetGet(active, &excess, &pressed, &part);
   for (int j = 0; j < n; j++)
     for (int i = 0; i < N; i++) x[i] -= excess[j] * column[j][i];
   for (int i = 0; i < N; i++) {
@@ -454,18 +458,49 @@ static void test_friction_relaxed(void **state)
       }
     for (int i = 0; i < N; i++) load[i] = i < N_RUB ? -2 - Random(&seed) : 3 * Random(&seed);
     for (int i = 0; i < N_RUB; i++)
-      term[i] = (ActiveSetTerm){.opening  = 0.02 * Random(&seed),
-                                .penalty  = 500,
-                                .area     = 1,
-                                .friction = {.law = {.coefficient = 1.5,
-                                                     .stiffness   = 300,
-                                                     .normal      = {0, 0, 1},
-                                                     .along       = {1, 0, 0}}}};
+      term[i] = (ActiveSetTerm){
+        .opening  = 0.02 * Random(&seed),
+        .penalty  = 500,
+        .area     = 1,
+        .friction = {.law = {.coefficient = 1.5, .stiffness = 300, .normal = {0, 0, 1}, .along = {1, 0, 0}}}};
     if (k != repeated[next]) continue;
     next++;
     assert_true(RubTogether(elastic, load, term, &settled) < 0.01);
     assert_true(settled);
   }
+}
+
+/* Terms each of which presses all that come after it the harder: a sweep that went through all of them would end beyond
+   the largest number. */
+static void test_sweeps_astray(void **state)
+{
+  enum { N_ASTRAY = 100 };
+  static ActiveSetTerm term[N_ASTRAY];
+  static double        travel[2 * N_ASTRAY], G[N_ASTRAY][2 * N_ASTRAY];
+  PetscInt             which[N_ASTRAY];
+  const PetscReal     *excess;
+  const PetscBool     *pressed;
+  PetscReal            part;
+  PetscBool            settled;
+  ActiveSet            active;
+
+  (void)state;
+  for (int i = 0; i < N_ASTRAY; i++) {
+    which[i]  = i;
+    travel[i] = -1;
+    term[i]   = (ActiveSetTerm){
+        .penalty  = 500,
+        .area     = 1,
+        .friction = {.law = {.coefficient = 0.3, .stiffness = 300, .normal = {0, 0, 1}, .along = {1, 0, 0}}}};
+    for (int k = 0; k < N_ASTRAY; k++) G[i][k] = k == i ? 1 : k > i ? -1e6 : 0;
+  }
+  assert_int_equal(ActiveSetCreate(N_ASTRAY, 2, 2 * N_ASTRAY, term, travel, &active), 0);
+  assert_int_equal(ActiveSetAddColumns(active, N_ASTRAY, which, &G[0][0]), 0);
+  assert_int_equal(ActiveSetRelax(active, 10, &settled), 0);
+  assert_false(settled);
+  ActiveSetGet(active, &excess, &pressed, &part);
+  for (int j = 0; j < N_ASTRAY; j++) assert_true(excess[j] == 0 && pressed[j]);
+  assert_int_equal(ActiveSetDestroy(&active), 0);
 }
 
 int main(int argc, char **argv)
@@ -474,6 +509,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_ends_in_equilibrium),    cmocka_unit_test(test_right_set_needs_nothing),
     cmocka_unit_test(test_repeated_sets_are_left), cmocka_unit_test(test_loose_body_is_left_alone),
     cmocka_unit_test(test_friction_at_the_end),    cmocka_unit_test(test_friction_relaxed),
+    cmocka_unit_test(test_sweeps_astray),
   };
   int failed;
 

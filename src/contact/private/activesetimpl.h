@@ -17,8 +17,25 @@ struct _n_Pressing {
   PetscReal     *slip;         /* 2*n: its slip there (length) */
   PetscBool      unrelaxed;    /* sets with friction that repeat themselves are not relaxed */
   PetscBool      plain;        /* friction stays as residual and tangent have it */
+
+  /* The way by parts of the step */
+  PetscBool  partial;            /* the step may end at a part of itself */
+  PetscBool  on_path, left_path; /* it is being gone; it led nowhere */
+  PetscReal  part;               /* of the step at which `end` is */
+  PetscReal  reached, stride;    /* parts: reached with a right set, and how far from there the next one is tried */
+  PetscReal *whole, *kept;       /* travel of the whole step; excess at the part that was reached */
+  PetscInt   m_kept, tries;      /* columns in kept; parts that were tried */
 };
 
+/* activesetfollow.c */
+PetscBool      ActiveSetFollow(ActiveSet);
+PetscErrorCode ActiveSetFollowSets(ActiveSet, PetscInt most, PetscInt *m, PetscInt *which, PetscBool *regular,
+                                   PetscBool *changed);
+PetscInt       ActiveSetMissing(ActiveSet, PetscInt *which);
+PetscInt       ActiveSetMissingFriction(ActiveSet, PetscInt *which);
+void           ActiveSetLookAtSlips(ActiveSet);
+/* activesetpath.c */
+PetscErrorCode ActiveSetFollowPath(ActiveSet, PetscInt *m, PetscInt *which, PetscBool *ended);
 /* activesetlaw.c */
 void      ActiveSetPressureExcess(const ActiveSetTerm *, PetscBool pressed, PetscReal *start, PetscReal *rate);
 PetscReal ActiveSetExcess(ActiveSet, PetscInt component, PetscReal by[ACTIVE_SET_PARTS]);
