@@ -557,8 +557,7 @@ static PetscErrorCode MarkFaces(SlavePoints points, const PetscBool *possible, P
 - motion - relative motion (length) for which lists are to be good
 
   Output Parameter:
-. normals - normals[3*n] of the slave points, as SlavePointsNormals() gives them, or 0 where none may have a partner;
-            NULL: not asked for
+. normals - normals[3*n] of the slave points, as SlavePointsNormals() gives them, or 0 where none may have a partner
 
   Note:
   The answer is in the search's partners. Boxes are seen farther than a search would by a skin, and normals count as
@@ -569,19 +568,16 @@ static PetscErrorCode MarkFaces(SlavePoints points, const PetscBool *possible, P
 @*/
 PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal *normals)
 {
-  PetscBool  holds;
-  PetscReal *own = normals;
+  PetscBool holds;
 
   PetscFunctionBeginUser;
   PetscCall(StillHolds(s, u, motion, &holds));
-  if (holds) {
-    if (normals && s->partners.any) PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, normals));
-    if (normals && !s->partners.any) PetscCall(PetscArrayzero(normals, 3 * s->slaves->n));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (!normals) PetscCall(PetscMalloc1(3 * s->slaves->n, &own));
-  PetscCall(TestAnew(s, u, t, motion, own));
-  if (!normals) PetscCall(PetscFree(own));
+  if (!holds)
+    PetscCall(TestAnew(s, u, t, motion, normals));
+  else if (s->partners.any)
+    PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, normals));
+  else
+    PetscCall(PetscArrayzero(normals, 3 * s->slaves->n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -602,11 +598,15 @@ PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, 
 PetscErrorCode SearchFindsNothing(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion,
                                   PetscBool *nothing)
 {
+  PetscReal *normals;
+
   PetscFunctionBeginUser;
   *nothing = PETSC_FALSE;
   if (!SearchHasPartners(s)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(3 * s->slaves->n, &normals));
   PetscCall(SlavePointsMove(s->slaves, u));
-  PetscCall(SearchPartners(s, u, t, motion, NULL));
+  PetscCall(SearchPartners(s, u, t, motion, normals));
+  PetscCall(PetscFree(normals));
   *nothing = (PetscBool)!s->partners.any;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
