@@ -525,7 +525,7 @@ static void PrintFreeBodies(const RunFigures *figures)
   if (report->held)
     printf(
       "held along a soft motion, as rolling, whose stiffness is that of the mesh: bodies that only contact holds, in "
-      "%lld steps, as a coefficient of friction of %.2g would\n",
+      "%lld steps, as a coefficient of friction of %.2g would (solver.hold_rolling)\n",
       (long long)report->held, (double)report->friction);
   if (figures->free_bodies)
     printf("weak springs of free bodies: relaxed %lld times, hold %.2g of the forces at the end\n",

@@ -199,6 +199,7 @@ static PetscErrorCode SceneReadStepping(Scene scene)
   scene->solver.type           = (SolverType)SchemaChoice(document, "solver.type");
   scene->solver.tolerance      = SchemaReal(document, "solver.tolerance");
   scene->solver.max_iterations = SchemaInteger(document, "solver.max_iterations");
+  scene->solver.hold_rolling   = SchemaBoolean(document, "solver.hold_rolling");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

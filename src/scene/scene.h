@@ -285,6 +285,7 @@ typedef struct {
     SolverType type;
     double     tolerance;
     int        max_iterations;
+    PetscBool  hold_rolling; /* next to free rolls are held, see ModelHoldMotion() */
   } solver;
   int         n_probes;
   SceneProbe *probes;

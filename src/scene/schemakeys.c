@@ -390,6 +390,9 @@ const SchemaKey SchemaKeys[] = {
    .help = "residual over the reference force at which a solve has converged"},
   {"solver.max_iterations", INTEGER, .range = "[1, 10000]", .preset = "30",
    .help = "largest number of iterations of Newton's method in one solve"},
+  {"solver.hold_rolling", BOOLEAN, .preset = "true",
+   .help = "true: where a body rolls that only contact holds, without friction, and what stops the roll is no more than "
+           "errors of the mesh, it is held as by a coefficient of friction of 0.001 at most; false: it never is"},
   {"probes", LIST, .help = "scalar results in steps.csv and summary.json"},
   {"probes.*", MAP, .help = "a probe of exactly one kind"},
   {"probes.*.name", NAME, REQUIRED, .help = "name of its column in steps.csv"},

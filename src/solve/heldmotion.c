@@ -148,6 +148,21 @@ PetscErrorCode ModelHoldInColumns(Model model, Mat Z)
 }
 
 /*@
+  ModelMayRoll - says whether there are bodies that may roll next to freely: contact alone holds them, without friction,
+  and they give back what deforms them; no where the scene says that no roll is held.
+
+  Not collective
+
+  Input Parameter:
+. model - the model
+@*/
+PetscBool ModelMayRoll(Model model)
+{
+  return (PetscBool)(model->scene->solver.hold_rolling && model->problem->bodies && !ProblemIsPlastic(model->problem) &&
+                     !ContactHasFriction(model->contact));
+}
+
+/*@
   ModelHoldMotion - decides whether the soft motion of bodies that contact alone holds is held from now on.
 
   Collective
@@ -175,9 +190,7 @@ PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y, PetscBool near)
   Vec         r;
 
   PetscFunctionBeginUser;
-  if (held->on || held->released || !model->problem->bodies || ProblemIsPlastic(model->problem) ||
-      ContactHasFriction(model->contact))
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (held->on || held->released || !ModelMayRoll(model)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LinearSolverDirect(model->work->solver, &direct));
   if (!direct) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TurnOf(model, x, y, &turn));

@@ -336,7 +336,7 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 }
 
 /* Goes back to free displacements x if the linear step from there turns cells too far and ends farther from balance
-   than it began: no part of it is to be trusted. */
+   than it began: bodies roll in it, and no part of it is to be trusted. */
 static PetscErrorCode ModelTakeBack(Model model, Vec x)
 {
   const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
@@ -395,7 +395,7 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
   PetscCall(ModelStepLinear(model, model->problem->trial, NULL, model->t, report));
   PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
-  if (report->result == SOLVE_CONVERGED) PetscCall(ModelTakeBack(model, x));
+  if (report->result == SOLVE_CONVERGED && ModelMayRoll(model)) PetscCall(ModelTakeBack(model, x));
   PetscCall(VecDestroy(&x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,6 +16,8 @@ check.holds("iterations", summary["newton_iterations"] <= 130, str(summary["newt
 check.holds("the roll was held", held["held_soft_steps"] > 0 and 0 < held["held_soft_friction"] <= MOST,
             f"{held['held_soft_steps']} steps, as by {held['held_soft_friction']}")
 if args.cases == "all":
+    free = run(args, SCENE, out="free", overrides=("output.every=0", "solver.hold_rolling=false")).summary()
+    check.holds("false: none is held", free["stabilisation"]["held_soft_steps"] == 0)
     alone = run(args, SCENE, out="alone", ranks=1, overrides=("output.every=0", )).summary()
     parts = run_in_parts(args, SCENE, "parts", ("output.every=0", )).summary()
     for name, other in ("one rank", alone), ("restarted", parts):

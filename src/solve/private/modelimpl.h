@@ -153,6 +153,7 @@ PetscErrorCode ModelSoftPart(Model, Vec y, Vec soft, PetscReal *stiffness);
 PetscErrorCode ModelHoldInStep(Model, Vec y);
 PetscErrorCode ModelHoldInColumns(Model, Mat Z);
 PetscErrorCode ModelHoldMotion(Model, Vec x, Vec F, Vec y, PetscBool near);
+PetscBool      ModelMayRoll(Model);
 PetscErrorCode ModelHeldResidual(Model, Vec F, PetscReal *norm, PetscReal *force);
 PetscErrorCode ModelJudgeHeld(Model, PetscReal force, PetscBool *holds);
 /* linearcontact.c */
