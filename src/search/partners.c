@@ -257,17 +257,6 @@ static void LeverAdd(int dim, const Element *e, const double *N, const double *d
   if (e->dim == 2) lever[LEVER_SQUARE] = PetscMax(lever[LEVER_SQUARE], 2 * sum[0] * sum[1] / area);
 }
 
-/* Positions of the nodes of a slave face after the last move. */
-static void SlaveFacePositions(SlavePoints points, PetscInt f, PetscReal *x)
-{
-  const Facet *facet = &points->faces[f];
-  const int    dim   = points->mesh->dim;
-
-  for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
-    for (int d = 0; d < dim; d++)
-      x[a * dim + d] = points->nodes[facet->nodes[a]].X[d] + points->u[facet->nodes[a] * dim + d];
-}
-
 /* Finds the levers of all faces at the state of the last test. */
 static void FindLevers(ContactSearch s, const PetscReal *u, PetscReal t)
 {
@@ -279,7 +268,7 @@ static void FindLevers(ContactSearch s, const PetscReal *u, PetscReal t)
     const ElementType type = points->faces[f].type;
     const FaceRule   *rule = FaceRuleOf(type, points->finer, points->ends[f]);
 
-    SlaveFacePositions(points, f, x);
+    SlavePointsFacePositions(points, f, x);
     for (int k = 0; k < LEVERS; k++) lever[k] = 0;
     for (int q = 0; q < rule->n; q++) LeverAdd(dim, ElementGet(type), rule->N[q], &rule->dN[q][0][0], 2, x, lever);
   }

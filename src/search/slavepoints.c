@@ -381,6 +381,28 @@ static PetscErrorCode HatNormals(SlavePoints points, int n_images, const Surface
 }
 
 /*@
+  SlavePointsFacePositions - returns where the nodes of a face are.
+
+  Not collective
+
+  Input Parameters:
++ points - the points of surface-to-surface contact, after SlavePointsMove()
+- f      - the face
+
+  Output Parameter:
+. x - x[nodes*dim] (length)
+@*/
+void SlavePointsFacePositions(SlavePoints points, PetscInt f, PetscReal *x)
+{
+  const Facet *facet = &points->faces[f];
+  const int    dim   = points->mesh->dim;
+
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+    for (int d = 0; d < dim; d++)
+      x[a * dim + d] = points->nodes[facet->nodes[a]].X[d] + points->u[facet->nodes[a] * dim + d];
+}
+
+/*@
   SlavePointsNormals - computes the normals at the points after the last move.
 
   Collective
@@ -408,9 +430,7 @@ PetscErrorCode SlavePointsNormals(SlavePoints points, int n_images, const Surfac
     const Facet *facet = &points->faces[f];
     double       x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS];
 
-    for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
-      for (int d = 0; d < dim; d++)
-        x[a * dim + d] = points->nodes[facet->nodes[a]].X[d] + points->u[facet->nodes[a] * dim + d];
+    SlavePointsFacePositions(points, f, x);
     FaceRuleAreas(FaceRuleOf(facet->type, points->finer, points->ends[f]), facet->type, dim, GEOMETRY_SOLID, x, area,
                   &normals[3 * points->first[f]]);
   }

@@ -49,6 +49,7 @@ PetscErrorCode SlavePointsMove(SlavePoints, const PetscReal *u);
 PetscBool      SlavePointIsOwn(SlavePoints, PetscInt q, PetscMPIInt rank);
 PetscInt       SlavePointFace(SlavePoints, PetscInt q);
 void           SlavePointsPosition(SlavePoints, PetscInt q, PetscReal *x);
+void           SlavePointsFacePositions(SlavePoints, PetscInt f, PetscReal *x);
 PetscErrorCode SlavePointsNormals(SlavePoints, int n_images, const SurfaceImage *, const PetscReal *u,
                                   PetscReal *normals);
 PetscErrorCode SlavePointsFindEnds(SlavePoints, const PetscReal *u);

@@ -168,7 +168,7 @@ PetscBool ModelMayRoll(Model model)
   Collective
 
   Input Parameters:
-+ model - after a solve with the tangent at the iterate
++ model - after a solve with the tangent at the iterate; ModelMayRoll()
 . x     - the iterate
 . F     - its residual
 . y     - Newton's step: it leads to x - y (length)
@@ -190,7 +190,7 @@ PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y, PetscBool near)
   Vec         r;
 
   PetscFunctionBeginUser;
-  if (held->on || held->released || !ModelMayRoll(model)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (held->on || held->released) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LinearSolverDirect(model->work->solver, &direct));
   if (!direct) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TurnOf(model, x, y, &turn));

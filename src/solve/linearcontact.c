@@ -195,29 +195,36 @@ static PetscErrorCode LinearContactGet(Model model, const LinearContact *s, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Norm of the residual at the end of the step y from the iterate; infinite where an element is inverted or where the
-   contact lists do not reach. */
-static PetscErrorCode LinearContactResidual(Model model, Vec y, PetscReal *norm)
+/*@
+  ModelResidualAt - evaluates the residual at free displacements, which become the trial ones.
+
+  Collective
+
+  Input Parameters:
++ model - the model, with contact
+- x     - free displacements (length)
+
+  Output Parameters:
++ ok   - no element is inverted there
+- norm - of the residual (force); infinite where an element is inverted or where the contact lists do not reach
+@*/
+PetscErrorCode ModelResidualAt(Model model, Vec x, PetscBool *ok, PetscReal *norm)
 {
   const Problem problem = model->problem;
-  PetscBool     ok, within;
-  Vec           end, f;
+  PetscBool     within;
+  Vec           f;
 
   PetscFunctionBeginUser;
   *norm = PETSC_INFINITY;
-  PetscCall(VecDuplicate(y, &end));
-  PetscCall(VecDuplicate(y, &f));
-  PetscCall(VecWAXPY(end, -1, y, model->x));
-  PetscCall(ProblemSetTrial(problem, end, model->t));
-  PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
-  if (ok) PetscCall(ContactListsReach(model->contact, &within));
-  if (ok && within) {
-    PetscCall(ProblemCollectResidual(problem, end, f));
-    PetscCall(VecNorm(f, NORM_2, norm));
-  }
-  PetscCall(ProblemSetTrial(problem, model->x, model->t));
+  PetscCall(ProblemSetTrial(problem, x, model->t));
+  PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, ok));
+  if (!*ok) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactListsReach(model->contact, &within));
+  if (!within) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(x, &f));
+  PetscCall(ProblemCollectResidual(problem, x, f));
+  PetscCall(VecNorm(f, NORM_2, norm));
   PetscCall(VecDestroy(&f));
-  PetscCall(VecDestroy(&end));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -225,10 +232,16 @@ static PetscErrorCode LinearContactResidual(Model model, Vec y, PetscReal *norm)
 static PetscErrorCode LinearContactFails(Model model, Vec y, PetscBool *fails)
 {
   PetscReal before, after;
+  PetscBool ok;
+  Vec       end;
 
   PetscFunctionBeginUser;
   PetscCall(SNESGetFunctionNorm(model->snes, &before));
-  PetscCall(LinearContactResidual(model, y, &after));
+  PetscCall(VecDuplicate(y, &end));
+  PetscCall(VecWAXPY(end, -1, y, model->x));
+  PetscCall(ModelResidualAt(model, end, &ok, &after));
+  PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  PetscCall(VecDestroy(&end));
   *fails = (PetscBool) !(after < LINEAR_CONTACT_CONVERGES * before);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -257,15 +257,16 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
   if (model->contact) PetscCall(ModelFindStall(model, search));
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
-  PetscCall(ModelNearEquilibrium(model, F, &near));
-  if (model->contact) PetscCall(ModelHoldMotion(model, x, F, y, near));
+  if (model->contact && ModelMayRoll(model)) {
+    PetscCall(ModelNearEquilibrium(model, F, &near));
+    PetscCall(ModelHoldMotion(model, x, F, y, near));
+  }
   PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, y));
   if (model->work->objective == OBJECTIVE_RESIDUAL || ContactHasFriction(model->contact))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESLineSearchGetSNES(search, &snes));
   if (model->contact && conservative && model->work->energy == 0)
     PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated in this load step */
-  PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
   if (model->contact && conservative) ModelChooseObjective(model, NAN, slope);
   if (model->work->objective != OBJECTIVE_ENERGY) PetscFunctionReturn(PETSC_SUCCESS);

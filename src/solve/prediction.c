@@ -192,28 +192,6 @@ static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Computes the norm of the residual at free displacements x and model->t, which become the trial state. *ok: no element
-   is inverted. The norm is infinite where one is, or where the contact lists do not reach. */
-static PetscErrorCode ModelTryStart(Model model, Vec x, PetscBool *ok, PetscReal *norm)
-{
-  const Problem problem = model->problem;
-  PetscBool     within;
-  Vec           f;
-
-  PetscFunctionBeginUser;
-  *norm = PETSC_INFINITY;
-  PetscCall(ProblemSetTrial(problem, x, model->t));
-  PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, ok));
-  if (!*ok) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ContactListsReach(model->contact, &within));
-  if (!within) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDuplicate(x, &f));
-  PetscCall(ProblemCollectResidual(problem, x, f));
-  PetscCall(VecNorm(f, NORM_2, norm));
-  PetscCall(VecDestroy(&f));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* After a prediction with contact: sets model->x to the accepted state if the prediction failed, has inverted an
    element, or has not found its contact and is farther from balance than that state. Close to a limit of the stability
    that contact gives a linear step goes far, however little the load changes, and its pieces lead away from every
@@ -227,8 +205,8 @@ static PetscErrorCode ModelStayBehind(Model model, SolveReport *report)
 
   PetscFunctionBeginUser;
   if (report->result == SOLVE_CONVERGED) {
-    if (model->work->unsettled) PetscCall(ModelTryStart(model, model->work->accepted_x, &stands, &here));
-    PetscCall(ModelTryStart(model, model->x, &ok, &there));
+    if (model->work->unsettled) PetscCall(ModelResidualAt(model, model->work->accepted_x, &stands, &here));
+    PetscCall(ModelResidualAt(model, model->x, &ok, &there));
   }
   if (ok && !(here < there)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscInfo(model->snes, "the prediction goes too far: the step starts from the accepted state\n"));
@@ -349,8 +327,8 @@ static PetscErrorCode ModelTakeBack(Model model, Vec x)
   PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
   PetscCall(ModelLargestTurn(model, u, v, &turn));
   if (turn > MODEL_FARTHEST) {
-    PetscCall(ModelTryStart(model, model->x, &inside, &there));
-    PetscCall(ModelTryStart(model, x, &ok, &here));
+    PetscCall(ModelResidualAt(model, model->x, &inside, &there));
+    PetscCall(ModelResidualAt(model, x, &ok, &here));
     if (ok && (!inside || here < there)) {
       PetscCall(PetscInfo(model->snes, "new lists: the first step goes too far and is left out\n"));
       PetscCall(VecCopy(x, model->x));
@@ -377,13 +355,16 @@ static PetscErrorCode ModelTakeBack(Model model, Vec x)
 @*/
 PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
 {
-  const Problem problem = model->problem;
-  PetscBool     ok, tied;
-  Vec           x;
+  const Problem   problem = model->problem;
+  const PetscBool rolls   = ModelMayRoll(model);
+  PetscBool       ok, tied;
+  Vec             x = NULL;
 
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(model->x, &x));
-  PetscCall(VecCopy(model->x, x));
+  if (rolls) {
+    PetscCall(VecDuplicate(model->x, &x));
+    PetscCall(VecCopy(model->x, x));
+  }
   if (problem->bodies) {
     PetscCall(FreeBodiesTie(problem->bodies, problem->trial, model->t, model->t, PETSC_FALSE, PETSC_FALSE,
                             problem->springs, &tied));
@@ -395,7 +376,7 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
   PetscCall(ModelStepLinear(model, model->problem->trial, NULL, model->t, report));
   PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
-  if (report->result == SOLVE_CONVERGED && ModelMayRoll(model)) PetscCall(ModelTakeBack(model, x));
+  if (rolls && report->result == SOLVE_CONVERGED) PetscCall(ModelTakeBack(model, x));
   PetscCall(VecDestroy(&x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

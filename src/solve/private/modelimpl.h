@@ -157,6 +157,7 @@ PetscBool      ModelMayRoll(Model);
 PetscErrorCode ModelHeldResidual(Model, Vec F, PetscReal *norm, PetscReal *force);
 PetscErrorCode ModelJudgeHeld(Model, PetscReal force, PetscBool *holds);
 /* linearcontact.c */
+PetscErrorCode ModelResidualAt(Model, Vec x, PetscBool *ok, PetscReal *norm);
 PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
 /* linecuts.c */
 PetscErrorCode ModelCountCut(Model, Vec x);
