@@ -77,6 +77,31 @@ static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The largest present extent of a face of the master (length). Faces of a tool keep theirs, along any axis that
+   between their corners where they have no other nodes. */
+static PetscErrorCode LargestExtent(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal *extent)
+{
+  const ContactSurface master   = s->master;
+  const int            dim      = s->mesh->dim;
+  const PetscBool      straight = (PetscBool)(master->rigid && master->order == 1);
+  PetscReal            x[FACE_MAX_NODES * 3], box[6];
+
+  PetscFunctionBeginUser;
+  *extent = straight ? master->max_extent : 0;
+  if (straight) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt f = 0; f < master->n_faces; f++) {
+    PetscReal square = 0;
+
+    SearchFacePositions(s, master, f, u, t, x);
+    SearchBoxEmpty(box);
+    for (int a = 0; a < ElementGet(master->faces[f].type)->nodes; a++) SearchBoxAdd(box, dim, &x[a * dim]);
+    for (int d = 0; d < dim; d++) square += PetscSqr(box[3 + d] - box[d]);
+    *extent = PetscMax(*extent, PetscSqrtReal(square));
+  }
+  if (!master->rigid) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, extent, 1, MPIU_REAL, MPIU_MAX, s->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Marks the faces of the master whose nodes' geometry is needed, or from which it comes: the geometry of a node takes
    two rings of faces around it. Faces beyond the distance from the boxes by two present extents of the largest face
    are no part of these rings. Ranks agree where they share nodes. */
@@ -84,33 +109,17 @@ static PetscErrorCode MarkFaces(ContactSearch s, const PetscReal *u, PetscReal t
                                 const PetscReal *boxes, PetscReal distance, PetscBool *some)
 {
   enum { RINGS = 2 };
-  const ContactSurface master = s->master;
-  const int            dim    = s->mesh->dim;
-  /* Faces of a tool keep their extent, along any axis that between their corners where they have no other nodes. */
-  const PetscBool straight = (PetscBool)(master->rigid && master->order == 1);
-  PetscReal       x[FACE_MAX_NODES * 3], face[6], extent = 0;
+  PetscReal x[FACE_MAX_NODES * 3], extent;
 
   PetscFunctionBeginUser;
-  if (straight) extent = master->max_extent;
-  for (int pass = straight ? 1 : 0; pass < 2; pass++) {
-    for (PetscInt f = 0; f < master->n_faces; f++) {
-      const int nodes  = ElementGet(master->faces[f].type)->nodes;
-      PetscReal square = 0;
+  PetscCall(LargestExtent(s, u, t, &extent));
+  for (PetscInt f = 0; f < s->master->n_faces; f++) {
+    const int nodes = ElementGet(s->master->faces[f].type)->nodes;
 
-      SearchFacePositions(s, master, f, u, t, x);
-      if (pass) {
-        some[f] = PETSC_FALSE;
-        for (PetscInt b = 0; b < n_boxes && !some[f]; b++)
-          some[f] = SearchSomeImageMeets(s, nodes, x, &boxes[6 * b], distance + RINGS * extent);
-        continue;
-      }
-      SearchBoxEmpty(face);
-      for (int a = 0; a < nodes; a++) SearchBoxAdd(face, dim, &x[a * dim]);
-      for (int d = 0; d < dim; d++) square += PetscSqr(face[3 + d] - face[d]);
-      extent = PetscMax(extent, PetscSqrtReal(square));
-    }
-    if (!pass && !master->rigid)
-      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent, 1, MPIU_REAL, MPIU_MAX, s->mesh->comm));
+    SearchFacePositions(s, s->master, f, u, t, x);
+    some[f] = PETSC_FALSE;
+    for (PetscInt b = 0; b < n_boxes && !some[f]; b++)
+      some[f] = SearchSomeImageMeets(s, nodes, x, &boxes[6 * b], distance + RINGS * extent);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
