@@ -10,10 +10,14 @@
    work into even parts, for ranks and for large fronts, so it is preferred. */
 #define DIRECT_BETTER 0.9
 
-/* Operations of METIS's dissection, in parts of n^2 for n unknowns, above which bodies fill space. There it takes 9 to
-   12 n^2 on rings and spheres, and no ordering takes fewer. On walls and in planes operations grow with n^1.5 (1 to 2
-   n^2 at 15,000 and 60,000 unknowns), and other orderings are tried. Source: George, SIAM J. Numer. Anal. 10, 1973. */
+/* Operations of METIS's dissection for a symmetric matrix, in parts of n^2 for n unknowns, above which bodies fill
+   space. There it takes 9 to 12 n^2 on rings and spheres, and no ordering takes fewer. On walls and in planes
+   operations grow with n^1.5 (1 to 2 n^2 at 15,000 and 60,000 unknowns), and other orderings are tried. Source: George,
+   SIAM J. Numer. Anal. 10, 1973. */
 #define DIRECT_THICK 5
+
+/* A factor L U takes this many times the operations of L D L^T with the same pattern. */
+#define DIRECT_UNSYMMETRIC 2
 
 /* The name of the shell preconditioner, by which it is recognised. */
 #define DIRECT_NAME "mumps"
@@ -196,7 +200,7 @@ static PetscErrorCode CountOperations(Factor factor, int ordering, Mat A, PetscR
 PetscErrorCode DirectSolverOrder(KSP ksp, Mat A, PetscBool *thin)
 {
   int       ordering = FACTOR_METIS;
-  PetscReal best, operations;
+  PetscReal best, most, operations;
   PetscInt  n;
   PetscBool chosen;
   Factor    factor;
@@ -209,7 +213,8 @@ PetscErrorCode DirectSolverOrder(KSP ksp, Mat A, PetscBool *thin)
   PetscCall(FactorSetOrdering(factor, ordering, &chosen));
   if (!chosen) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CountOperations(factor, FACTOR_METIS, A, &best));
-  *thin = (PetscBool)(best <= DIRECT_THICK * (PetscReal)n * (PetscReal)n);
+  most  = DIRECT_THICK * (PetscReal)n * (PetscReal)n;
+  *thin = (PetscBool)(best <= (FactorIsSymmetric(factor) ? most : DIRECT_UNSYMMETRIC * most));
   best *= DIRECT_BETTER;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(DirectOthers) && *thin; i++) {
     PetscCall(CountOperations(factor, DirectOthers[i], A, &operations));

@@ -557,6 +557,19 @@ PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
 }
 
 /*@
+  FactorIsSymmetric - tells whether the factor is L D L^T of symmetric matrices.
+
+  Not collective
+
+  Input Parameter:
+. f - the factor
+@*/
+PetscBool FactorIsSymmetric(Factor f)
+{
+  return f->symmetric;
+}
+
+/*@
   FactorGetCost - gets what the factor takes, by the last analysis.
 
   Not collective, the same on all ranks

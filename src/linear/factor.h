@@ -34,4 +34,5 @@ PetscErrorCode FactorMake(Factor, Mat A, PCFailedReason *);
 PetscErrorCode FactorSolve(Factor, Vec b, Vec x);
 PetscErrorCode FactorSolveTransposed(Factor, Vec b, Vec x);
 PetscErrorCode FactorSolveColumns(Factor, Mat B, Mat X);
+PetscBool      FactorIsSymmetric(Factor);
 void           FactorGetCost(Factor, FactorCost *);
