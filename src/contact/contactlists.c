@@ -190,29 +190,6 @@ static PetscReal FrameCosine(int dim, const PetscReal *a, const PetscReal *b)
   return cosine;
 }
 
-/* A fit whose frame turns back a second time within a step keeps the frame that the next lists have, to the end of the
-   step. The frame is that of the points around the nearest facet. On a coarse bend two facets may hand a point to and
-   fro: with the frame of either the solution has the other one nearest. */
-static void PairKeepFrames(ContactPair *pair)
-{
-  const int dim = pair->mesh->dim;
-
-  for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.fitted; q++) {
-    const PetscReal *now   = &pair->lists->frame[9 * q + 3 * (dim - 1)],
-                    *next  = &pair->next->frame[9 * q + 3 * (dim - 1)];
-    PetscReal      *before = &pair->frame_before[3 * q];
-    const PetscBool turns =
-      (PetscBool)(pair->lists->fit_n[q] && pair->next->fit_n[q] && FrameCosine(dim, now, next) < CONTACT_FRAME_COSINE);
-    const PetscBool back = (PetscBool)(turns && FrameCosine(dim, before, next) >= CONTACT_FRAME_COSINE);
-
-    for (int d = 0; d < 3; d++) {
-      if (back && pair->turned_back[q]) pair->frame_kept[3 * q + d] = next[d];
-      before[d] = turns ? now[d] : 0;
-    }
-    pair->turned_back[q] = (PetscBool)(pair->turned_back[q] || back);
-  }
-}
-
 /* Lets the search choose rungs and frames of all fits. *changed: it did not choose some of them. */
 static PetscErrorCode PairFreeFits(ContactPair *pair, PetscBool *changed)
 {
@@ -289,15 +266,6 @@ static PetscErrorCode PairListsMotion(Contact contact, const ContactPair *pair, 
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
   if (depth > pair->slave->max_size) *motion = PetscMax(*motion, depth);
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Keeps within a step what would turn to and fro with the next lists. */
-static void PairDamp(ContactPair *pair)
-{
-  if (pair->stays) return; /* nothing has a partner */
-  PairDampFactors(pair);
-  PairKeepRungs(pair);
-  PairKeepFrames(pair);
 }
 
 /* The lists in force take the offsets that are extrapolated to the end of the step. They were made with those of the
@@ -462,6 +430,42 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscBool al
               fresh->fit_n[q] * sizeof(*fresh->list_point)))
     return PETSC_TRUE;
   return FitHoldsPoints(old, fresh, q);
+}
+
+/* A fit that the next lists make with another frame or other points, and that turns back a second time within a step,
+   keeps the frame that the next lists have, to the end of the step. The frame is that of the points around the nearest
+   facet, and so are the points. On a coarse bend two facets may hand a point to and fro: with the fit of either the
+   solution has the other one nearest. A fit turns back where the next frame is nearer to the last one that was replaced
+   than to the one in force. */
+static void PairKeepFrames(ContactPair *pair)
+{
+  const NeighbourLists now = pair->lists, next = pair->next;
+  const int            dim   = pair->mesh->dim;
+  const PetscBool      alike = PointsAlike(now, next);
+
+  for (PetscInt q = 0; q < now->n_slaves && pair->fit.fitted; q++) {
+    const PetscInt   normal = 9 * q + 3 * (dim - 1);
+    const PetscReal *frame  = &next->frame[normal];
+    PetscReal       *before = &pair->frame_before[3 * q];
+    const PetscBool  turns  = (PetscBool)(now->fit_n[q] && next->fit_n[q] && !FitHolds(now, next, alike, q));
+    const PetscBool  back =
+      (PetscBool)(turns && FrameCosine(dim, before, frame) > FrameCosine(dim, &now->frame[normal], frame));
+
+    for (int d = 0; d < 3; d++) {
+      if (back && pair->turned_back[q]) pair->frame_kept[3 * q + d] = d < dim ? frame[d] : 0;
+      before[d] = turns && d < dim ? now->frame[normal + d] : 0;
+    }
+    pair->turned_back[q] = (PetscBool)(pair->turned_back[q] || back);
+  }
+}
+
+/* Keeps within a step what would turn to and fro with the next lists. */
+static void PairDamp(ContactPair *pair)
+{
+  if (pair->stays) return; /* nothing has a partner */
+  PairDampFactors(pair);
+  PairKeepRungs(pair);
+  PairKeepFrames(pair);
 }
 
 /* Says whether the gaps of a pair may drift with its lists: with offsets that are held in a solve, and with friction,
