@@ -326,7 +326,7 @@ static PetscErrorCode PairWantOffsets(ContactPair *pair, const PetscReal *u, Pet
 
   PetscFunctionBeginUser;
   if (!pair->slave_offsets || !pair->master_offsets) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!OffsetsFollow(pair->slave_offsets) && !OffsetsFollow(pair->master_offsets)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!OffsetsChoose(pair->slave_offsets) && !OffsetsChoose(pair->master_offsets)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(pair->slave->n_faces, &slave, pair->master->n_faces, &master));
   PetscCall(SearchNearFaces(pair->search, u, t, motion, slave, master));
   PetscCall(OffsetsWant(pair->slave_offsets, slave, begins));
