@@ -77,6 +77,21 @@ void SearchRigidPosition(ContactSearch s, PetscInt n, PetscReal t, PetscReal x[3
   LoadsRigidMotion(s->loads, s->master->body, t, X, x);
 }
 
+/* The position of a node of the tool, which is kept between SearchToolBegin() and SearchToolEnd(). */
+static void ToolPosition(ContactSearch s, PetscInt n, PetscReal t, PetscReal x[3])
+{
+  const int dim = s->mesh->dim;
+
+  if (s->rigid_x && s->rigid_known[n]) {
+    for (int d = 0; d < dim; d++) x[d] = s->rigid_x[n * dim + d];
+    return;
+  }
+  SearchRigidPosition(s, n, t, x);
+  if (!s->rigid_x) return;
+  for (int d = 0; d < dim; d++) s->rigid_x[n * dim + d] = x[d];
+  s->rigid_known[n] = 1;
+}
+
 /*@
   SearchFacePositions - computes the positions of the nodes of a face of this rank.
 
@@ -101,10 +116,7 @@ void SearchFacePositions(ContactSearch s, ContactSurface surface, PetscInt f, co
   for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
     PetscReal y[3];
 
-    if (surface->rigid && s->rigid_x)
-      for (int d = 0; d < dim; d++) y[d] = s->rigid_x[facet->nodes[a] * dim + d];
-    else if (surface->rigid)
-      SearchRigidPosition(s, facet->nodes[a], t, y);
+    if (surface->rigid) ToolPosition(s, facet->nodes[a], t, y);
     for (int d = 0; d < dim; d++)
       x[a * dim + d] =
         surface->rigid ? y[d] : s->mesh->coords[facet->nodes[a] * dim + d] + u[facet->nodes[a] * dim + d];
@@ -168,6 +180,27 @@ void SearchMasterBox(ContactSearch s, const PetscReal *u, PetscReal t, const Pet
 }
 
 /*@
+  SearchFaceMeets - tests whether a face comes within a distance of a box.
+
+  Not collective
+
+  Input Parameters:
++ dim      - 2 or 3
+. n        - number of nodes of the face
+. x        - x[n*dim], their positions (length)
+. box      - lower then upper corner
+- distance - the distance (length)
+@*/
+PetscBool SearchFaceMeets(int dim, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance)
+{
+  PetscReal face[6];
+
+  SearchBoxEmpty(face);
+  for (int a = 0; a < n; a++) SearchBoxAdd(face, dim, &x[a * dim]);
+  return SearchBoxesMeet(face, box, dim, distance);
+}
+
+/*@
   SearchSomeImageMeets - tests whether any mirror image of a face comes within a distance of a box.
 
   Not collective
@@ -197,24 +230,6 @@ PetscBool SearchSomeImageMeets(ContactSearch s, int n, const PetscReal *x, const
   return PETSC_FALSE;
 }
 
-/* The boxes of the ranks with which the faces are compared. */
-typedef struct {
-  ContactSearch    s;
-  const PetscReal *u, *boxes;
-  PetscReal        distance;
-} Reach;
-
-/* A face goes to each rank whose box it may reach. */
-static PetscBool ReachesBox(const void *context, PetscInt f, PetscMPIInt r)
-{
-  const Reach *reach = context;
-  PetscReal    x[FACE_MAX_NODES * 3];
-
-  SearchFacePositions(reach->s, reach->s->master, f, reach->u, 0, x);
-  return SearchSomeImageMeets(reach->s, ElementGet(reach->s->master->faces[f].type)->nodes, x, &reach->boxes[6 * r],
-                              reach->distance);
-}
-
 /*@
   SearchExchangeFaces - sends this rank's faces of a deformable master to every rank whose box they may reach, itself
   included.
@@ -236,10 +251,24 @@ PetscErrorCode SearchExchangeFaces(ContactSearch s, const NodeGeometry *geometry
                                    const PetscReal *boxes, PetscReal distance, PetscInt *n_records,
                                    FaceRecord **records)
 {
-  const Reach reach = {s, u, boxes, distance};
+  PetscMPIInt size;
+  PetscInt   *count, *faces = NULL, total = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(FaceRecordsShare(s->master, geometry, s->offset, ReachesBox, &reach, n_records, records));
+  PetscCallMPI(MPI_Comm_size(s->mesh->comm, &size));
+  PetscCall(PetscMalloc1(size, &count));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    PetscInt *near;
+
+    PetscCall(SearchNearBox(s, s->master, u, 0, &boxes[6 * r], distance, &count[r], &near));
+    PetscCall(PetscRealloc((total + count[r]) * sizeof(*faces), &faces));
+    PetscCall(PetscArraycpy(faces + total, near, count[r]));
+    total += count[r];
+    PetscCall(PetscFree(near));
+  }
+  PetscCall(FaceRecordsShare(s->master, geometry, s->offset, count, faces, n_records, records));
+  PetscCall(PetscFree(faces));
+  PetscCall(PetscFree(count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -262,15 +291,13 @@ PetscErrorCode SearchExchangeFaces(ContactSearch s, const NodeGeometry *geometry
 PetscErrorCode SearchPickRigidFaces(ContactSearch s, const NodeGeometry *geometry, PetscReal t, const PetscReal box[6],
                                     PetscReal distance, PetscInt *n_records, FaceRecord **records)
 {
-  PetscFunctionBeginUser;
-  *n_records = 0;
-  PetscCall(PetscMalloc1(s->master->n_faces, records));
-  for (PetscInt f = 0; f < s->master->n_faces; f++) {
-    PetscReal x[FACE_MAX_NODES * 3];
+  PetscInt *faces;
 
-    SearchFacePositions(s, s->master, f, NULL, t, x);
-    if (!SearchSomeImageMeets(s, ElementGet(s->master->faces[f].type)->nodes, x, box, distance)) continue;
-    FaceRecordFromSurface(s->master, geometry, s->offset, f, &(*records)[(*n_records)++]);
-  }
+  PetscFunctionBeginUser;
+  PetscCall(SearchNearBox(s, s->master, NULL, t, box, distance, n_records, &faces));
+  PetscCall(PetscMalloc1(*n_records, records));
+  for (PetscInt i = 0; i < *n_records; i++)
+    FaceRecordFromSurface(s->master, geometry, s->offset, faces[i], &(*records)[i]);
+  PetscCall(PetscFree(faces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

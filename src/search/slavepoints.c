@@ -23,15 +23,38 @@ static PetscErrorCode CreateForest(SlavePoints points)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A face goes to each rank that owns one of its nodes. */
-static PetscBool OwnsNode(const void *context, PetscInt f, PetscMPIInt r)
+/* Does a rank own one of a face's nodes? */
+static PetscBool OwnsNode(ContactSurface surface, PetscInt f, PetscMPIInt r)
 {
-  const ContactSurface surface = (const ContactSurface)context;
-  const Facet         *facet   = &surface->faces[f];
+  const Facet *facet = &surface->faces[f];
 
   for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
     if (surface->mesh->node_owner[facet->nodes[a]] == r) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+/* Sends each face to each rank that owns one of its nodes, and sorts what has arrived. */
+static PetscErrorCode ShareFaces(ContactSurface surface, PetscInt *n_records, FaceRecord **records)
+{
+  PetscInt   *count, *faces, total = 0;
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(surface->mesh->comm, &size));
+  PetscCall(PetscCalloc1(size, &count));
+  PetscCall(PetscMalloc1(PetscMin(size, FACE_MAX_NODES) * surface->n_faces, &faces));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    for (PetscInt f = 0; f < surface->n_faces; f++) {
+      if (!OwnsNode(surface, f, r)) continue;
+      faces[total++] = f;
+      count[r]++;
+    }
+  }
+  PetscCall(FaceRecordsShare(surface, NULL, NULL, count, faces, n_records, records));
+  FaceRecordsSort(*n_records, *records);
+  PetscCall(PetscFree(faces));
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Takes the nodes of slave points that are nodes, and those around them where faces have arrived. */
@@ -88,10 +111,7 @@ PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const 
   points->mesh    = mesh;
   points->surface = surface;
   points->n       = n;
-  if (levers) {
-    PetscCall(FaceRecordsShare(surface, NULL, NULL, OwnsNode, surface, &n_records, &records));
-    FaceRecordsSort(n_records, records);
-  }
+  if (levers) PetscCall(ShareFaces(surface, &n_records, &records));
   PetscCall(TakeNodes(points, nodes, n_records, records));
   PetscCall(PetscMalloc6(n + 1, &points->ptr, n, &points->node, n, &points->S, n, &points->hat, n, &points->weight,
                          n * mesh->dim, &points->offset));
@@ -171,8 +191,7 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
   points->mesh    = surface->mesh;
   points->surface = surface;
   points->finer   = finer;
-  PetscCall(FaceRecordsShare(surface, NULL, NULL, OwnsNode, surface, &n_records, &records));
-  FaceRecordsSort(n_records, records);
+  PetscCall(ShareFaces(surface, &n_records, &records));
   PetscCall(TakeRecords(points, n_records, records));
   for (PetscInt f = 0; f < n_records; f++) {
     points->first[f] = n;

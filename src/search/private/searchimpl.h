@@ -52,6 +52,7 @@ struct _n_ContactSearch {
   PetscReal           reach, margin; /* lengths, without the motion */
   PetscReal           fit_reach;     /* SearchFitReach() */
   PetscReal          *rigid_x;       /* of a tool's nodes (length), while faces are collected; else NULL */
+  char               *rigid_known;   /* of each of them: its position has been asked for */
   PetscInt            room, points_room; /* of the facets and points of the last lists */
   Partners            partners;
 };
@@ -153,11 +154,18 @@ void      SearchBoxAdd(PetscReal box[6], int dim, const PetscReal *x);
 void      SearchFacePositions(ContactSearch, ContactSurface, PetscInt f, const PetscReal *u, PetscReal t, PetscReal *x);
 PetscBool SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, PetscReal distance);
 void      SearchRigidPosition(ContactSearch, PetscInt n, PetscReal t, PetscReal x[3]);
+PetscBool SearchFaceMeets(int dim, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance);
 PetscBool SearchSomeImageMeets(ContactSearch, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance);
 PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const PetscReal *u, const PetscReal *boxes,
                                    PetscReal distance, PetscInt *n, FaceRecord **);
 PetscErrorCode SearchPickRigidFaces(ContactSearch, const NodeGeometry *, PetscReal t, const PetscReal box[6],
                                     PetscReal distance, PetscInt *n, FaceRecord **);
+/* nearbox.c */
+PetscErrorCode SearchToolBegin(ContactSearch);
+PetscErrorCode SearchToolEnd(ContactSearch);
+PetscErrorCode SearchBlocks(ContactSearch, ContactSurface, const PetscReal *u, FaceBlocks *);
+PetscErrorCode SearchNearBox(ContactSearch, ContactSurface, const PetscReal *u, PetscReal t, const PetscReal box[6],
+                             PetscReal distance, PetscInt *n, PetscInt **faces);
 /* neighbourlists.c */
 PetscErrorCode NeighbourListsCreateNodes(ContactSearch, SearchField *, NeighbourLists);
 PetscErrorCode NeighbourListsCreatePoints(ContactSearch, NeighbourLists, SearchField *);
