@@ -86,7 +86,7 @@ static PetscErrorCode PairSetOffsets(ContactPair *pair)
 static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   PetscFunctionBeginUser;
-  PetscCall(NeighbourListsDestroy(&pair->next));
+  PetscCall(NeighbourListsGiveBack(pair->search, &pair->next));
   PetscCall(PairSetOffsets(pair));
   pair->next_motion = motion;
   pair->stays       = PETSC_FALSE;
@@ -240,7 +240,7 @@ static PetscErrorCode PairTakeNext(ContactPair *pair)
     pair->stays = PETSC_FALSE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(NeighbourListsDestroy(&pair->lists));
+  PetscCall(NeighbourListsGiveBack(pair->search, &pair->lists));
   pair->lists     = pair->next;
   pair->next      = NULL;
   pair->projected = PETSC_FALSE;

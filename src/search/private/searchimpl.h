@@ -55,6 +55,7 @@ struct _n_ContactSearch {
   char               *rigid_known;   /* of each of them: its position has been asked for */
   PetscInt            room, points_room; /* of the facets and points of the last lists */
   Partners            partners;
+  NeighbourLists      spare; /* lists that were given back, of which only what belongs to slave points is left, or NULL */
 };
 
 /* A face or a mirror image of it, in the present position. */
@@ -169,7 +170,9 @@ PetscErrorCode SearchNearBox(ContactSearch, ContactSurface, const PetscReal *u, 
 /* neighbourlists.c */
 PetscErrorCode NeighbourListsCreateNodes(ContactSearch, SearchField *, NeighbourLists);
 PetscErrorCode NeighbourListsCreatePoints(ContactSearch, NeighbourLists, SearchField *);
+PetscErrorCode NeighbourListsChoosePoints(ContactSearch, NeighbourLists);
 PetscErrorCode NeighbourListsCreateSlaves(ContactSearch, NeighbourLists);
+PetscErrorCode NeighbourListsFreeSpare(ContactSearch);
 void           NeighbourListsPointGeometry(ContactSearch, NeighbourLists, const SearchField *, NodeGeometry *of_nodes,
                                            NodeGeometry *of_points);
 PetscErrorCode NeighbourListsUpdateNodes(ContactSearch, NeighbourLists, const PetscReal *u, PetscReal t);
