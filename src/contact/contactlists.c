@@ -77,7 +77,8 @@ static PetscErrorCode PairSetOffsets(ContactPair *pair)
   if (pair->slave_offsets && OffsetsMaps(pair->slave_offsets))
     PetscCall(SlavePointsSetMaps(pair->slaves, OffsetsMaps(pair->slave_offsets)));
   else if (pair->slave_offsets)
-    PetscCall(SlavePointsSetOffsets(pair->slaves, OffsetsGet(pair->slave_offsets)));
+    PetscCall(
+      SlavePointsSetOffsets(pair->slaves, OffsetsGet(pair->slave_offsets), OffsetsTouched(pair->slave_offsets)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -665,6 +665,22 @@ const PetscReal *OffsetsGet(Offsets o)
 }
 
 /*@
+  OffsetsTouched - says which faces have ever had offsets.
+
+  Not collective
+
+  Input Parameter:
+. o - the offsets
+
+  Note:
+  Returns an array of the faces of the surface on this rank. The offsets of the others are 0.
+@*/
+const PetscBool *OffsetsTouched(Offsets o)
+{
+  return o->touched;
+}
+
+/*@
   OffsetsMaps - returns the maps of live offsets, which make the points combinations of nodes.
 
   Not collective

@@ -10,8 +10,8 @@
 
    OffsetsCreate() makes offsets of 0, and OffsetsWant() leaves out faces that no search will see. OffsetsChoose() says
    whether that is of any use. OffsetsExtrapolate() is called at the beginning of a step and OffsetsTake() when lists
-   are made anew, and OffsetsDamp() where these replace those of the solve. OffsetsGet() and OffsetsMaps() give the
-   result to the search, and OffsetsArchive() writes or reads the state of the extrapolation. */
+   are made anew, and OffsetsDamp() where these replace those of the solve. OffsetsGet(),
+   OffsetsTouched() and OffsetsMaps() give the result to the search, and OffsetsArchive() writes or reads the state of the extrapolation. */
 #pragma once
 #include "files/archive.h"
 #include "search/facemap.h"
@@ -33,4 +33,5 @@ PetscErrorCode   OffsetsTake(Offsets, const PetscReal *u, PetscReal t);
 PetscErrorCode   OffsetsDamp(Offsets, PetscBool *changed);
 PetscErrorCode   OffsetsArchive(Offsets, Archive, const char *name);
 const PetscReal *OffsetsGet(Offsets);
+const PetscBool *OffsetsTouched(Offsets);
 const FaceMaps  *OffsetsMaps(Offsets);

@@ -428,7 +428,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(SearchFieldCreate(s, u, t, box, distance, (PetscBool)(s->fit->fitted && (!partners || s->partners.any)),
                               lists, &field));
   PetscCall(NeighbourListsCreateSlaves(s, lists));
-  if (!partners) PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, normals));
+  if (!partners) PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, NULL, normals));
   for (PetscInt i = 0; i < lists->n_near; i++)
     PetscCall(PetscArraycpy(&lists->slave_normal[3 * lists->near[i]], &normals[3 * lists->near[i]], 3));
   PetscCall(PetscFree(normals));
