@@ -508,6 +508,16 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
   return (PetscBool)(!PetscIsNanReal(same) && (!PairDrifts(pair) || PetscAbsReal(same - old) <= drift));
 }
 
+/* Has a term a gap, by the last residual or by the gaps of its points from fresh lists? */
+static PetscBool TermHasGap(const ContactPair *pair, PetscInt c, const PetscReal *gaps)
+{
+  PetscBool has = (PetscBool)!PetscIsNanReal(pair->now.gap[c]);
+
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && !has; k++)
+    has = (PetscBool)!PetscIsNanReal(gaps[pair->term_point[k]]);
+  return has;
+}
+
 /* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. */
 static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscReal lag, PetscBool *agrees)
 {
@@ -525,7 +535,9 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   PetscCall(ContactPointGaps(pair, pair->next, factor, NULL, NULL, gaps, NULL));
   if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
-    *agrees = TermAgrees(pair, pair->next, alike, c, gaps, pair->next_factor, t, depth, pressure, drift, factor_drift);
+    if (TermHasGap(pair, c, gaps)) /* few have where most points have no partner */
+      *agrees =
+        TermAgrees(pair, pair->next, alike, c, gaps, pair->next_factor, t, depth, pressure, drift, factor_drift);
   PetscCall(PetscFree2(gaps, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

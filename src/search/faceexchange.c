@@ -77,7 +77,7 @@ void SearchRigidPosition(ContactSearch s, PetscInt n, PetscReal t, PetscReal x[3
   LoadsRigidMotion(s->loads, s->master->body, t, X, x);
 }
 
-/* The position of a node of the tool, which is kept between SearchToolBegin() and SearchToolEnd(). */
+/* The position of a node of the tool, which is kept between SearchStateBegin() and SearchStateEnd(). */
 static void ToolPosition(ContactSearch s, PetscInt n, PetscReal t, PetscReal x[3])
 {
   const int dim = s->mesh->dim;

@@ -107,6 +107,11 @@ PetscErrorCode FaceRecordsShare(ContactSurface surface, const NodeGeometry *geom
     FaceRecordFromSurface(surface, geometry, offset, faces[i], &send[i]);
     send[i].home = rank;
   }
+  if (size == 1) {
+    *n        = total;
+    *received = send;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(ExchangeRecords(comm, count, send, n, received));
   PetscCall(PetscFree(send));
   PetscFunctionReturn(PETSC_SUCCESS);

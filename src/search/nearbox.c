@@ -2,21 +2,24 @@
 #include "searchimpl.h"
 
 /*@
-  SearchToolBegin - has positions of a tool's nodes kept, each from when it is asked for first.
+  SearchStateBegin - has positions kept, each from when it is asked for first: those of a tool's nodes, and the boxes of
+  blocks of faces.
 
   Not collective
 
   Input Parameter:
-. s - the search; without a tool as its master nothing is done
+. s - the search
 
   Note:
-  SearchToolEnd() forgets them. In between all positions are asked for at one load parameter.
+  SearchStateEnd() forgets them. In between all is asked for at the same displacements and load parameter.
 @*/
-PetscErrorCode SearchToolBegin(ContactSearch s)
+PetscErrorCode SearchStateBegin(ContactSearch s)
 {
   const PetscInt n = s->master && s->master->rigid ? s->master->rigid->n_nodes : 0;
 
   PetscFunctionBeginUser;
+  s->holds         = PETSC_TRUE;
+  s->n_blocks_held = 0;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(n * s->mesh->dim, &s->rigid_x));
   PetscCall(PetscCalloc1(n, &s->rigid_known));
@@ -24,16 +27,17 @@ PetscErrorCode SearchToolBegin(ContactSearch s)
 }
 
 /*@
-  SearchToolEnd - forgets positions of a tool's nodes.
+  SearchStateEnd - forgets positions of a state.
 
   Not collective
 
   Input Parameter:
 . s - the search
 @*/
-PetscErrorCode SearchToolEnd(ContactSearch s)
+PetscErrorCode SearchStateEnd(ContactSearch s)
 {
   PetscFunctionBeginUser;
+  s->holds = PETSC_FALSE;
   PetscCall(PetscFree(s->rigid_x));
   PetscCall(PetscFree(s->rigid_known));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -54,12 +58,15 @@ PetscErrorCode SearchToolEnd(ContactSearch s)
 @*/
 PetscErrorCode SearchBlocks(ContactSearch s, ContactSurface surface, const PetscReal *u, FaceBlocks *blocks)
 {
-  const PetscReal *X = surface->rigid ? surface->rigid->coords : s->mesh->coords;
+  const PetscReal *X    = surface->rigid ? surface->rigid->coords : s->mesh->coords;
+  PetscBool        held = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (!surface->blocks)
     PetscCall(FaceBlocksCreate(s->mesh->dim, surface->n_faces, surface->faces, X, &surface->blocks));
-  if (!surface->rigid) FaceBlocksPlace(surface->blocks, X, u);
+  for (int i = 0; i < s->n_blocks_held && s->holds; i++) held = (PetscBool)(held || s->blocks_held[i] == surface->blocks);
+  if (!surface->rigid && !held) FaceBlocksPlace(surface->blocks, X, u);
+  if (s->holds && !held) s->blocks_held[s->n_blocks_held++] = surface->blocks;
   *blocks = surface->blocks;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -148,7 +155,7 @@ static PetscErrorCode NearBlocks(ContactSearch s, ContactSurface surface, const 
 
   Output Parameters:
 + n     - number of faces
-- faces - the faces, in ascending order, to be freed with PetscFree()
+- faces - the faces, in the order of blocks, to be freed with PetscFree()
 
   Note:
   The boxes of faces are compared with the box. A box without any point has no faces.
@@ -174,7 +181,6 @@ PetscErrorCode SearchNearBox(ContactSearch s, ContactSurface surface, const Pets
                              : SearchFaceMeets(s->mesh->dim, nodes, x, box, distance))
       near[(*n)++] = near[i];
   }
-  PetscCall(PetscSortInt(*n, near));
   *faces = near;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

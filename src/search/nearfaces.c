@@ -206,7 +206,7 @@ PetscErrorCode SearchNearFaces(ContactSearch s, const PetscReal *u, PetscReal t,
   for (int k = 0; k < 2; k++) PetscCall(PetscArrayzero(near[k], side[k].surface->n_faces));
   if (tested) PetscCall(SearchPartnersFaces(s, u, t, motion, slave));
   if (tested && !s->partners.any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SearchToolBegin(s));
+  PetscCall(SearchStateBegin(s));
   for (int k = 0; k < 2; k++) PetscCall(SideBox(s, u, t, &side[0], distance, &side[k]));
   for (int k = tested ? 1 : 0; k < 2; k++) {
     NearGrid grid;
@@ -216,6 +216,6 @@ PetscErrorCode SearchNearFaces(ContactSearch s, const PetscReal *u, PetscReal t,
     PetscCall(VisitNear(s, &side[k], u, t, side[1 - k].all, (1 + SEARCH_ON_PLANE) * distance, TestFace, &test));
     PetscCall(PetscFree(grid.met));
   }
-  PetscCall(SearchToolEnd(s));
+  PetscCall(SearchStateEnd(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

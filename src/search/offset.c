@@ -36,6 +36,7 @@ struct _n_Offsets {
   /* The offsets that were taken last, with the displacements and the load parameter there. t_last is NAN before the
      first. */
   PetscReal *last, *u_last, t_last;
+  Offsets lender; /* offsets of the same surface by the same settings, or NULL */
   /* Of the step at hand: the offsets with which its lists were made, and of the time when these were replaced last what
      the solution asked for and by how much that differed. */
   PetscReal *held, *asked, *change;
@@ -134,6 +135,37 @@ PetscErrorCode OffsetsDestroy(Offsets *offsets)
   PetscCall(PetscFree((*offsets)->u_last));
   PetscCall(PetscFree2((*offsets)->wanted, (*offsets)->touched));
   PetscCall(PetscFree(*offsets));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  OffsetsLend - has offsets of a surface take those that others have at the same state, if both are made alike.
+
+  Not collective
+
+  Input Parameters:
++ lender - offsets, which live as long
+- o      - the offsets
+
+  Output Parameter:
+. alike - they are
+
+  Note:
+  Where bodies meet without pairs of names, each surface is a slave in some pairs and a master in others.
+@*/
+PetscErrorCode OffsetsLend(Offsets lender, Offsets o, PetscBool *alike)
+{
+  const ContactSurface a = lender->surface, b = o->surface;
+
+  PetscFunctionBeginUser;
+  *alike = (PetscBool)(a->group == b->group && a->rigid == b->rigid && a->n_faces == b->n_faces &&
+                       a->turned == b->turned && lender->kind == o->kind && lender->finer == o->finer &&
+                       !a->face_ends == !b->face_ends && lender->fit.feature_angle == o->fit.feature_angle &&
+                       lender->search->n_images == o->search->n_images);
+  if (*alike) PetscCall(PetscArraycmp(a->faces, b->faces, a->n_faces, alike));
+  if (*alike && a->face_ends) PetscCall(PetscArraycmp(a->face_ends, b->face_ends, a->n_faces, alike));
+  if (*alike) PetscCall(PetscArraycmp(lender->search->images, o->search->images, o->search->n_images, alike));
+  if (*alike) o->lender = lender;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -341,6 +373,12 @@ static PetscErrorCode OffsetsMap(Offsets o)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Number of values of a face. */
+static PetscInt FaceBlock(Offsets o)
+{
+  return FACE_RULE_POINTS * o->search->mesh->dim;
+}
+
 /* Takes the offsets of the missing faces of all ranks, with the surface at (u, t); u NULL: in the reference position. */
 static PetscErrorCode TakeMissing(Offsets o, const PetscReal *u, PetscReal t, const PetscBool *missing,
                                   PetscReal *values)
@@ -358,16 +396,33 @@ static PetscErrorCode TakeMissing(Offsets o, const PetscReal *u, PetscReal t, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes the offsets of a face from the lender if it has them. */
+static PetscErrorCode Borrow(Offsets o, PetscInt f, const PetscReal *lent, PetscReal *values, PetscBool *missing)
+{
+  const PetscInt block = FaceBlock(o);
+
+  PetscFunctionBeginUser;
+  if (!*missing || !lent || !o->lender->touched[f] || (o->once ? !o->lender->had[f] : PetscIsNanReal(lent[f * block])))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArraycpy(&values[f * block], &lent[f * block], block));
+  *missing = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Takes the offsets of the wanted faces in the reference position, once each. */
 static PetscErrorCode TakeReference(Offsets o)
 {
-  PetscBool *missing;
+  const PetscReal *lent = o->lender ? o->lender->used : NULL;
+  PetscBool       *missing;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(o->surface->n_faces, &missing));
-  for (PetscInt f = 0; f < o->surface->n_faces; f++) missing[f] = (PetscBool)(o->wanted[f] && !o->had[f]);
+  for (PetscInt f = 0; f < o->surface->n_faces; f++) {
+    missing[f] = (PetscBool)(o->wanted[f] && !o->had[f]);
+    if (o->wanted[f]) o->had[f] = PETSC_TRUE;
+    PetscCall(Borrow(o, f, lent, o->used, &missing[f]));
+  }
   PetscCall(TakeMissing(o, NULL, 0, missing, o->used));
-  for (PetscInt f = 0; f < o->surface->n_faces; f++) o->had[f] = (PetscBool)(o->had[f] || missing[f]);
   PetscCall(PetscFree(missing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -395,24 +450,21 @@ static PetscErrorCode TakeOnce(Offsets o, PetscBool *done)
 /* Takes the offsets of the wanted faces at (u, t) that are not among the last ones. */
 static PetscErrorCode TakeWanted(Offsets o, const PetscReal *u, PetscReal t)
 {
-  const PetscInt block = FACE_RULE_POINTS * o->search->mesh->dim;
-  PetscBool     *missing;
+  const PetscInt   block = FaceBlock(o), n = o->search->mesh->n_nodes * o->search->mesh->dim;
+  const PetscReal *lent = o->lender && o->lender->t_last == t ? o->lender->last : NULL;
+  PetscBool       *missing, same = PETSC_TRUE;
 
   PetscFunctionBeginUser;
+  if (lent) PetscCall(PetscArraycmp(u, o->lender->u_last, n, &same));
   PetscCall(PetscMalloc1(o->surface->n_faces, &missing));
   for (PetscInt f = 0; f < o->surface->n_faces; f++) {
     missing[f] = (PetscBool)(o->wanted[f] && PetscIsNanReal(o->last[f * block]));
     if (missing[f]) PetscCall(PetscArrayzero(&o->last[f * block], block));
+    PetscCall(Borrow(o, f, same ? lent : NULL, o->last, &missing[f]));
   }
   PetscCall(TakeMissing(o, u, t, missing, o->last));
   PetscCall(PetscFree(missing));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Number of values of a face. */
-static PetscInt FaceBlock(Offsets o)
-{
-  return FACE_RULE_POINTS * o->search->mesh->dim;
 }
 
 /* Gives an untouched face values, which are those of a face that is not wanted. */

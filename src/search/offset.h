@@ -25,6 +25,7 @@ typedef enum { OFFSETS_NONE, OFFSETS_HELD, OFFSETS_LIVE } OffsetsKind;
 PetscErrorCode   OffsetsCreate(Mesh, Scene, Loads, ContactSurface, int n_images, const SurfaceImage *,
                                PetscReal feature_angle, int finer, OffsetsKind, Offsets *);
 PetscErrorCode   OffsetsDestroy(Offsets *);
+PetscErrorCode   OffsetsLend(Offsets lender, Offsets, PetscBool *alike);
 PetscBool        OffsetsChoose(Offsets);
 PetscBool        OffsetsBlank(Offsets);
 PetscErrorCode   OffsetsWant(Offsets, const PetscBool *wanted, PetscBool anew);

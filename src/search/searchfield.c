@@ -172,7 +172,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   *field     = (SearchField){0};
   lists->dim = mesh->dim;
   ToolsPlace(mesh, u, t);
-  PetscCall(SearchToolBegin(s));
+  PetscCall(SearchStateBegin(s));
   PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
   PetscCall(PetscMalloc1(6 * size, &boxes));
   if (s->master && !rigid) PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, mesh->comm));
@@ -187,7 +187,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   else
     PetscCall(SearchExchangeFaces(s, geometry, u, boxes, distance, &field->n_records, &field->records));
   PetscCall(PetscFree(boxes));
-  PetscCall(SearchToolEnd(s));
+  PetscCall(SearchStateEnd(s));
   FaceRecordsSort(field->n_records, field->records);
   PetscCall(PetscFree(geometry));
   if (s->maps && s->maps->ptr) PetscCall(FetchMaps(s, field)); /* partners are sought before there are maps */

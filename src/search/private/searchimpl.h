@@ -53,6 +53,9 @@ struct _n_ContactSearch {
   PetscReal           fit_reach;     /* SearchFitReach() */
   PetscReal          *rigid_x;       /* of a tool's nodes (length), while faces are collected; else NULL */
   char               *rigid_known;   /* of each of them: its position has been asked for */
+  PetscBool           holds;         /* between SearchStateBegin() and SearchStateEnd() */
+  int                 n_blocks_held; /* blocks that have been placed since, of slave and master */
+  FaceBlocks          blocks_held[2];
   PetscInt            room, points_room; /* of the facets and points of the last lists */
   Partners            partners;
   NeighbourLists      spare; /* lists that were given back, of which only what belongs to slave points is left, or NULL */
@@ -162,8 +165,8 @@ PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const Pe
 PetscErrorCode SearchPickRigidFaces(ContactSearch, const NodeGeometry *, PetscReal t, const PetscReal box[6],
                                     PetscReal distance, PetscInt *n, FaceRecord **);
 /* nearbox.c */
-PetscErrorCode SearchToolBegin(ContactSearch);
-PetscErrorCode SearchToolEnd(ContactSearch);
+PetscErrorCode SearchStateBegin(ContactSearch);
+PetscErrorCode SearchStateEnd(ContactSearch);
 PetscErrorCode SearchBlocks(ContactSearch, ContactSurface, const PetscReal *u, FaceBlocks *);
 PetscErrorCode SearchNearBox(ContactSearch, ContactSurface, const PetscReal *u, PetscReal t, const PetscReal box[6],
                              PetscReal distance, PetscInt *n, PetscInt **faces);
