@@ -12,7 +12,7 @@ static PetscErrorCode LendOffsets(Contact contact)
     Offsets            offsets = i % SIDES ? pair->master_offsets : pair->slave_offsets;
     PetscBool          alike   = PETSC_FALSE;
 
-    for (int k = 0; k < i && offsets && !alike; k++) {
+    for (int k = i - 1; k >= 0 && offsets && !alike; k--) {
       const ContactPair *other  = &contact->pairs[k / SIDES];
       Offsets            lender = k % SIDES ? other->master_offsets : other->slave_offsets;
 

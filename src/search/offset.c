@@ -36,7 +36,7 @@ struct _n_Offsets {
   /* The offsets that were taken last, with the displacements and the load parameter there. t_last is NAN before the
      first. */
   PetscReal *last, *u_last, t_last;
-  Offsets lender; /* offsets of the same surface by the same settings, or NULL */
+  Offsets lender; /* earlier offsets of the same surface by the same settings, or NULL */
   /* Of the step at hand: the offsets with which its lists were made, and of the time when these were replaced last what
      the solution asked for and by how much that differed. */
   PetscReal *held, *asked, *change;
@@ -138,6 +138,12 @@ PetscErrorCode OffsetsDestroy(Offsets *offsets)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The ends of the surface at a face. */
+static int FaceEnds(ContactSurface surface, PetscInt f)
+{
+  return surface->face_ends ? surface->face_ends[f] : 0;
+}
+
 /*@
   OffsetsLend - has offsets of a surface take those that others have at the same state, if both are made alike.
 
@@ -160,10 +166,10 @@ PetscErrorCode OffsetsLend(Offsets lender, Offsets o, PetscBool *alike)
   PetscFunctionBeginUser;
   *alike = (PetscBool)(a->group == b->group && a->rigid == b->rigid && a->n_faces == b->n_faces &&
                        a->turned == b->turned && lender->kind == o->kind && lender->finer == o->finer &&
-                       !a->face_ends == !b->face_ends && lender->fit.feature_angle == o->fit.feature_angle &&
+                       lender->fit.feature_angle == o->fit.feature_angle &&
                        lender->search->n_images == o->search->n_images);
   if (*alike) PetscCall(PetscArraycmp(a->faces, b->faces, a->n_faces, alike));
-  if (*alike && a->face_ends) PetscCall(PetscArraycmp(a->face_ends, b->face_ends, a->n_faces, alike));
+  for (PetscInt f = 0; f < a->n_faces && *alike; f++) *alike = (PetscBool)(FaceEnds(a, f) == FaceEnds(b, f));
   if (*alike) PetscCall(PetscArraycmp(lender->search->images, o->search->images, o->search->n_images, alike));
   if (*alike) o->lender = lender;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -253,12 +259,6 @@ static PetscErrorCode SagittaShape(FitSupport *fit, const OffsetFace *face, int 
 /* Handles a face while fits about it can be made. */
 typedef PetscErrorCode (*OffsetFaceFn)(Offsets, FitSupport *, const OffsetFace *, PetscInt f, void *context);
 
-/* Is a face at an end of the surface? */
-static PetscBool AtEnd(Offsets o, PetscInt f)
-{
-  return (PetscBool)(o->surface->face_ends && o->surface->face_ends[f]);
-}
-
 /* Visits own faces, some[] of them or all, with the surface at (u, t). */
 static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, const PetscBool *some,
                                    OffsetFaceFn visit, void *context)
@@ -274,7 +274,7 @@ static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, c
     OffsetFace       face  = {.candidate = own - fits.field.candidates,
                               .facet     = facet,
                               .rule      = SurfaceRule(o->surface, f, o->finer),
-                              .rung      = AtEnd(o, f) ? OFFSET_END_RUNG : RUNG_PLAIN};
+                              .rung      = FaceEnds(o->surface, f) ? OFFSET_END_RUNG : RUNG_PLAIN};
     double           area[FACE_RULE_POINTS];
 
     if (some && !some[f]) continue;
@@ -396,32 +396,38 @@ static PetscErrorCode TakeMissing(Offsets o, const PetscReal *u, PetscReal t, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes the offsets of a face from the lender if it has them. */
-static PetscErrorCode Borrow(Offsets o, PetscInt f, const PetscReal *lent, PetscReal *values, PetscBool *missing)
+/* Takes what is missing from lenders that have it at (u, t). */
+static PetscErrorCode Borrow(Offsets o, const PetscReal *u, PetscReal t, PetscReal *values, PetscBool *missing)
 {
-  const PetscInt block = FaceBlock(o);
+  const PetscInt block = FaceBlock(o), n = o->search->mesh->n_nodes * o->search->mesh->dim;
 
   PetscFunctionBeginUser;
-  if (!*missing || !lent || !o->lender->touched[f] || (o->once ? !o->lender->had[f] : PetscIsNanReal(lent[f * block])))
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArraycpy(&values[f * block], &lent[f * block], block));
-  *missing = PETSC_FALSE;
+  for (Offsets from = o->lender; from; from = from->lender) {
+    const PetscReal *lent = from->once ? from->used : from->last;
+    PetscBool        same = (PetscBool)(from->once || from->t_last == t);
+
+    if (same && !from->once) PetscCall(PetscArraycmp(u, from->u_last, n, &same));
+    for (PetscInt f = 0; f < o->surface->n_faces && same; f++) {
+      if (!missing[f] || !from->touched[f] || (from->once ? !from->had[f] : PetscIsNanReal(lent[f * block]))) continue;
+      PetscCall(PetscArraycpy(&values[f * block], &lent[f * block], block));
+      missing[f] = PETSC_FALSE;
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Takes the offsets of the wanted faces in the reference position, once each. */
 static PetscErrorCode TakeReference(Offsets o)
 {
-  const PetscReal *lent = o->lender ? o->lender->used : NULL;
-  PetscBool       *missing;
+  PetscBool *missing;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(o->surface->n_faces, &missing));
   for (PetscInt f = 0; f < o->surface->n_faces; f++) {
     missing[f] = (PetscBool)(o->wanted[f] && !o->had[f]);
-    if (o->wanted[f]) o->had[f] = PETSC_TRUE;
-    PetscCall(Borrow(o, f, lent, o->used, &missing[f]));
+    if (missing[f]) o->had[f] = PETSC_TRUE;
   }
+  PetscCall(Borrow(o, NULL, 0, o->used, missing));
   PetscCall(TakeMissing(o, NULL, 0, missing, o->used));
   PetscCall(PetscFree(missing));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -450,18 +456,16 @@ static PetscErrorCode TakeOnce(Offsets o, PetscBool *done)
 /* Takes the offsets of the wanted faces at (u, t) that are not among the last ones. */
 static PetscErrorCode TakeWanted(Offsets o, const PetscReal *u, PetscReal t)
 {
-  const PetscInt   block = FaceBlock(o), n = o->search->mesh->n_nodes * o->search->mesh->dim;
-  const PetscReal *lent = o->lender && o->lender->t_last == t ? o->lender->last : NULL;
-  PetscBool       *missing, same = PETSC_TRUE;
+  const PetscInt block = FaceBlock(o);
+  PetscBool     *missing;
 
   PetscFunctionBeginUser;
-  if (lent) PetscCall(PetscArraycmp(u, o->lender->u_last, n, &same));
   PetscCall(PetscMalloc1(o->surface->n_faces, &missing));
   for (PetscInt f = 0; f < o->surface->n_faces; f++) {
     missing[f] = (PetscBool)(o->wanted[f] && PetscIsNanReal(o->last[f * block]));
     if (missing[f]) PetscCall(PetscArrayzero(&o->last[f * block], block));
-    PetscCall(Borrow(o, f, same ? lent : NULL, o->last, &missing[f]));
   }
+  PetscCall(Borrow(o, u, t, o->last, missing));
   PetscCall(TakeMissing(o, u, t, missing, o->last));
   PetscCall(PetscFree(missing));
   PetscFunctionReturn(PETSC_SUCCESS);
