@@ -67,8 +67,8 @@ PetscErrorCode ContactNoteLost(ContactPair *pair, PetscReal t)
    made. It has then passed through the master, and another part of it is nearer now. */
 static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, ContactLost *lost)
 {
-  const NeighbourLists lists  = pair->lists;
-  const int            dim    = lists->dim;
+  const NeighbourLists lists = pair->lists;
+  const int            dim   = lists->dim;
   PetscReal            offset, x[FACE_MAX_NODES * 3];
   Facet                facet;
   Foot                 foot;

@@ -28,8 +28,8 @@ typedef struct {
   PetscReal X[3];
 } NodeKey;
 
-void FaceRecordFromSurface(ContactSurface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f,
-                           FaceRecord *);
+void           FaceRecordFromSurface(ContactSurface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f,
+                                     FaceRecord *);
 PetscErrorCode FaceRecordsShare(ContactSurface, const NodeGeometry *, const PetscReal *offset, const PetscInt count[],
                                 const PetscInt faces[], PetscInt *n, FaceRecord **received);
 void           FaceRecordsSort(PetscInt n, FaceRecord *);

@@ -64,7 +64,8 @@ PetscErrorCode SearchBlocks(ContactSearch s, ContactSurface surface, const Petsc
   PetscFunctionBeginUser;
   if (!surface->blocks)
     PetscCall(FaceBlocksCreate(s->mesh->dim, surface->n_faces, surface->faces, X, &surface->blocks));
-  for (int i = 0; i < s->n_blocks_held && s->holds; i++) held = (PetscBool)(held || s->blocks_held[i] == surface->blocks);
+  for (int i = 0; i < s->n_blocks_held && s->holds; i++)
+    held = (PetscBool)(held || s->blocks_held[i] == surface->blocks);
   if (!surface->rigid && !held) FaceBlocksPlace(surface->blocks, X, u);
   if (s->holds && !held) s->blocks_held[s->n_blocks_held++] = surface->blocks;
   *blocks = surface->blocks;
@@ -87,7 +88,7 @@ static void ReflectBox(const SurfaceImage *image, const PetscReal box[6], PetscR
    whose transpose is the way back. */
 static void BoxInTool(ContactSearch s, ContactSurface tool, PetscReal t, PetscReal box[6])
 {
-  const PetscReal length = s->mesh->size;
+  const PetscReal length  = s->mesh->size;
   PetscReal       zero[3] = {0, 0, 0}, origin[3], turn[3][3], out[6];
 
   LoadsRigidMotion(s->loads, tool->body, t, zero, origin);

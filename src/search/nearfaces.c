@@ -15,7 +15,7 @@ typedef struct {
 /* A side of the search as the grids see it. */
 typedef struct {
   ContactSurface   surface;
-  const PetscBool *some; /* these faces count; NULL: all */
+  const PetscBool *some;   /* these faces count; NULL: all */
   PetscReal        all[6]; /* box of the faces that count, with their images, over all ranks */
 } NearSide;
 
@@ -128,8 +128,8 @@ static void MarkCells(PetscInt f, const PetscReal box[6], void *context)
       for (int i = first[0]; i <= last[0]; i++) grid->met[(k * grid->n[1] + j) * grid->n[0] + i] = 1;
 }
 
-/* Makes the grid of a side for tests of the other one at a distance. Faces leave no mark that are farther from the other
-   side than this and a cell. Collective. */
+/* Makes the grid of a side for tests of the other one at a distance. Faces leave no mark that are farther from the
+   other side than this and a cell. Collective. */
 static PetscErrorCode GridCreate(ContactSearch s, const NearSide *side, const NearSide *other, const PetscReal *u,
                                  PetscReal t, PetscReal distance, NearGrid *grid)
 {

@@ -110,7 +110,8 @@ static PetscErrorCode LinkNodes(Mesh mesh, const ContactKeys *all, NeighbourList
 - lists - the lists with the choice of slave points; their nodes are set
 
   Note:
-  Contact nodes are the nodes of these points, the nodes of the listed faces, and the nodes of which live offsets are made.
+  Contact nodes are the nodes of these points, the nodes of the listed faces, and the nodes of which live offsets are
+made.
 @*/
 PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, NeighbourLists lists)
 {
@@ -663,8 +664,8 @@ void NeighbourListsPointGeometry(ContactSearch s, NeighbourLists lists, const Se
   }
 }
 
-/* Makes the slave points as combinations of the nodes of their faces, with fixed offsets. Pointers, shares and sides are
-   those of all lists of the search. */
+/* Makes the slave points as combinations of the nodes of their faces, with fixed offsets. Pointers, shares and sides
+   are those of all lists of the search. */
 static PetscErrorCode TakeSlaveShapes(NeighbourLists lists, SlavePoints slaves, PetscBool first)
 {
   const PetscInt entries = slaves->ptr[slaves->n];

@@ -58,8 +58,8 @@ typedef struct {
   PetscInt     n_held, *first_held;
   PetscSFNode *home_held;
 
-  PetscBool  empty;                  /* no slave point on any rank was searched: none can have a facet */
-  PetscInt   n_slaves;               /* slave points, in the order in which they were given */
+  PetscBool empty;    /* no slave point on any rank was searched: none can have a facet */
+  PetscInt  n_slaves; /* slave points, in the order in which they were given */
   /* Those that may have a partner, ascending. The others have no facets, and no nodes, positions or normals. */
   PetscInt   n_near, *near;
   PetscInt  *slave_ptr, *slave_node; /* the nodes of a slave point's own face come first, as in SlavePoints */

@@ -36,7 +36,7 @@ struct _n_Offsets {
   /* The offsets that were taken last, with the displacements and the load parameter there. t_last is NAN before the
      first. */
   PetscReal *last, *u_last, t_last;
-  Offsets lender; /* earlier offsets of the same surface by the same settings, or NULL */
+  Offsets    lender; /* earlier offsets of the same surface by the same settings, or NULL */
   /* Of the step at hand: the offsets with which its lists were made, and of the time when these were replaced last what
      the solution asked for and by how much that differed. */
   PetscReal *held, *asked, *change;
@@ -164,10 +164,10 @@ PetscErrorCode OffsetsLend(Offsets lender, Offsets o, PetscBool *alike)
   const ContactSurface a = lender->surface, b = o->surface;
 
   PetscFunctionBeginUser;
-  *alike = (PetscBool)(a->group == b->group && a->rigid == b->rigid && a->n_faces == b->n_faces &&
-                       a->turned == b->turned && lender->kind == o->kind && lender->finer == o->finer &&
-                       lender->fit.feature_angle == o->fit.feature_angle &&
-                       lender->search->n_images == o->search->n_images);
+  *alike =
+    (PetscBool)(a->group == b->group && a->rigid == b->rigid && a->n_faces == b->n_faces && a->turned == b->turned &&
+                lender->kind == o->kind && lender->finer == o->finer &&
+                lender->fit.feature_angle == o->fit.feature_angle && lender->search->n_images == o->search->n_images);
   if (*alike) PetscCall(PetscArraycmp(a->faces, b->faces, a->n_faces, alike));
   for (PetscInt f = 0; f < a->n_faces && *alike; f++) *alike = (PetscBool)(FaceEnds(a, f) == FaceEnds(b, f));
   if (*alike) PetscCall(PetscArraycmp(lender->search->images, o->search->images, o->search->n_images, alike));
@@ -379,7 +379,8 @@ static PetscInt FaceBlock(Offsets o)
   return FACE_RULE_POINTS * o->search->mesh->dim;
 }
 
-/* Takes the offsets of the missing faces of all ranks, with the surface at (u, t); u NULL: in the reference position. */
+/* Takes the offsets of the missing faces of all ranks, with the surface at (u, t); u NULL: in the reference position.
+ */
 static PetscErrorCode TakeMissing(Offsets o, const PetscReal *u, PetscReal t, const PetscBool *missing,
                                   PetscReal *values)
 {
@@ -547,8 +548,8 @@ PetscBool OffsetsChoose(Offsets o)
 - anew   - a step begins; otherwise faces that were wanted before stay so
 
   Note:
-  Only held offsets are left out elsewhere: they are 0 there. What is first wanted in a step is not extrapolated over it.
-  What is taken once stays.
+  Only held offsets are left out elsewhere: they are 0 there. What is first wanted in a step is not extrapolated over
+it. What is taken once stays.
 @*/
 PetscErrorCode OffsetsWant(Offsets o, const PetscBool *wanted, PetscBool anew)
 {
@@ -561,7 +562,7 @@ PetscErrorCode OffsetsWant(Offsets o, const PetscBool *wanted, PetscBool anew)
   for (PetscInt f = 0; f < o->surface->n_faces; f++) {
     o->wanted[f] = (PetscBool)(wanted[f] || (!anew && o->wanted[f]));
     if (o->wanted[f] && !o->touched[f]) Touch(o, f);
-    any           = any || o->touched[f];
+    any = any || o->touched[f];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, o->search->mesh->comm));
   o->blank = any ? PETSC_FALSE : PETSC_TRUE;

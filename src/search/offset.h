@@ -11,7 +11,8 @@
    OffsetsCreate() makes offsets of 0, and OffsetsWant() leaves out faces that no search will see. OffsetsChoose() says
    whether that is of any use. OffsetsExtrapolate() is called at the beginning of a step and OffsetsTake() when lists
    are made anew, and OffsetsDamp() where these replace those of the solve. OffsetsGet(),
-   OffsetsTouched() and OffsetsMaps() give the result to the search, and OffsetsArchive() writes or reads the state of the extrapolation. */
+   OffsetsTouched() and OffsetsMaps() give the result to the search, and OffsetsArchive() writes or reads the state of
+   the extrapolation. */
 #pragma once
 #include "files/archive.h"
 #include "search/facemap.h"

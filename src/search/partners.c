@@ -496,9 +496,9 @@ static PetscErrorCode MakeRoom(ContactSearch s)
    are those of SlavePointsNormals(). */
 static PetscErrorCode TestAnew(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal *normals)
 {
-  Partners      *at = &s->partners;
-  const PetscInt n = s->slaves->n, faces = s->master->n_faces;
-  const int      dim = s->mesh->dim;
+  Partners       *at = &s->partners;
+  const PetscInt  n = s->slaves->n, faces = s->master->n_faces;
+  const int       dim   = s->mesh->dim;
   const PetscBool first = (PetscBool)(at->thin == 0);
   PetscReal      *x, *normal, *face_normal, moved = 0, turned = 0;
 
@@ -549,8 +549,8 @@ static PetscErrorCode MarkFaces(SlavePoints points, const PetscBool *possible, P
 - motion - relative motion (length) for which lists are to be good
 
   Output Parameter:
-. normals - normals[3*n] of the slave points, as SlavePointsNormals() gives them: of those that may have a partner, or of
-            all where lists keep all faces
+. normals - normals[3*n] of the slave points, as SlavePointsNormals() gives them: of those that may have a partner, or
+of all where lists keep all faces
 
   Note:
   The answer is in the search's partners. Boxes are seen farther than a search would by a skin, and normals count as
@@ -568,8 +568,8 @@ PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, 
   if (!holds)
     PetscCall(TestAnew(s, u, t, motion, normals));
   else if (s->partners.any)
-    PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, s->keeps_faces ? NULL : s->partners.possible,
-                                 normals));
+    PetscCall(
+      SlavePointsNormals(s->slaves, s->n_images, s->images, u, s->keeps_faces ? NULL : s->partners.possible, normals));
   else if (s->keeps_faces)
     PetscCall(PetscArrayzero(normals, 3 * s->slaves->n));
   PetscFunctionReturn(PETSC_SUCCESS);

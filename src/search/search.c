@@ -249,21 +249,21 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
   PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, s->one_body, &tree)); /* none is averse then */
   for (PetscInt i = 0; i < lists->n_near; i++) {
-    const PetscInt q = lists->near[i];
-    Nearest look = {.lists      = lists,
-                    .slaves     = s->slaves,
-                    .candidates = field->candidates,
-                    .q          = q,
-                    .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
-                    .size       = s->slaves->size[q],
-                    .height     = s->slaves->height[q],
-                    .listed     = s->listed,
-                    .one_body   = s->one_body,
-                    .marks      = s->marks ? s->marks[q] : 0,
-                    .best       = -1,
-                    .aversed    = aversed,
-                    .least      = s->reach + motion,
-                    .tie        = FACET_TIE * (s->reach + motion)};
+    const PetscInt q    = lists->near[i];
+    Nearest        look = {.lists      = lists,
+                           .slaves     = s->slaves,
+                           .candidates = field->candidates,
+                           .q          = q,
+                           .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
+                           .size       = s->slaves->size[q],
+                           .height     = s->slaves->height[q],
+                           .listed     = s->listed,
+                           .one_body   = s->one_body,
+                           .marks      = s->marks ? s->marks[q] : 0,
+                           .best       = -1,
+                           .aversed    = aversed,
+                           .least      = s->reach + motion,
+                           .tie        = FACET_TIE * (s->reach + motion)};
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
     TakeOutward(&look);
@@ -271,11 +271,11 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
     PetscCall(FillSlave(lists, field, tree, fit, motion, s->partners.possible, &look, found, ends, &buffer));
   }
   BeginLists(lists, &next, lists->n_slaves, &buffer);
-  lists->list_point                 = buffer.point;
-  s->room                           = buffer.n;
-  s->points_room                    = buffer.n_points;
-  lists->facet                      = buffer.facet;
-  lists->facet_size                 = buffer.size;
+  lists->list_point = buffer.point;
+  s->room           = buffer.n;
+  s->points_room    = buffer.n_points;
+  lists->facet      = buffer.facet;
+  lists->facet_size = buffer.size;
   PetscCall(SearchPartnersLearn(s, lists, field, tree));
   BoxTreeDestroy(&tree);
   PetscCall(PetscFree3(found, ends, buffer.position));

@@ -1,9 +1,9 @@
 /* Internals that the files of the search share and nobody else sees: faces on their way between ranks, candidates,
    growing lists, fits that are being made.
 
-   SearchFieldCreate() (searchfield.c) collects faces with faceexchange.c, makes candidates with candidate.c and numbers
-   nodes and points with neighbourlists.c. FitSupportCreate() (fitsupport.c) then prepares the fits, and
-   FitSupportSlave() makes one for each slave point. Offsets and the misses of a master's nodes use
+   SearchFieldCreate() (searchfield.c) collects faces with nearbox.c and faceexchange.c, makes candidates with
+   candidate.c and numbers nodes and points with neighbourlists.c. FitSupportCreate() (fitsupport.c) then prepares the
+   fits, and FitSupportSlave() makes one for each slave point. Offsets and the misses of a master's nodes use
    MasterFitsCreate() and FitSupportClimb() for fits of the surface itself. */
 #pragma once
 #include "base/boxtree.h"
@@ -58,7 +58,7 @@ struct _n_ContactSearch {
   FaceBlocks          blocks_held[2];
   PetscInt            room, points_room; /* of the facets and points of the last lists */
   Partners            partners;
-  NeighbourLists      spare; /* lists that were given back, of which only what belongs to slave points is left, or NULL */
+  NeighbourLists spare; /* lists that were given back, of which only what belongs to slave points is left, or NULL */
 };
 
 /* A face or a mirror image of it, in the present position. */
