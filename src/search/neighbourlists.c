@@ -27,17 +27,21 @@ static NodeKey ToolKey(Mesh mesh, PetscInt node)
   return key;
 }
 
-/* Marks the nodes of which the slave points of the lists are made, and returns their number. */
+/* Marks the nodes of which the slave points of the lists and their levers are made, and returns their number. */
 static PetscInt MarkSlaveNodes(ContactSearch s, NeighbourLists lists, char *marks)
 {
-  PetscInt n = 0;
+  const SlavePoints slaves = s->slaves;
+  PetscInt          n      = 0;
 
   for (PetscInt i = 0; i < lists->n_near; i++) {
-    for (PetscInt k = s->slaves->ptr[lists->near[i]]; k < s->slaves->ptr[lists->near[i] + 1]; k++) {
-      n += !marks[s->slaves->node[k]];
-      marks[s->slaves->node[k]] = 1;
-    }
+    const PetscInt q = lists->near[i];
+
+    for (PetscInt k = slaves->ptr[q]; k < slaves->ptr[q + 1]; k++) marks[slaves->node[k]] = 1;
+    for (PetscInt k = slaves->lever_ptr ? slaves->lever_ptr[q] : 0; slaves->lever_ptr && k < slaves->lever_ptr[q + 1];
+         k++)
+      marks[slaves->lever_node[k]] = 1;
   }
+  for (PetscInt k = 0; lists->n_near && k < slaves->n_nodes; k++) n += marks[k];
   return n;
 }
 

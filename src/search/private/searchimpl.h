@@ -150,7 +150,7 @@ PetscReal      CandidateBoxDistance(int dim, const Candidate *, const PetscReal 
 PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, PetscBool facing, BoxTree *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
 PetscErrorCode ListBufferAddPoints(ListBuffer *, PetscInt first, PetscInt n, const PetscInt *points);
-/* faceexchange.c */
+/* searchbox.c */
 void      SearchSlaveBox(ContactSearch, PetscReal box[6]);
 void      SearchMasterBox(ContactSearch, const PetscReal *u, PetscReal t, const PetscBool *some, PetscReal box[6]);
 void      SearchBoxEmpty(PetscReal box[6]);
@@ -160,6 +160,7 @@ PetscBool SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, Petsc
 void      SearchRigidPosition(ContactSearch, PetscInt n, PetscReal t, PetscReal x[3]);
 PetscBool SearchFaceMeets(int dim, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance);
 PetscBool SearchSomeImageMeets(ContactSearch, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance);
+/* faceexchange.c */
 PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const PetscReal *u, const PetscReal *boxes,
                                    PetscReal distance, PetscInt *n, FaceRecord **);
 PetscErrorCode SearchPickRigidFaces(ContactSearch, const NodeGeometry *, PetscReal t, const PetscReal box[6],
