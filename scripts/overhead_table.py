@@ -21,8 +21,8 @@ COLUMNS = ("dofs", "formulation", "way", "status", "iterations", "krylov", "rim"
            "later_share")
 
 
-def cases():
-    return [(size, formulation, way) for size in SIZES for formulation in FORMULATIONS for way in WAYS]
+def cases(sizes):
+    return [(size, formulation, way) for size in sizes for formulation in FORMULATIONS for way in WAYS]
 
 
 def run(case, args, steps):
@@ -53,11 +53,11 @@ def later_share(one, many, steps):
 def solve(case, args):
     _, formulation, way = case
     summary, _ = run(case, args, 1)
-    share = later_share(summary, *run(case, args, STEPS))
+    share = f"{later_share(summary, *run(case, args, STEPS)):.4f}" if case[0] <= args.later else ""
     return dict(zip(COLUMNS, (summary["dofs"], formulation, way, summary["status"], summary["newton_iterations"],
                               summary["krylov_iterations"], f"{summary['probes']['rim']:.8g}",
                               f"{search_seconds(summary):.3g}", f"{summary['cpu_s']:.1f}",
-                              f"{summary['peak_rss_mb']:.0f}", f"{share:.4f}")))
+                              f"{summary['peak_rss_mb']:.0f}", share)))
 
 
 def table(rows):
@@ -81,7 +81,10 @@ def table(rows):
 def main():
     parser = table_parser(__doc__, "all_overhead")
     parser.add_argument("--jobs", type=int, default=1, help="runs at the same time")
-    fill_table(parser.parse_args(), COLUMNS, solve, cases(), table)
+    parser.add_argument("--sizes", type=int, nargs="*", default=SIZES, help="faces around the inner ring")
+    parser.add_argument("--later", type=int, default=SIZES[-1], help="largest size that is run in four steps as well")
+    args = parser.parse_args()
+    fill_table(args, COLUMNS, solve, cases(args.sizes), table)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,27 @@
 /* The contact object: all pairs of a scene, their accepted state, and what a checkpoint keeps of them. */
 #include "contactimpl.h"
 
+/* Offsets of surfaces that occur in several pairs are taken once, by the first one. */
+static PetscErrorCode LendOffsets(Contact contact)
+{
+  enum { SIDES = 2 };
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < SIDES * contact->n_pairs; i++) {
+    const ContactPair *pair    = &contact->pairs[i / SIDES];
+    Offsets            offsets = i % SIDES ? pair->master_offsets : pair->slave_offsets;
+    PetscBool          alike   = PETSC_FALSE;
+
+    for (int k = i - 1; k >= 0 && offsets && !alike; k--) {
+      const ContactPair *other  = &contact->pairs[k / SIDES];
+      Offsets            lender = k % SIDES ? other->master_offsets : other->slave_offsets;
+
+      if (lender) PetscCall(OffsetsLend(lender, offsets, &alike));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactCreate - creates all pairs of the scene, without lists.
 
@@ -53,6 +74,7 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
     dense = PetscMax(dense, PetscMax(smoother->dense_capacity, contact->pairs[p].facets->dense_capacity));
     if (smoother->workspace) workspace = PetscMax(workspace, smoother->workspace(mesh->dim));
   }
+  PetscCall(LendOffsets(contact));
   PetscCall(ContactRefuseRepeated(contact));
   PetscCall(ContactOverride(contact));
   PetscCall(ContactWorkCreate(capacity, dense, workspace, &contact->work));

@@ -7,7 +7,7 @@ static PetscErrorCode PairNormals(const ContactPair *pair, const PetscReal *u, P
 {
   PetscFunctionBeginUser;
   PetscCall(SlavePointsMove(pair->slaves, u));
-  PetscCall(SlavePointsNormals(pair->slaves, pair->n_images, pair->images, u, normal));
+  PetscCall(SlavePointsNormals(pair->slaves, pair->n_images, pair->images, u, NULL, normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -77,7 +77,8 @@ static PetscErrorCode PairSetOffsets(ContactPair *pair)
   if (pair->slave_offsets && OffsetsMaps(pair->slave_offsets))
     PetscCall(SlavePointsSetMaps(pair->slaves, OffsetsMaps(pair->slave_offsets)));
   else if (pair->slave_offsets)
-    PetscCall(SlavePointsSetOffsets(pair->slaves, OffsetsGet(pair->slave_offsets)));
+    PetscCall(
+      SlavePointsSetOffsets(pair->slaves, OffsetsGet(pair->slave_offsets), OffsetsTouched(pair->slave_offsets)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,7 +87,7 @@ static PetscErrorCode PairSetOffsets(ContactPair *pair)
 static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   PetscFunctionBeginUser;
-  PetscCall(NeighbourListsDestroy(&pair->next));
+  PetscCall(NeighbourListsGiveBack(pair->search, &pair->next));
   PetscCall(PairSetOffsets(pair));
   pair->next_motion = motion;
   pair->stays       = PETSC_FALSE;
@@ -217,7 +218,7 @@ static PetscErrorCode PairTakeNext(ContactPair *pair)
     pair->stays = PETSC_FALSE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(NeighbourListsDestroy(&pair->lists));
+  PetscCall(NeighbourListsGiveBack(pair->search, &pair->lists));
   pair->lists     = pair->next;
   pair->next      = NULL;
   pair->projected = PETSC_FALSE;
@@ -294,7 +295,7 @@ static PetscErrorCode PairWantOffsets(ContactPair *pair, const PetscReal *u, Pet
 
   PetscFunctionBeginUser;
   if (!pair->slave_offsets || !pair->master_offsets) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!OffsetsFollow(pair->slave_offsets) && !OffsetsFollow(pair->master_offsets)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!OffsetsChoose(pair->slave_offsets) && !OffsetsChoose(pair->master_offsets)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(pair->slave->n_faces, &slave, pair->master->n_faces, &master));
   PetscCall(SearchNearFaces(pair->search, u, t, motion, slave, master));
   PetscCall(OffsetsWant(pair->slave_offsets, slave, begins));
@@ -511,6 +512,16 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
   return (PetscBool)(!PetscIsNanReal(same) && (!PairDrifts(pair) || PetscAbsReal(same - old) <= drift));
 }
 
+/* Has a term a gap, by the last residual or by the gaps of its points from fresh lists? */
+static PetscBool TermHasGap(const ContactPair *pair, PetscInt c, const PetscReal *gaps)
+{
+  PetscBool has = (PetscBool)!PetscIsNanReal(pair->now.gap[c]);
+
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && !has; k++)
+    has = (PetscBool)!PetscIsNanReal(gaps[pair->term_point[k]]);
+  return has;
+}
+
 /* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. */
 static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscReal lag, PetscBool *agrees)
 {
@@ -528,7 +539,9 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   PetscCall(ContactPointGaps(pair, pair->next, factor, NULL, NULL, gaps, NULL));
   if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
-    *agrees = TermAgrees(pair, pair->next, alike, c, gaps, pair->next_factor, t, depth, pressure, drift, factor_drift);
+    if (TermHasGap(pair, c, gaps)) /* few have where most points have no partner */
+      *agrees =
+        TermAgrees(pair, pair->next, alike, c, gaps, pair->next_factor, t, depth, pressure, drift, factor_drift);
   PetscCall(PetscFree2(gaps, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -31,7 +31,25 @@ static PetscErrorCode PairMove(Contact contact, ContactPair *pair, const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Longest motion of a pair's contact nodes, over all ranks. */
+/* Longest motion of this rank's slave nodes, of which not all are contact nodes where most points have no partner. */
+static PetscReal SlaveMotion(Contact contact, const ContactPair *pair, const PetscReal *du)
+{
+  const int   dim  = contact->mesh->dim;
+  PetscReal   most = 0;
+  PetscMPIInt rank;
+
+  if (!pair->master || MPI_Comm_rank(contact->mesh->comm, &rank)) return 0;
+  for (PetscInt i = 0; i < pair->slaves->n_nodes; i++) {
+    const NodeKey *node   = &pair->slaves->nodes[i];
+    PetscReal      square = 0;
+
+    for (int d = 0; d < dim && node->owner == rank; d++) square += PetscSqr(du[node->local * dim + d]);
+    most = PetscMax(most, square);
+  }
+  return PetscSqrtReal(most);
+}
+
+/* Longest motion of a pair's contact nodes and slave nodes, over all ranks. */
 static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const PetscReal *du, PetscReal t,
                                      PetscReal t_next, PetscReal *motion)
 {
@@ -47,6 +65,7 @@ static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const P
     for (int d = 0; d < dim; d++) square += PetscSqr(values[i * dim + d]);
     *motion = PetscMax(*motion, PetscSqrtReal(square));
   }
+  *motion = PetscMax(*motion, SlaveMotion(contact, pair, du));
   PetscCall(PetscFree(values));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, motion, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -27,7 +27,7 @@ static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, Pets
   PetscBool            found  = PETSC_FALSE;
 
   *lost = (ContactLost){offset - pair->point_gap[q], NAN, pair->size[c], pair->node[c]};
-  if (pair->force[c] == 0 || !(lost->depth > DepthThatCounts(pair, c, q))) return PETSC_FALSE;
+  if (!(lost->depth > DepthThatCounts(pair, c, q))) return PETSC_FALSE;
   if (pair->master && next->facet_ptr[q] == next->facet_ptr[q + 1]) return PETSC_TRUE;
   if (pair->next_factor[q] == 0) return PETSC_FALSE;
   if (!ContactPointEvaluate(pair, pair->facets, next, q, -1, SMOOTHER_GAP, &found) && found)
@@ -54,7 +54,7 @@ PetscErrorCode ContactNoteLost(ContactPair *pair, PetscReal t)
 {
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n_sides; c++) {
-    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && pair->force[c] != 0; k++) {
       ContactLost lost;
 
       if (PointLost(pair, c, pair->term_point[k], t, &lost)) KeepDeepest(pair, &lost);
@@ -67,14 +67,15 @@ PetscErrorCode ContactNoteLost(ContactPair *pair, PetscReal t)
    made. It has then passed through the master, and another part of it is nearer now. */
 static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, ContactLost *lost)
 {
-  const NeighbourLists lists  = pair->lists;
-  const int            dim    = lists->dim;
-  const PetscReal      offset = ContactTermOffset(pair, c, t);
-  PetscReal            x[FACE_MAX_NODES * 3];
+  const NeighbourLists lists = pair->lists;
+  const int            dim   = lists->dim;
+  PetscReal            offset, x[FACE_MAX_NODES * 3];
   Facet                facet;
   Foot                 foot;
 
-  if (!pair->master || lists->nearest[q] < 0 || !(pair->point_gap[q] - offset >= 0)) return PETSC_FALSE;
+  if (!pair->master || lists->nearest[q] < 0) return PETSC_FALSE; /* most points */
+  offset = ContactTermOffset(pair, c, t);
+  if (!(pair->point_gap[q] - offset >= 0)) return PETSC_FALSE;
   facet = lists->facet[lists->facet_ptr[q] + lists->nearest[q]];
   for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
     NeighbourListsRelative(lists, q, lists->list_point[lists->list_ptr[q] + facet.nodes[a]], &x[a * dim]);

@@ -1,219 +1,5 @@
-/* The exchange of master faces: boxes of the ranks, and the faces that may reach them. */
+/* The exchange of master faces: those that may reach the boxes of the ranks. */
 #include "searchimpl.h"
-
-/*@
-  SearchBoxEmpty - makes a box without any point.
-
-  Not collective
-
-  Output Parameter:
-. box - lower then upper corner
-@*/
-void SearchBoxEmpty(PetscReal box[6])
-{
-  for (int d = 0; d < 3; d++) {
-    box[d]     = PETSC_MAX_REAL;
-    box[3 + d] = PETSC_MIN_REAL;
-  }
-}
-
-/*@
-  SearchBoxAdd - makes a box so large that it holds a point.
-
-  Not collective
-
-  Input Parameters:
-+ dim - 2 or 3
-- x   - x[dim], the point
-
-  Input/Output Parameter:
-. box - lower then upper corner
-@*/
-void SearchBoxAdd(PetscReal box[6], int dim, const PetscReal *x)
-{
-  for (int d = 0; d < dim; d++) {
-    box[d]     = PetscMin(box[d], x[d]);
-    box[3 + d] = PetscMax(box[3 + d], x[d]);
-  }
-}
-
-/*@
-  SearchBoxesMeet - tests whether two boxes are within a distance of each other.
-
-  Not collective
-
-  Input Parameters:
-+ a        - box, lower then upper corner
-. b        - another box
-. dim      - 2 or 3
-- distance - the distance (length)
-@*/
-PetscBool SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, PetscReal distance)
-{
-  for (int d = 0; d < dim; d++)
-    if (a[d] > b[3 + d] + distance || b[d] > a[3 + d] + distance) return PETSC_FALSE;
-  return PETSC_TRUE;
-}
-
-/*@
-  SearchRigidPosition - computes the position of a node of the rigid tool at load parameter t.
-
-  Not collective
-
-  Input Parameters:
-+ s - the search
-. n - node of the tool
-- t - load parameter
-
-  Output Parameter:
-. x - position relative to the mesh's centre (length)
-@*/
-void SearchRigidPosition(ContactSearch s, PetscInt n, PetscReal t, PetscReal x[3])
-{
-  const int dim  = s->mesh->dim;
-  PetscReal X[3] = {0, 0, 0};
-
-  for (int d = 0; d < dim; d++) X[d] = s->master->rigid->coords[n * dim + d];
-  LoadsRigidMotion(s->loads, s->master->body, t, X, x);
-}
-
-/*@
-  SearchFacePositions - computes the positions of the nodes of a face of this rank.
-
-  Not collective
-
-  Input Parameters:
-+ s       - the search
-. surface - its master or its slave
-. f       - number of the face
-. u       - local displacements (length); NULL: of a rigid tool
-- t       - load parameter, for rigid tools
-
-  Output Parameter:
-. x - x[nodes of the face][dim] (length)
-@*/
-void SearchFacePositions(ContactSearch s, ContactSurface surface, PetscInt f, const PetscReal *u, PetscReal t,
-                         PetscReal *x)
-{
-  const int    dim   = s->mesh->dim;
-  const Facet *facet = &surface->faces[f];
-
-  for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
-    PetscReal y[3];
-
-    if (surface->rigid && s->rigid_x)
-      for (int d = 0; d < dim; d++) y[d] = s->rigid_x[facet->nodes[a] * dim + d];
-    else if (surface->rigid)
-      SearchRigidPosition(s, facet->nodes[a], t, y);
-    for (int d = 0; d < dim; d++)
-      x[a * dim + d] =
-        surface->rigid ? y[d] : s->mesh->coords[facet->nodes[a] * dim + d] + u[facet->nodes[a] * dim + d];
-  }
-}
-
-/*@
-  SearchSlaveBox - computes the box of this rank's slave points that may have a partner, after their last move.
-
-  Not collective
-
-  Input Parameter:
-. s - the search
-
-  Output Parameter:
-. box - lower then upper corner
-@*/
-void SearchSlaveBox(ContactSearch s, PetscReal box[6])
-{
-  const int dim = s->mesh->dim;
-
-  SearchBoxEmpty(box);
-  for (PetscInt q = 0; q < s->slaves->n; q++) {
-    PetscReal x[3];
-
-    if (s->partners.possible && !s->partners.possible[q]) continue;
-    SlavePointsPosition(s->slaves, q, x);
-    SearchBoxAdd(box, dim, x);
-  }
-}
-
-/*@
-  SearchMasterBox - computes the box of this rank's own faces of the master.
-
-  Not collective
-
-  Input Parameters:
-+ s    - the search
-. u    - local displacements (length)
-. t    - load parameter, for rigid tools
-- some - some[faces]: only these faces count; NULL: all do
-
-  Output Parameter:
-. box - lower then upper corner
-
-  Note:
-  A rigid tool has all its faces on every rank.
-@*/
-void SearchMasterBox(ContactSearch s, const PetscReal *u, PetscReal t, const PetscBool *some, PetscReal box[6])
-{
-  const int dim = s->mesh->dim;
-
-  SearchBoxEmpty(box);
-  for (PetscInt f = 0; f < s->master->n_faces; f++) {
-    PetscReal x[FACE_MAX_NODES * 3];
-
-    if (some && !some[f]) continue;
-    SearchFacePositions(s, s->master, f, u, t, x);
-    for (int a = 0; a < ElementGet(s->master->faces[f].type)->nodes; a++) SearchBoxAdd(box, dim, &x[a * dim]);
-  }
-}
-
-/*@
-  SearchSomeImageMeets - tests whether any mirror image of a face comes within a distance of a box.
-
-  Not collective
-
-  Input Parameters:
-+ s        - the search
-. n        - number of nodes of the face
-. x        - x[n*dim], their positions (length)
-. box      - lower then upper corner
-- distance - the distance (length)
-@*/
-PetscBool SearchSomeImageMeets(ContactSearch s, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance)
-{
-  const int dim = s->mesh->dim;
-
-  for (int m = 0; m < s->n_images; m++) {
-    PetscReal face[6], y[3];
-
-    if (s->images[m].left_out) continue;
-    SearchBoxEmpty(face);
-    for (int a = 0; a < n; a++) {
-      SurfaceReflect(&s->images[m], dim, &x[a * dim], y);
-      SearchBoxAdd(face, dim, y);
-    }
-    if (SearchBoxesMeet(face, box, dim, distance)) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
-/* The boxes of the ranks with which the faces are compared. */
-typedef struct {
-  ContactSearch    s;
-  const PetscReal *u, *boxes;
-  PetscReal        distance;
-} Reach;
-
-/* A face goes to each rank whose box it may reach. */
-static PetscBool ReachesBox(const void *context, PetscInt f, PetscMPIInt r)
-{
-  const Reach *reach = context;
-  PetscReal    x[FACE_MAX_NODES * 3];
-
-  SearchFacePositions(reach->s, reach->s->master, f, reach->u, 0, x);
-  return SearchSomeImageMeets(reach->s, ElementGet(reach->s->master->faces[f].type)->nodes, x, &reach->boxes[6 * r],
-                              reach->distance);
-}
 
 /*@
   SearchExchangeFaces - sends this rank's faces of a deformable master to every rank whose box they may reach, itself
@@ -236,10 +22,24 @@ PetscErrorCode SearchExchangeFaces(ContactSearch s, const NodeGeometry *geometry
                                    const PetscReal *boxes, PetscReal distance, PetscInt *n_records,
                                    FaceRecord **records)
 {
-  const Reach reach = {s, u, boxes, distance};
+  PetscMPIInt size;
+  PetscInt   *count, *faces = NULL, total = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(FaceRecordsShare(s->master, geometry, s->offset, ReachesBox, &reach, n_records, records));
+  PetscCallMPI(MPI_Comm_size(s->mesh->comm, &size));
+  PetscCall(PetscMalloc1(size, &count));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    PetscInt *near;
+
+    PetscCall(SearchNearBox(s, s->master, u, 0, &boxes[6 * r], distance, &count[r], &near));
+    PetscCall(PetscRealloc((total + count[r]) * sizeof(*faces), &faces));
+    PetscCall(PetscArraycpy(faces + total, near, count[r]));
+    total += count[r];
+    PetscCall(PetscFree(near));
+  }
+  PetscCall(FaceRecordsShare(s->master, geometry, s->offset, count, faces, n_records, records));
+  PetscCall(PetscFree(faces));
+  PetscCall(PetscFree(count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -262,15 +62,13 @@ PetscErrorCode SearchExchangeFaces(ContactSearch s, const NodeGeometry *geometry
 PetscErrorCode SearchPickRigidFaces(ContactSearch s, const NodeGeometry *geometry, PetscReal t, const PetscReal box[6],
                                     PetscReal distance, PetscInt *n_records, FaceRecord **records)
 {
-  PetscFunctionBeginUser;
-  *n_records = 0;
-  PetscCall(PetscMalloc1(s->master->n_faces, records));
-  for (PetscInt f = 0; f < s->master->n_faces; f++) {
-    PetscReal x[FACE_MAX_NODES * 3];
+  PetscInt *faces;
 
-    SearchFacePositions(s, s->master, f, NULL, t, x);
-    if (!SearchSomeImageMeets(s, ElementGet(s->master->faces[f].type)->nodes, x, box, distance)) continue;
-    FaceRecordFromSurface(s->master, geometry, s->offset, f, &(*records)[(*n_records)++]);
-  }
+  PetscFunctionBeginUser;
+  PetscCall(SearchNearBox(s, s->master, NULL, t, box, distance, n_records, &faces));
+  PetscCall(PetscMalloc1(*n_records, records));
+  for (PetscInt i = 0; i < *n_records; i++)
+    FaceRecordFromSurface(s->master, geometry, s->offset, faces[i], &(*records)[i]);
+  PetscCall(PetscFree(faces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -72,7 +72,7 @@ static PetscErrorCode ExchangeRecords(MPI_Comm comm, const PetscInt count[], con
 }
 
 /*@
-  FaceRecordsShare - sends the faces of this rank to every rank that wants them, itself included.
+  FaceRecordsShare - sends faces of this rank to the ranks that want them, itself included.
 
   Collective
 
@@ -80,8 +80,8 @@ static PetscErrorCode ExchangeRecords(MPI_Comm comm, const PetscInt count[], con
 + surface  - the surface
 . geometry - as in FaceRecordFromSurface()
 . offset   - as in FaceRecordFromSurface()
-. wanted   - wanted(context, f, r): does rank r want face f of this rank?
-- context  - passed to wanted()
+. count    - count[ranks]: number of faces that each rank wants
+- faces    - these faces, rank after rank
 
   Output Parameters:
 + n        - number of records that arrived
@@ -91,30 +91,29 @@ static PetscErrorCode ExchangeRecords(MPI_Comm comm, const PetscInt count[], con
   The caller frees received with PetscFree().
 @*/
 PetscErrorCode FaceRecordsShare(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset,
-                                FaceWantedFn wanted, const void *context, PetscInt *n, FaceRecord **received)
+                                const PetscInt count[], const PetscInt faces[], PetscInt *n, FaceRecord **received)
 {
   const MPI_Comm comm = surface->mesh->comm;
   PetscMPIInt    size, rank;
-  PetscInt      *count, total = 0, room = PetscMax(1, surface->n_faces);
+  PetscInt       total = 0;
   FaceRecord    *send;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(PetscCalloc1(size, &count));
-  PetscCall(PetscMalloc1(room, &send));
-  for (PetscMPIInt r = 0; r < size; r++) {
-    for (PetscInt f = 0; f < surface->n_faces; f++) {
-      if (!wanted(context, f, r)) continue;
-      if (total == room) PetscCall(PetscRealloc((room *= 2) * sizeof(FaceRecord), &send));
-      FaceRecordFromSurface(surface, geometry, offset, f, &send[total]);
-      send[total++].home = rank;
-      count[r]++;
-    }
+  for (PetscMPIInt r = 0; r < size; r++) total += count[r];
+  PetscCall(PetscMalloc1(total, &send));
+  for (PetscInt i = 0; i < total; i++) {
+    FaceRecordFromSurface(surface, geometry, offset, faces[i], &send[i]);
+    send[i].home = rank;
+  }
+  if (size == 1) {
+    *n        = total;
+    *received = send;
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(ExchangeRecords(comm, count, send, n, received));
   PetscCall(PetscFree(send));
-  PetscCall(PetscFree(count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -28,12 +28,10 @@ typedef struct {
   PetscReal X[3];
 } NodeKey;
 
-void FaceRecordFromSurface(ContactSurface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f,
-                           FaceRecord *);
-/* Does rank r want face f of this rank? */
-typedef PetscBool (*FaceWantedFn)(const void *context, PetscInt f, PetscMPIInt r);
-PetscErrorCode FaceRecordsShare(ContactSurface, const NodeGeometry *, const PetscReal *offset, FaceWantedFn,
-                                const void *context, PetscInt *n, FaceRecord **received);
+void           FaceRecordFromSurface(ContactSurface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f,
+                                     FaceRecord *);
+PetscErrorCode FaceRecordsShare(ContactSurface, const NodeGeometry *, const PetscReal *offset, const PetscInt count[],
+                                const PetscInt faces[], PetscInt *n, FaceRecord **received);
 void           FaceRecordsSort(PetscInt n, FaceRecord *);
 void           FaceRecordKeys(const FaceRecord *, NodeKey *);
 PetscInt       NodeKeysUnique(PetscInt n, NodeKey *);

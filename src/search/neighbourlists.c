@@ -27,19 +27,42 @@ static NodeKey ToolKey(Mesh mesh, PetscInt node)
   return key;
 }
 
+/* Marks the nodes of which the slave points of the lists and their levers are made, and returns their number. */
+static PetscInt MarkSlaveNodes(ContactSearch s, NeighbourLists lists, char *marks)
+{
+  const SlavePoints slaves = s->slaves;
+  PetscInt          n      = 0;
+
+  for (PetscInt i = 0; i < lists->n_near; i++) {
+    const PetscInt q = lists->near[i];
+
+    for (PetscInt k = slaves->ptr[q]; k < slaves->ptr[q + 1]; k++) marks[slaves->node[k]] = 1;
+    for (PetscInt k = slaves->lever_ptr ? slaves->lever_ptr[q] : 0; slaves->lever_ptr && k < slaves->lever_ptr[q + 1];
+         k++)
+      marks[slaves->lever_node[k]] = 1;
+  }
+  for (PetscInt k = 0; lists->n_near && k < slaves->n_nodes; k++) n += marks[k];
+  return n;
+}
+
 /* Collects the keys of the slave nodes, of the records' nodes and of the nodes of which live offsets are made. */
-static PetscErrorCode CollectKeys(ContactSearch s, const SearchField *field, ContactKeys *all)
+static PetscErrorCode CollectKeys(ContactSearch s, const SearchField *field, NeighbourLists lists, ContactKeys *all)
 {
   const PetscBool rigid     = (PetscBool)(s->master && s->master->rigid);
-  const PetscInt  n_records = field->n_records, n_slaves = s->slaves ? s->slaves->n_nodes : 0;
+  const PetscInt  n_records = field->n_records, n_nodes = s->slaves ? s->slaves->n_nodes : 0;
   const FaceMaps  none = {0}, *maps[] = {&field->maps, s->slaves ? &s->slaves->maps : &none};
-  PetscInt        n = n_slaves, n_rigid = 0, n_mapped = 0, n_tool = s->tool ? TOOL_NODES : 0;
+  PetscInt        n = 0, n_slaves, n_rigid = 0, n_mapped = 0, n_tool = s->tool ? TOOL_NODES : 0;
+  char           *marks;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n_nodes, &marks));
+  n_slaves = MarkSlaveNodes(s, lists, marks);
   for (int m = 0; m < 2; m++) n_mapped += maps[m]->n ? maps[m]->ptr[maps[m]->n] : 0;
   PetscCall(PetscMalloc2(n_slaves + n_mapped + n_tool + FACE_MAX_NODES * n_records, &all->keys,
                          FACE_MAX_NODES * n_records, &all->tool));
-  for (PetscInt i = 0; i < n_slaves; i++) all->keys[i] = s->slaves->nodes[i];
+  for (PetscInt i = 0; i < n_nodes; i++)
+    if (marks[i]) all->keys[n++] = s->slaves->nodes[i];
+  PetscCall(PetscFree(marks));
   for (PetscInt r = 0; r < n_records; r++) {
     PetscInt *count = rigid ? &n_rigid : &n;
 
@@ -88,10 +111,11 @@ static PetscErrorCode LinkNodes(Mesh mesh, const ContactKeys *all, NeighbourList
 
   Input/Output Parameters:
 + field - its records' facets are rewritten in numbers of contact nodes
-- lists - the lists, whose nodes are set
+- lists - the lists with the choice of slave points; their nodes are set
 
   Note:
-  Contact nodes are the slave nodes, the nodes of the listed faces, and the nodes of which live offsets are made.
+  Contact nodes are the nodes of these points, the nodes of the listed faces, and the nodes of which live offsets are
+made.
 @*/
 PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, NeighbourLists lists)
 {
@@ -100,7 +124,7 @@ PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, Ne
   ContactKeys     all;
 
   PetscFunctionBeginUser;
-  PetscCall(CollectKeys(s, field, &all));
+  PetscCall(CollectKeys(s, field, lists, &all));
   lists->n_deformable = all.n;
   lists->n_nodes      = all.n + all.n_rigid;
   lists->tool         = s->tool ? all.n - TOOL_NODES : -1; /* their ids are the largest */
@@ -296,7 +320,8 @@ PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const
   lists->t = t;
   for (PetscInt p = 0; p < lists->n_points; p++) PointMap(s, lists, p, lists->u, &lists->point_u[p * lists->dim]);
   if (turns) TurnOffsets(s, lists, t);
-  for (PetscInt q = 0; q < lists->n_slaves; q++) SlaveMap(s, lists, q, lists->u, &lists->slave_u[q * lists->dim]);
+  for (PetscInt i = 0; i < lists->n_near; i++)
+    SlaveMap(s, lists, lists->near[i], lists->u, &lists->slave_u[lists->near[i] * lists->dim]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -643,21 +668,34 @@ void NeighbourListsPointGeometry(ContactSearch s, NeighbourLists lists, const Se
   }
 }
 
-/* Makes the slave points as combinations of the nodes of their faces, with fixed offsets. */
-static PetscErrorCode TakeSlaveShapes(NeighbourLists lists, SlavePoints slaves)
+/* Makes the slave points as combinations of the nodes of their faces, with fixed offsets. Pointers, shares and sides
+   are those of all lists of the search. */
+static PetscErrorCode TakeSlaveShapes(NeighbourLists lists, SlavePoints slaves, PetscBool first)
 {
-  const PetscInt n = slaves->n, entries = slaves->ptr[n];
+  const PetscInt entries = slaves->ptr[slaves->n];
   PetscInt      *number;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(lists->slave_ptr, slaves->ptr, n + 1));
-  PetscCall(PetscArraycpy(lists->slave_S, slaves->S, entries));
-  PetscCall(PetscArrayzero(lists->slave_side, entries));
-  PetscCall(PetscArraycpy(lists->slave_offset, slaves->offset, n * lists->dim));
+  if (first) {
+    PetscCall(PetscArraycpy(lists->slave_ptr, slaves->ptr, slaves->n + 1));
+    PetscCall(PetscArraycpy(lists->slave_S, slaves->S, entries));
+    PetscCall(PetscArrayzero(lists->slave_side, entries));
+    PetscCall(PetscArrayzero(lists->slave_node, entries));
+  }
   PetscCall(PetscMalloc1(slaves->n_nodes, &number));
-  for (PetscInt i = 0; i < slaves->n_nodes; i++)
-    PetscCall(PetscFindInt(slaves->nodes[i].id, lists->n_deformable, lists->node_id, &number[i]));
-  for (PetscInt k = 0; k < entries; k++) lists->slave_node[k] = number[slaves->node[k]];
+  for (PetscInt i = 0; i < slaves->n_nodes; i++) number[i] = -1;
+  for (PetscInt i = 0; i < lists->n_near; i++) {
+    const PetscInt q = lists->near[i];
+
+    PetscCall(PetscArraycpy(&lists->slave_offset[q * lists->dim], &slaves->offset[q * lists->dim], lists->dim));
+    for (PetscInt k = slaves->ptr[q]; k < slaves->ptr[q + 1]; k++) {
+      PetscInt *known = &number[slaves->node[k]];
+
+      if (*known < 0)
+        PetscCall(PetscFindInt(slaves->nodes[slaves->node[k]].id, lists->n_deformable, lists->node_id, known));
+      lists->slave_node[k] = *known;
+    }
+  }
   PetscCall(PetscFree(number));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -694,6 +732,101 @@ static void PlaceSlave(ContactSearch s, NeighbourLists lists, PetscInt q)
 }
 
 /*@
+  NeighbourListsChoosePoints - chooses the slave points of the lists: those that may have a partner, or all where lists
+  keep all faces, because points are followed then that have left their partners.
+
+  Not collective
+
+  Input Parameter:
+. s - the search, after SearchPartners() where there is a test
+
+  Input/Output Parameter:
+. lists - the lists
+@*/
+PetscErrorCode NeighbourListsChoosePoints(ContactSearch s, NeighbourLists lists)
+{
+  const PetscBool *possible = s->keeps_faces ? NULL : s->partners.possible;
+
+  PetscFunctionBeginUser;
+  lists->n_slaves = s->slaves->n;
+  PetscCall(PetscMalloc1(lists->n_slaves, &lists->near));
+  for (PetscInt q = 0; q < lists->n_slaves; q++)
+    if (!possible || possible[q]) lists->near[lists->n_near++] = q;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Allocates what lists hold for slave points that are combinations of so many nodes. */
+static PetscErrorCode MakeSlaveRoom(NeighbourLists lists, PetscInt entries)
+{
+  const PetscInt n   = lists->n_slaves;
+  const int      dim = lists->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc5(n + 1, &lists->slave_ptr, entries, &lists->slave_node, entries, &lists->slave_side, entries,
+                         &lists->slave_S, n * dim, &lists->slave_offset));
+  PetscCall(PetscMalloc3(n * dim, &lists->slave_X, n * dim, &lists->slave_u, 3 * n, &lists->slave_normal));
+  PetscCall(PetscMalloc6(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest, n,
+                         &lists->share, n, &lists->averse));
+  PetscCall(
+    PetscMalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
+  PetscCall(PetscMalloc6(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre, n,
+                         &lists->gap, 3 * n, &lists->normal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sets what a slave point has that has no facet and no fit. */
+static void ClearSlave(NeighbourLists lists, PetscInt q)
+{
+  lists->kappa[q]   = 0;
+  lists->nearest[q] = -1;
+  lists->share[q]   = 0;
+  lists->averse[q]  = PETSC_FALSE;
+  lists->fit_n[q] = lists->rung[q] = lists->degree[q] = 0;
+  lists->pivot[q] = lists->amplified[q] = lists->residual[q] = lists->gap[q] = 0;
+  for (int k = 0; k < 2; k++) lists->centre[2 * q + k] = 0;
+  for (int k = 0; k < 3; k++) lists->normal[3 * q + k] = 0;
+  for (int k = 0; k < 4; k++) lists->metric[4 * q + k] = 0;
+  for (int k = 0; k < 9; k++) lists->frame[9 * q + k] = 0;
+}
+
+/* Takes the room of lists that were given back. Only the points that these had are other than clear. */
+static PetscErrorCode TakeSpare(NeighbourLists *spare, NeighbourLists lists)
+{
+  const NeighbourLists old = *spare;
+
+  PetscFunctionBeginUser;
+  lists->slave_ptr    = old->slave_ptr;
+  lists->slave_node   = old->slave_node;
+  lists->slave_side   = old->slave_side;
+  lists->slave_S      = old->slave_S;
+  lists->slave_offset = old->slave_offset;
+  lists->slave_X      = old->slave_X;
+  lists->slave_u      = old->slave_u;
+  lists->slave_normal = old->slave_normal;
+  lists->list_ptr     = old->list_ptr;
+  lists->facet_ptr    = old->facet_ptr;
+  lists->kappa        = old->kappa;
+  lists->nearest      = old->nearest;
+  lists->share        = old->share;
+  lists->averse       = old->averse;
+  lists->fit_n        = old->fit_n;
+  lists->rung         = old->rung;
+  lists->degree       = old->degree;
+  lists->frame        = old->frame;
+  lists->metric       = old->metric;
+  lists->pivot        = old->pivot;
+  lists->amplified    = old->amplified;
+  lists->residual     = old->residual;
+  lists->centre       = old->centre;
+  lists->gap          = old->gap;
+  lists->normal       = old->normal;
+  for (PetscInt i = 0; i < old->n_near; i++) ClearSlave(lists, old->near[i]);
+  PetscCall(PetscFree(old->near));
+  PetscCall(PetscFree(*spare));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   NeighbourListsCreateSlaves - makes the slave points of the lists and allocates what the lists hold for each of them.
 
   Not collective
@@ -706,30 +839,27 @@ static void PlaceSlave(ContactSearch s, NeighbourLists lists, PetscInt q)
 @*/
 PetscErrorCode NeighbourListsCreateSlaves(ContactSearch s, NeighbourLists lists)
 {
-  const int   dim    = lists->dim;
-  SlavePoints slaves = s->slaves;
-  PetscInt    n = slaves->n, entries = slaves->maps.ptr ? 0 : slaves->ptr[n];
+  const PetscBool first   = (PetscBool)!s->spare;
+  SlavePoints     slaves  = s->slaves;
+  PetscInt        entries = slaves->maps.ptr ? 0 : slaves->ptr[slaves->n];
 
   PetscFunctionBeginUser;
-  lists->n_slaves = n;
   for (PetscInt f = 0; slaves->maps.ptr && f < slaves->n_faces; f++)
     entries += (slaves->first[f + 1] - slaves->first[f]) * (slaves->maps.ptr[f + 1] - slaves->maps.ptr[f]);
-  PetscCall(PetscMalloc5(n + 1, &lists->slave_ptr, entries, &lists->slave_node, entries, &lists->slave_side, entries,
-                         &lists->slave_S, n * dim, &lists->slave_offset));
-  PetscCall(PetscMalloc3(n * dim, &lists->slave_X, n * dim, &lists->slave_u, 3 * n, &lists->slave_normal));
-  PetscCall(PetscMalloc6(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest, n,
-                         &lists->share, n, &lists->averse));
-  PetscCall(
-    PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
-  PetscCall(PetscCalloc6(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre, n,
-                         &lists->gap, 3 * n, &lists->normal));
+  if (s->spare)
+    PetscCall(TakeSpare(&s->spare, lists));
+  else
+    PetscCall(MakeSlaveRoom(lists, entries));
+  for (PetscInt q = 0; q < slaves->n && first; q++) ClearSlave(lists, q);
   if (slaves->maps.ptr)
     PetscCall(TakeSlaveMaps(s, lists));
   else
-    PetscCall(TakeSlaveShapes(lists, slaves));
-  for (PetscInt q = 0; q < n; q++) {
+    PetscCall(TakeSlaveShapes(lists, slaves, first));
+  for (PetscInt i = 0; i < lists->n_near; i++) {
+    const PetscInt q = lists->near[i];
+
     PlaceSlave(s, lists, q);
-    SlaveMap(s, lists, q, lists->u, &lists->slave_u[q * dim]);
+    SlaveMap(s, lists, q, lists->u, &lists->slave_u[q * lists->dim]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -788,17 +918,20 @@ static PetscErrorCode TakePointOffsets(ContactSearch s, NeighbourLists lists, Pe
 @*/
 PetscErrorCode NeighbourListsTakeOffsets(ContactSearch s, NeighbourLists lists, PetscBool *changed)
 {
-  const PetscInt n = lists->n_slaves * lists->dim;
-  int            any;
+  int any;
 
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
   if (HasHeld(s)) PetscCall(TakePointOffsets(s, lists, changed));
-  for (PetscInt i = 0; i < n && !s->slaves->maps.ptr; i++) {
-    *changed               = (PetscBool)(*changed || lists->slave_offset[i] != s->slaves->offset[i]);
-    lists->slave_offset[i] = s->slaves->offset[i];
+  for (PetscInt i = 0; i < lists->n_near; i++) {
+    const PetscInt first = lists->near[i] * lists->dim;
+
+    for (PetscInt k = first; k < first + lists->dim && !s->slaves->maps.ptr; k++) {
+      *changed               = (PetscBool)(*changed || lists->slave_offset[k] != s->slaves->offset[k]);
+      lists->slave_offset[k] = s->slaves->offset[k];
+    }
+    PlaceSlave(s, lists, lists->near[i]);
   }
-  for (PetscInt q = 0; q < lists->n_slaves; q++) PlaceSlave(s, lists, q);
   any = *changed;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, s->mesh->comm));
   *changed = any ? PETSC_TRUE : PETSC_FALSE;
@@ -1054,6 +1187,43 @@ PetscInt NeighbourListsFindFace(NeighbourLists lists, long tag)
   return low < lists->n_faces && lists->face[low].tag == tag ? low : -1;
 }
 
+/* Frees what does not belong to slave points. */
+static PetscErrorCode FreeNodesAndPoints(NeighbourLists l)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree4(l->node_id, l->X, l->u, l->dof));
+  PetscCall(PetscSFDestroy(&l->sf));
+  PetscCallMPI(MPI_Type_free(&l->block));
+  PetscCall(PetscFree7(l->point_ptr, l->point_node, l->point_S, l->point_offset, l->point_weight, l->point_image,
+                       l->point_key));
+  PetscCall(PetscFree(l->point_side));
+  if (l->point_cosine) PetscCall(PetscFree2(l->point_cosine, l->point_hoop));
+  PetscCall(PetscFree2(l->point_X, l->point_u));
+  PetscCall(PetscFree2(l->first_held, l->home_held));
+  PetscCall(PetscFree(l->bend));
+  PetscCall(PetscFree(l->list_point));
+  PetscCall(PetscFree(l->facet));
+  PetscCall(PetscFree(l->facet_size));
+  PetscCall(PetscFree(l->face));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Frees what belongs to slave points, and the lists. */
+static PetscErrorCode FreeSlaves(NeighbourLists *lists)
+{
+  NeighbourLists l = *lists;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(l->near));
+  PetscCall(PetscFree5(l->slave_ptr, l->slave_node, l->slave_side, l->slave_S, l->slave_offset));
+  PetscCall(PetscFree3(l->slave_X, l->slave_u, l->slave_normal));
+  PetscCall(PetscFree6(l->list_ptr, l->facet_ptr, l->kappa, l->nearest, l->share, l->averse));
+  PetscCall(PetscFree5(l->fit_n, l->rung, l->degree, l->frame, l->metric));
+  PetscCall(PetscFree6(l->pivot, l->amplified, l->residual, l->centre, l->gap, l->normal));
+  PetscCall(PetscFree(*lists));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   NeighbourListsDestroy - frees the lists.
 
@@ -1064,29 +1234,51 @@ PetscInt NeighbourListsFindFace(NeighbourLists lists, long tag)
 @*/
 PetscErrorCode NeighbourListsDestroy(NeighbourLists *lists)
 {
-  NeighbourLists l = *lists;
-
   PetscFunctionBeginUser;
-  if (!l) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree4(l->node_id, l->X, l->u, l->dof));
-  PetscCall(PetscSFDestroy(&l->sf));
-  PetscCallMPI(MPI_Type_free(&l->block));
-  PetscCall(PetscFree7(l->point_ptr, l->point_node, l->point_S, l->point_offset, l->point_weight, l->point_image,
-                       l->point_key));
-  PetscCall(PetscFree(l->point_side));
-  if (l->point_cosine) PetscCall(PetscFree2(l->point_cosine, l->point_hoop));
-  PetscCall(PetscFree2(l->point_X, l->point_u));
-  PetscCall(PetscFree2(l->first_held, l->home_held));
-  PetscCall(PetscFree5(l->slave_ptr, l->slave_node, l->slave_side, l->slave_S, l->slave_offset));
-  PetscCall(PetscFree3(l->slave_X, l->slave_u, l->slave_normal));
-  PetscCall(PetscFree6(l->list_ptr, l->facet_ptr, l->kappa, l->nearest, l->share, l->averse));
-  PetscCall(PetscFree5(l->fit_n, l->rung, l->degree, l->frame, l->metric));
-  PetscCall(PetscFree6(l->pivot, l->amplified, l->residual, l->centre, l->gap, l->normal));
-  PetscCall(PetscFree(l->bend));
-  PetscCall(PetscFree(l->list_point));
-  PetscCall(PetscFree(l->facet));
-  PetscCall(PetscFree(l->facet_size));
-  PetscCall(PetscFree(l->face));
-  PetscCall(PetscFree(*lists));
+  if (!*lists) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeNodesAndPoints(*lists));
+  PetscCall(FreeSlaves(lists));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  NeighbourListsGiveBack - frees the lists, but leaves their room for slave points to the search's next ones.
+
+  Collective
+
+  Input Parameter:
+. s - the search that has made them
+
+  Input/Output Parameter:
+. lists - the lists, NULL on return
+
+  Note:
+  Most slave points of large surfaces have no partner. To make that room anew would cost more than to search.
+@*/
+PetscErrorCode NeighbourListsGiveBack(ContactSearch s, NeighbourLists *lists)
+{
+  PetscFunctionBeginUser;
+  if (!*lists) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeNodesAndPoints(*lists));
+  if (s->slaves->maps.ptr || s->spare) /* lists with maps are of other sizes */
+    PetscCall(FreeSlaves(lists));
+  else
+    s->spare = *lists;
+  *lists = NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  NeighbourListsFreeSpare - frees the room that lists have left to a search.
+
+  Not collective
+
+  Input Parameter:
+. s - the search
+@*/
+PetscErrorCode NeighbourListsFreeSpare(ContactSearch s)
+{
+  PetscFunctionBeginUser;
+  if (s->spare) PetscCall(FreeSlaves(&s->spare));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,7 +2,8 @@
    fit points and slave points that are made of these nodes, and for each slave point the facets and fit points against
    which it is measured.
 
-   SearchLists() (search.h) makes lists, and NeighbourListsDestroy() frees them. NeighbourListsUpdate() moves the
+   SearchLists() (search.h) makes lists, and NeighbourListsDestroy() frees them. NeighbourListsGiveBack() leaves their
+   room to the search's next ones. NeighbourListsUpdate() moves the
    positions while the lists stay, and NeighbourListsTakeOffsets() gives the points other offsets.
    NeighbourListsRelative() gives a point as a slave point sees it.
    NeighbourListsBroadcast() and NeighbourListsReduce() take values from the mesh's nodes to the contact nodes and
@@ -57,8 +58,10 @@ typedef struct {
   PetscInt     n_held, *first_held;
   PetscSFNode *home_held;
 
-  PetscBool  empty;                  /* no slave point on any rank was searched: none can have a facet */
-  PetscInt   n_slaves;               /* slave points, in the order in which they were given */
+  PetscBool empty;    /* no slave point on any rank was searched: none can have a facet */
+  PetscInt  n_slaves; /* slave points, in the order in which they were given */
+  /* Those that may have a partner, ascending. The others have no facets, and no nodes, positions or normals. */
+  PetscInt   n_near, *near;
   PetscInt  *slave_ptr, *slave_node; /* the nodes of a slave point's own face come first, as in SlavePoints */
   int       *slave_side;
   PetscReal *slave_S, *slave_offset;
@@ -95,6 +98,7 @@ typedef struct {
 } *NeighbourLists;
 
 PetscErrorCode NeighbourListsDestroy(NeighbourLists *);
+PetscErrorCode NeighbourListsGiveBack(ContactSearch, NeighbourLists *);
 PetscErrorCode NeighbourListsUpdate(ContactSearch, NeighbourLists, const PetscReal *u, PetscReal t, PetscBool *moved);
 PetscErrorCode NeighbourListsTakeOffsets(ContactSearch, NeighbourLists, PetscBool *changed);
 void           NeighbourListsRelative(NeighbourLists, PetscInt q, PetscInt p, PetscReal *x);

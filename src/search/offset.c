@@ -24,23 +24,44 @@ struct _n_Offsets {
   FitSettings    fit;
   int            finer;
   OffsetsKind    kind;
-  PetscBool      once, taken; /* once: held, but never taken again */
+  PetscBool      once, taken; /* once: in the reference position; taken: nothing that is wanted is missing there */
+  PetscBool     *had;         /* of each face, where they are taken once: they have been */
   FaceMaps       maps;        /* of live offsets */
   PetscInt       n;
   PetscReal *used, *now, *before; /* used: those of the present solve; now, before: of the last two accepted states */
   PetscReal  t_now, t_before;
   PetscBool *wanted; /* of each face: its offsets are taken; others are NAN in now, before and last, and 0 in use */
-  /* Faces that have ever been wanted, once the first wish is known. All values of the others are blank. */
+  /* Faces that have ever been wanted, once the first wish is known. The others have no values but 0 in use. */
   PetscBool *touched, tracked, blank; /* blank: no face on any rank is touched */
   /* The offsets that were taken last, with the displacements and the load parameter there. t_last is NAN before the
      first. */
   PetscReal *last, *u_last, t_last;
+  Offsets    lender; /* earlier offsets of the same surface by the same settings, or NULL */
   /* Of the step at hand: the offsets with which its lists were made, and of the time when these were replaced last what
      the solution asked for and by how much that differed. */
   PetscReal *held, *asked, *change;
   PetscBool  replaced, turning; /* turning: solutions turn them to and fro */
   int        turns;             /* times in a row that they have */
 };
+
+/* The arrays that offsets have which are taken again and again. */
+enum { FOLLOWING = 6 };
+static PetscReal **Following(Offsets o, int k)
+{
+  PetscReal **arrays[FOLLOWING] = {&o->now, &o->before, &o->last, &o->held, &o->asked, &o->change};
+
+  return arrays[k];
+}
+
+/* Values of all faces, which are 0. Memory is taken from the system where values are written, as most faces of large
+   surfaces never have any: PetscCalloc1() would write all of them. */
+static PetscErrorCode MakeValues(PetscInt n, PetscReal **values)
+{
+  PetscFunctionBeginUser;
+  *values = calloc(PetscMax(n, 1), sizeof(PetscReal));
+  PetscCheck(*values, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for offsets");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /*@
   OffsetsCreate - makes the offsets of a surface, which are 0 until they are taken.
@@ -82,9 +103,10 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
                             .feature_angle = feature_angle};
   o->n      = surface->n_faces * FACE_RULE_POINTS * mesh->dim;
   o->t_last = NAN;
-  PetscCall(PetscCalloc5(o->n, &o->used, o->n, &o->now, o->n, &o->before, o->n, &o->last, mesh->n_nodes * mesh->dim,
-                         &o->u_last));
-  PetscCall(PetscCalloc3(o->n, &o->held, o->n, &o->asked, o->n, &o->change));
+  PetscCall(MakeValues(o->n, &o->used));
+  for (int k = 0; k < FOLLOWING && !o->once; k++) PetscCall(MakeValues(o->n, Following(o, k)));
+  if (o->once) PetscCall(PetscCalloc1(surface->n_faces, &o->had));
+  if (!o->once) PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &o->u_last));
   PetscCall(PetscMalloc2(surface->n_faces, &o->wanted, surface->n_faces, &o->touched));
   for (PetscInt f = 0; f < surface->n_faces; f++) o->wanted[f] = o->touched[f] = PETSC_TRUE;
   PetscCall(SearchCreate(mesh, scene, loads, surface, surface->max_size, n_images, images, &o->fit, NULL, NULL, NULL,
@@ -107,10 +129,49 @@ PetscErrorCode OffsetsDestroy(Offsets *offsets)
   if (!*offsets) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SearchDestroy(&(*offsets)->search));
   PetscCall(FaceMapsDestroy(&(*offsets)->maps));
-  PetscCall(PetscFree5((*offsets)->used, (*offsets)->now, (*offsets)->before, (*offsets)->last, (*offsets)->u_last));
-  PetscCall(PetscFree3((*offsets)->held, (*offsets)->asked, (*offsets)->change));
+  free((*offsets)->used);
+  for (int k = 0; k < FOLLOWING; k++) free(*Following(*offsets, k));
+  PetscCall(PetscFree((*offsets)->had));
+  PetscCall(PetscFree((*offsets)->u_last));
   PetscCall(PetscFree2((*offsets)->wanted, (*offsets)->touched));
   PetscCall(PetscFree(*offsets));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The ends of the surface at a face. */
+static int FaceEnds(ContactSurface surface, PetscInt f)
+{
+  return surface->face_ends ? surface->face_ends[f] : 0;
+}
+
+/*@
+  OffsetsLend - has offsets of a surface take those that others have at the same state, if both are made alike.
+
+  Not collective
+
+  Input Parameters:
++ lender - offsets, which live as long
+- o      - the offsets
+
+  Output Parameter:
+. alike - they are
+
+  Note:
+  Where bodies meet without pairs of names, each surface is a slave in some pairs and a master in others.
+@*/
+PetscErrorCode OffsetsLend(Offsets lender, Offsets o, PetscBool *alike)
+{
+  const ContactSurface a = lender->surface, b = o->surface;
+
+  PetscFunctionBeginUser;
+  *alike =
+    (PetscBool)(a->group == b->group && a->rigid == b->rigid && a->n_faces == b->n_faces && a->turned == b->turned &&
+                lender->kind == o->kind && lender->finer == o->finer &&
+                lender->fit.feature_angle == o->fit.feature_angle && lender->search->n_images == o->search->n_images);
+  if (*alike) PetscCall(PetscArraycmp(a->faces, b->faces, a->n_faces, alike));
+  for (PetscInt f = 0; f < a->n_faces && *alike; f++) *alike = (PetscBool)(FaceEnds(a, f) == FaceEnds(b, f));
+  if (*alike) PetscCall(PetscArraycmp(lender->search->images, o->search->images, o->search->n_images, alike));
+  if (*alike) o->lender = lender;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -198,12 +259,6 @@ static PetscErrorCode SagittaShape(FitSupport *fit, const OffsetFace *face, int 
 /* Handles a face while fits about it can be made. */
 typedef PetscErrorCode (*OffsetFaceFn)(Offsets, FitSupport *, const OffsetFace *, PetscInt f, void *context);
 
-/* Is a face at an end of the surface? */
-static PetscBool AtEnd(Offsets o, PetscInt f)
-{
-  return (PetscBool)(o->surface->face_ends && o->surface->face_ends[f]);
-}
-
 /* Visits own faces, some[] of them or all, with the surface at (u, t). */
 static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, const PetscBool *some,
                                    OffsetFaceFn visit, void *context)
@@ -219,7 +274,7 @@ static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, c
     OffsetFace       face  = {.candidate = own - fits.field.candidates,
                               .facet     = facet,
                               .rule      = SurfaceRule(o->surface, f, o->finer),
-                              .rung      = AtEnd(o, f) ? OFFSET_END_RUNG : RUNG_PLAIN};
+                              .rung      = FaceEnds(o->surface, f) ? OFFSET_END_RUNG : RUNG_PLAIN};
     double           area[FACE_RULE_POINTS];
 
     if (some && !some[f]) continue;
@@ -304,53 +359,17 @@ static PetscErrorCode MapFace(Offsets o, FitSupport *fit, const OffsetFace *face
 }
 
 /* Makes the maps of all own faces in the reference position. */
-static PetscErrorCode OffsetsMap(Offsets o, const PetscReal *zero)
+static PetscErrorCode OffsetsMap(Offsets o)
 {
   MapsInMaking making = {0};
+  PetscReal   *zero;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(o->surface->n_faces + 1, &o->maps.ptr));
+  PetscCall(PetscCalloc1(o->search->mesh->n_nodes * o->search->mesh->dim, &zero));
   PetscCall(OffsetsVisit(o, zero, 0, NULL, MapFace, &making));
+  PetscCall(PetscFree(zero));
   PetscCall(PetscFree(making.place));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Takes offsets that are taken only once. *done is set if nothing remains to be done. */
-static PetscErrorCode TakeOnce(Offsets o, PetscBool *done)
-{
-  PetscFunctionBeginUser;
-  *done = (PetscBool)!OffsetsFollow(o);
-  if (*done && o->kind != OFFSETS_NONE && !o->taken) {
-    PetscReal *zero;
-
-    PetscCall(PetscCalloc1(o->search->mesh->n_nodes * o->search->mesh->dim, &zero));
-    if (o->kind == OFFSETS_LIVE)
-      PetscCall(OffsetsMap(o, zero));
-    else
-      PetscCall(OffsetsVisit(o, zero, 0, NULL, TakeFace, o->used));
-    PetscCall(PetscFree(zero));
-    o->taken = PETSC_TRUE;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Takes the offsets of the wanted faces at (u, t) that are not among the last ones. */
-static PetscErrorCode TakeWanted(Offsets o, const PetscReal *u, PetscReal t)
-{
-  const PetscInt block = FACE_RULE_POINTS * o->search->mesh->dim;
-  PetscBool     *missing;
-  int            any = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(o->surface->n_faces, &missing));
-  for (PetscInt f = 0; f < o->surface->n_faces; f++) {
-    missing[f] = (PetscBool)(o->wanted[f] && PetscIsNanReal(o->last[f * block]));
-    any        = any || missing[f];
-    if (missing[f]) PetscCall(PetscArrayzero(&o->last[f * block], block));
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, o->search->mesh->comm));
-  if (any) PetscCall(OffsetsVisit(o, u, t, missing, TakeFace, o->last));
-  PetscCall(PetscFree(missing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -358,6 +377,108 @@ static PetscErrorCode TakeWanted(Offsets o, const PetscReal *u, PetscReal t)
 static PetscInt FaceBlock(Offsets o)
 {
   return FACE_RULE_POINTS * o->search->mesh->dim;
+}
+
+/* Takes the offsets of the missing faces of all ranks, with the surface at (u, t); u NULL: in the reference position.
+ */
+static PetscErrorCode TakeMissing(Offsets o, const PetscReal *u, PetscReal t, const PetscBool *missing,
+                                  PetscReal *values)
+{
+  PetscReal *zero = NULL;
+  int        any  = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < o->surface->n_faces && !any; f++) any = missing[f];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, o->search->mesh->comm));
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!u) PetscCall(PetscCalloc1(o->search->mesh->n_nodes * o->search->mesh->dim, &zero));
+  PetscCall(OffsetsVisit(o, u ? u : zero, t, missing, TakeFace, values));
+  PetscCall(PetscFree(zero));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes what is missing from lenders that have it at (u, t). */
+static PetscErrorCode Borrow(Offsets o, const PetscReal *u, PetscReal t, PetscReal *values, PetscBool *missing)
+{
+  const PetscInt block = FaceBlock(o), n = o->search->mesh->n_nodes * o->search->mesh->dim;
+
+  PetscFunctionBeginUser;
+  for (Offsets from = o->lender; from; from = from->lender) {
+    const PetscReal *lent = from->once ? from->used : from->last;
+    PetscBool        same = (PetscBool)(from->once || from->t_last == t);
+
+    if (same && !from->once) PetscCall(PetscArraycmp(u, from->u_last, n, &same));
+    for (PetscInt f = 0; f < o->surface->n_faces && same; f++) {
+      if (!missing[f] || !from->touched[f] || (from->once ? !from->had[f] : PetscIsNanReal(lent[f * block]))) continue;
+      PetscCall(PetscArraycpy(&values[f * block], &lent[f * block], block));
+      missing[f] = PETSC_FALSE;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes the offsets of the wanted faces in the reference position, once each. */
+static PetscErrorCode TakeReference(Offsets o)
+{
+  PetscBool *missing;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(o->surface->n_faces, &missing));
+  for (PetscInt f = 0; f < o->surface->n_faces; f++) {
+    missing[f] = (PetscBool)(o->wanted[f] && !o->had[f]);
+    if (missing[f]) o->had[f] = PETSC_TRUE;
+  }
+  PetscCall(Borrow(o, NULL, 0, o->used, missing));
+  PetscCall(TakeMissing(o, NULL, 0, missing, o->used));
+  PetscCall(PetscFree(missing));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Are offsets taken again and again? */
+static PetscBool Follow(Offsets o)
+{
+  return (PetscBool)(o->kind == OFFSETS_HELD && !o->once);
+}
+
+/* Takes offsets that are taken only once. *done is set if nothing remains to be done. */
+static PetscErrorCode TakeOnce(Offsets o, PetscBool *done)
+{
+  PetscFunctionBeginUser;
+  *done = (PetscBool)!Follow(o);
+  if (!*done || o->kind == OFFSETS_NONE || o->taken) PetscFunctionReturn(PETSC_SUCCESS);
+  if (o->kind == OFFSETS_LIVE)
+    PetscCall(OffsetsMap(o));
+  else
+    PetscCall(TakeReference(o));
+  o->taken = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes the offsets of the wanted faces at (u, t) that are not among the last ones. */
+static PetscErrorCode TakeWanted(Offsets o, const PetscReal *u, PetscReal t)
+{
+  const PetscInt block = FaceBlock(o);
+  PetscBool     *missing;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(o->surface->n_faces, &missing));
+  for (PetscInt f = 0; f < o->surface->n_faces; f++) {
+    missing[f] = (PetscBool)(o->wanted[f] && PetscIsNanReal(o->last[f * block]));
+    if (missing[f]) PetscCall(PetscArrayzero(&o->last[f * block], block));
+  }
+  PetscCall(Borrow(o, u, t, o->last, missing));
+  PetscCall(TakeMissing(o, u, t, missing, o->last));
+  PetscCall(PetscFree(missing));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives an untouched face values, which are those of a face that is not wanted. */
+static void Touch(Offsets o, PetscInt f)
+{
+  const PetscInt block = FaceBlock(o);
+
+  for (PetscInt i = f * block; Follow(o) && i < (f + 1) * block; i++) o->last[i] = o->now[i] = o->before[i] = NAN;
+  o->touched[f] = PETSC_TRUE;
 }
 
 /* The values from *first to the returned end belong to the next touched face from face *f on, which becomes the one
@@ -404,16 +525,16 @@ static PetscReal InUse(PetscReal offset)
 }
 
 /*@
-  OffsetsFollow - says whether offsets are taken again and again, so that it matters on which faces they are needed.
+  OffsetsChoose - says whether offsets are taken face by face, so that it matters on which faces they are needed.
 
   Not collective
 
   Input Parameter:
 . o - the offsets
 @*/
-PetscBool OffsetsFollow(Offsets o)
+PetscBool OffsetsChoose(Offsets o)
 {
-  return (PetscBool)(o->kind == OFFSETS_HELD && !o->once);
+  return (PetscBool)(o->kind == OFFSETS_HELD);
 }
 
 /*@
@@ -427,8 +548,8 @@ PetscBool OffsetsFollow(Offsets o)
 - anew   - a step begins; otherwise faces that were wanted before stay so
 
   Note:
-  Only held offsets that are taken again and again are left out elsewhere: they are 0 there. What is first wanted in a
-  step is not extrapolated over it.
+  Only held offsets are left out elsewhere: they are 0 there. What is first wanted in a step is not extrapolated over
+it. What is taken once stays.
 @*/
 PetscErrorCode OffsetsWant(Offsets o, const PetscBool *wanted, PetscBool anew)
 {
@@ -436,18 +557,16 @@ PetscErrorCode OffsetsWant(Offsets o, const PetscBool *wanted, PetscBool anew)
   int             any   = 0;
 
   PetscFunctionBeginUser;
-  if (first) {
-    for (PetscInt i = 0; i < o->n; i++) o->last[i] = o->now[i] = o->before[i] = NAN;
-    PetscCall(PetscArrayzero(o->touched, o->surface->n_faces));
-    o->tracked = PETSC_TRUE;
-  }
+  if (first) PetscCall(PetscArrayzero(o->touched, o->surface->n_faces));
+  if (first) o->tracked = PETSC_TRUE;
   for (PetscInt f = 0; f < o->surface->n_faces; f++) {
-    o->wanted[f]  = (PetscBool)(wanted[f] || (!anew && o->wanted[f]));
-    o->touched[f] = (PetscBool)(o->touched[f] || o->wanted[f]);
-    any           = any || o->touched[f];
+    o->wanted[f] = (PetscBool)(wanted[f] || (!anew && o->wanted[f]));
+    if (o->wanted[f] && !o->touched[f]) Touch(o, f);
+    any = any || o->touched[f];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, o->search->mesh->comm));
   o->blank = any ? PETSC_FALSE : PETSC_TRUE;
+  if (o->kind == OFFSETS_HELD) o->taken = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -503,7 +622,6 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
     for (; i < end; i++) o->held[i] = o->used[i] = InUse(o->now[i]) + ahead * InUse(o->now[i] - o->before[i]);
   o->replaced = o->turning = PETSC_FALSE;
   o->turns                 = 0;
-  o->taken                 = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -557,7 +675,7 @@ PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
 
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
-  if (!OffsetsFollow(o)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!Follow(o)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt f = 0, i, end; (end = NextTouched(o, &f, &i)) > i;) {
     for (; i < end; i++) {
       const PetscReal change = o->used[i] - o->held[i];
@@ -604,6 +722,22 @@ const PetscReal *OffsetsGet(Offsets o)
 }
 
 /*@
+  OffsetsTouched - says which faces have ever had offsets.
+
+  Not collective
+
+  Input Parameter:
+. o - the offsets
+
+  Note:
+  Returns an array of the faces of the surface on this rank. The offsets of the others are 0.
+@*/
+const PetscBool *OffsetsTouched(Offsets o)
+{
+  return o->touched;
+}
+
+/*@
   OffsetsMaps - returns the maps of live offsets, which make the points combinations of nodes.
 
   Not collective
@@ -620,15 +754,31 @@ const FaceMaps *OffsetsMaps(Offsets o)
   return o->kind == OFFSETS_LIVE ? &o->maps : NULL;
 }
 
-/* Faces that have values after these were loaded have been wanted. */
-static PetscErrorCode FindTouched(Offsets o)
+/* Writes or reads one array of values. Rows of faces without values are NAN. */
+static PetscErrorCode ArchiveValues(Offsets o, Archive archive, const char *path, const Hdf5Table *faces,
+                                    PetscReal *values)
 {
   const PetscInt block = FaceBlock(o);
+  PetscReal     *rows;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < o->n; i++) o->last[i] = NAN;
-  for (PetscInt f = 0; f < o->surface->n_faces; f++)
-    o->touched[f] = (PetscBool) !(PetscIsNanReal(o->now[f * block]) && PetscIsNanReal(o->before[f * block]));
+  PetscCall(PetscMalloc1(o->n, &rows));
+  for (PetscInt i = 0; i < o->n; i++) rows[i] = o->touched[i / block] ? values[i] : NAN;
+  PetscCall(ArchiveRows(archive, path, faces, (int)block, rows));
+  for (PetscInt f = 0; f < o->surface->n_faces && ArchiveLoads(archive); f++) {
+    if (PetscIsNanReal(rows[f * block])) continue;
+    if (!o->touched[f]) Touch(o, f);
+    PetscCall(PetscArraycpy(&values[f * block], &rows[f * block], block));
+  }
+  PetscCall(PetscFree(rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Before values are loaded no face has any. */
+static PetscErrorCode Forget(Offsets o)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(o->touched, o->surface->n_faces));
   o->tracked = PETSC_TRUE;
   o->blank   = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -658,20 +808,20 @@ PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
   Hdf5Table   faces;
 
   PetscFunctionBeginUser;
-  if (!OffsetsFollow(o)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!Follow(o)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(o->surface->n_faces, &tag));
   for (PetscInt f = 0; f < o->surface->n_faces; f++) tag[f] = o->surface->faces[f].tag;
   PetscCall(Hdf5TableCreateByKey(o->search->mesh->comm, o->surface->n_faces, tag, &faces));
   PetscCall(PetscFree(tag));
+  if (ArchiveLoads(archive)) PetscCall(Forget(o));
   for (int k = 0; k < 2; k++) {
     PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", name, names[k]));
-    PetscCall(ArchiveRows(archive, path, &faces, FACE_RULE_POINTS * o->search->mesh->dim, values[k]));
+    PetscCall(ArchiveValues(o, archive, path, &faces, values[k]));
   }
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/t", name));
   PetscCall(ArchiveReals(archive, path, 2, time));
   o->t_now    = time[0];
   o->t_before = time[1];
   PetscCall(Hdf5TableDestroy(&faces));
-  if (ArchiveLoads(archive)) PetscCall(FindTouched(o));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,10 +8,11 @@
    the nodes, within a solve too, and are part of the points' variations. The offsets of a rigid tool move with the tool
    and are always held ones.
 
-   OffsetsCreate() makes offsets of 0, and OffsetsWant() leaves out faces that no search will see. OffsetsFollow() says
+   OffsetsCreate() makes offsets of 0, and OffsetsWant() leaves out faces that no search will see. OffsetsChoose() says
    whether that is of any use. OffsetsExtrapolate() is called at the beginning of a step and OffsetsTake() when lists
-   are made anew, and OffsetsDamp() where these replace those of the solve. OffsetsGet() and OffsetsMaps() give the
-   result to the search, and OffsetsArchive() writes or reads the state of the extrapolation. */
+   are made anew, and OffsetsDamp() where these replace those of the solve. OffsetsGet(),
+   OffsetsTouched() and OffsetsMaps() give the result to the search, and OffsetsArchive() writes or reads the state of
+   the extrapolation. */
 #pragma once
 #include "files/archive.h"
 #include "search/facemap.h"
@@ -25,7 +26,8 @@ typedef enum { OFFSETS_NONE, OFFSETS_HELD, OFFSETS_LIVE } OffsetsKind;
 PetscErrorCode   OffsetsCreate(Mesh, Scene, Loads, ContactSurface, int n_images, const SurfaceImage *,
                                PetscReal feature_angle, int finer, OffsetsKind, Offsets *);
 PetscErrorCode   OffsetsDestroy(Offsets *);
-PetscBool        OffsetsFollow(Offsets);
+PetscErrorCode   OffsetsLend(Offsets lender, Offsets, PetscBool *alike);
+PetscBool        OffsetsChoose(Offsets);
 PetscBool        OffsetsBlank(Offsets);
 PetscErrorCode   OffsetsWant(Offsets, const PetscBool *wanted, PetscBool anew);
 PetscErrorCode   OffsetsExtrapolate(Offsets, const PetscReal *u, PetscReal t, PetscReal t_next);
@@ -33,4 +35,5 @@ PetscErrorCode   OffsetsTake(Offsets, const PetscReal *u, PetscReal t);
 PetscErrorCode   OffsetsDamp(Offsets, PetscBool *changed);
 PetscErrorCode   OffsetsArchive(Offsets, Archive, const char *name);
 const PetscReal *OffsetsGet(Offsets);
+const PetscBool *OffsetsTouched(Offsets);
 const FaceMaps  *OffsetsMaps(Offsets);

@@ -121,12 +121,15 @@ static void TestFacet(void *context, int index, double *bound)
   *bound      = -1;
 }
 
-static PetscErrorCode Normalise(PetscInt n, PetscReal *normal)
+/* Makes normals unit ones; some: of these; NULL: of all. */
+static PetscErrorCode Normalise(PetscInt n, const PetscBool *some, PetscReal *normal)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
-    PetscReal *v = &normal[3 * i], length = PetscSqrtReal(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    PetscReal *v = &normal[3 * i], length;
 
+    if (some && !some[i]) continue;
+    length = PetscSqrtReal(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     for (int d = 0; d < 3 && length > 0; d++) v[d] /= length;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -136,9 +139,9 @@ static PetscErrorCode Normalise(PetscInt n, PetscReal *normal)
 static PetscErrorCode PointNormals(ContactSearch s, const PetscReal *u, PetscReal *any, PetscReal *normal)
 {
   PetscFunctionBeginUser;
-  PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, any));
+  PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, NULL, any));
   PetscCall(PetscArraycpy(normal, any, 3 * s->slaves->n));
-  PetscCall(Normalise(s->slaves->n, normal));
+  PetscCall(Normalise(s->slaves->n, NULL, normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -481,7 +484,8 @@ static PetscErrorCode MakeRoom(ContactSearch s)
   const int      dim = s->mesh->dim;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc5(n, &at->possible, n * dim, &at->x, 3 * n, &at->normal, 3 * faces, &at->face_normal,
+  /* Not NULL on a rank without slave points, which goes the same way as the others. */
+  PetscCall(PetscMalloc5(n + 1, &at->possible, n * dim, &at->x, 3 * n, &at->normal, 3 * faces, &at->face_normal,
                          s->mesh->n_nodes * dim, &at->u));
   if (s->slaves->face_sf)
     PetscCall(PetscMalloc2(s->slaves->n_nodes * dim, &at->slave_u, LEVERS * (s->slaves->n_faces + faces), &at->lever));
@@ -492,10 +496,9 @@ static PetscErrorCode MakeRoom(ContactSearch s)
    are those of SlavePointsNormals(). */
 static PetscErrorCode TestAnew(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal *normals)
 {
-  Partners      *at = &s->partners;
-  const PetscInt n = s->slaves->n, faces = s->master->n_faces;
-  const int      dim = s->mesh->dim;
-  /* Of all ranks: at->possible is NULL on one without slave points. */
+  Partners       *at = &s->partners;
+  const PetscInt  n = s->slaves->n, faces = s->master->n_faces;
+  const int       dim   = s->mesh->dim;
   const PetscBool first = (PetscBool)(at->thin == 0);
   PetscReal      *x, *normal, *face_normal, moved = 0, turned = 0;
 
@@ -546,7 +549,8 @@ static PetscErrorCode MarkFaces(SlavePoints points, const PetscBool *possible, P
 - motion - relative motion (length) for which lists are to be good
 
   Output Parameter:
-. normals - normals[3*n] of the slave points, as SlavePointsNormals() gives them, or 0 where none may have a partner
+. normals - normals[3*n] of the slave points, as SlavePointsNormals() gives them: of those that may have a partner, or
+of all where lists keep all faces
 
   Note:
   The answer is in the search's partners. Boxes are seen farther than a search would by a skin, and normals count as
@@ -564,8 +568,9 @@ PetscErrorCode SearchPartners(ContactSearch s, const PetscReal *u, PetscReal t, 
   if (!holds)
     PetscCall(TestAnew(s, u, t, motion, normals));
   else if (s->partners.any)
-    PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, normals));
-  else
+    PetscCall(
+      SlavePointsNormals(s->slaves, s->n_images, s->images, u, s->keeps_faces ? NULL : s->partners.possible, normals));
+  else if (s->keeps_faces)
     PetscCall(PetscArrayzero(normals, 3 * s->slaves->n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -630,7 +635,7 @@ PetscErrorCode SearchPartnersFaces(ContactSearch s, const PetscReal *u, PetscRea
   PetscCall(SlavePointsMove(points, u));
   PetscCall(PetscMalloc2(points->n, &possible, 3 * points->n, &normal));
   PetscCall(SearchPartners(s, u, t, motion, normal));
-  PetscCall(Normalise(points->n, normal));
+  PetscCall(Normalise(points->n, s->partners.possible, normal));
   if (s->partners.any) {
     PetscCall(TestPoints(s, u, t, &sight, normal, s->partners.possible, possible));
     PetscCall(MarkFaces(points, possible, faces));

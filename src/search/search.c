@@ -76,6 +76,7 @@ PetscErrorCode SearchDestroy(ContactSearch *s)
 {
   PetscFunctionBeginUser;
   if (*s) PetscCall(SearchPartnersFree(*s));
+  if (*s) PetscCall(NeighbourListsFreeSpare(*s));
   PetscCall(PetscFree(*s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -189,12 +190,6 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   int               count, facing;
 
   PetscFunctionBeginUser;
-  lists->list_ptr[q]  = first;
-  lists->facet_ptr[q] = buffer->n;
-  lists->kappa[q]     = 0;
-  lists->nearest[q]   = -1;
-  lists->averse[q]    = PETSC_FALSE;
-  lists->share[q]     = 0;
   if (possible && !possible[q]) PetscFunctionReturn(PETSC_SUCCESS);
   BoxTreeClosest(tree, look->x, look->listed ? &side : NULL, &bound, NearestVisit, look);
   lists->averse[q] = (PetscBool)(look->best < 0 && look->averse);
@@ -225,6 +220,15 @@ static void TakeOutward(Nearest *look)
   for (int d = 0; d < 3; d++) look->outward[d] = length > 0 ? own[d] / length : 0;
 }
 
+/* The lists of slave points from *next to `last` begin where the last list ended. */
+static void BeginLists(NeighbourLists lists, PetscInt *next, PetscInt last, const ListBuffer *buffer)
+{
+  for (; *next <= last; (*next)++) {
+    lists->list_ptr[*next]  = buffer->n_points;
+    lists->facet_ptr[*next] = buffer->n;
+  }
+}
+
 /* Fills the lists of all slave points. fit is NULL where the facets are used. */
 static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, const SearchField *field,
                                          FitSupport *fit, PetscReal motion)
@@ -232,7 +236,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   const int  dim = lists->dim;
   BoxTree    tree;
   int       *found, *ends;
-  PetscInt  *aversed;
+  PetscInt  *aversed, next = 0;
   ListBuffer buffer = {.room        = s->room + s->room / LIST_ROOM,
                        .points_room = s->points_room + s->points_room / LIST_ROOM};
 
@@ -244,33 +248,34 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscCall(PetscMalloc1(buffer.points_room, &buffer.point));
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
   PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, s->one_body, &tree)); /* none is averse then */
-  for (PetscInt q = 0; q < lists->n_slaves; q++) {
-    Nearest look = {.lists      = lists,
-                    .slaves     = s->slaves,
-                    .candidates = field->candidates,
-                    .q          = q,
-                    .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
-                    .size       = s->slaves->size[q],
-                    .height     = s->slaves->height[q],
-                    .listed     = s->listed,
-                    .one_body   = s->one_body,
-                    .marks      = s->marks ? s->marks[q] : 0,
-                    .best       = -1,
-                    .aversed    = aversed,
-                    .least      = s->reach + motion,
-                    .tie        = FACET_TIE * (s->reach + motion)};
+  for (PetscInt i = 0; i < lists->n_near; i++) {
+    const PetscInt q    = lists->near[i];
+    Nearest        look = {.lists      = lists,
+                           .slaves     = s->slaves,
+                           .candidates = field->candidates,
+                           .q          = q,
+                           .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
+                           .size       = s->slaves->size[q],
+                           .height     = s->slaves->height[q],
+                           .listed     = s->listed,
+                           .one_body   = s->one_body,
+                           .marks      = s->marks ? s->marks[q] : 0,
+                           .best       = -1,
+                           .aversed    = aversed,
+                           .least      = s->reach + motion,
+                           .tie        = FACET_TIE * (s->reach + motion)};
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
     TakeOutward(&look);
+    BeginLists(lists, &next, q, &buffer);
     PetscCall(FillSlave(lists, field, tree, fit, motion, s->partners.possible, &look, found, ends, &buffer));
   }
-  lists->list_ptr[lists->n_slaves]  = buffer.n_points;
-  lists->facet_ptr[lists->n_slaves] = buffer.n;
-  lists->list_point                 = buffer.point;
-  s->room                           = buffer.n;
-  s->points_room                    = buffer.n_points;
-  lists->facet                      = buffer.facet;
-  lists->facet_size                 = buffer.size;
+  BeginLists(lists, &next, lists->n_slaves, &buffer);
+  lists->list_point = buffer.point;
+  s->room           = buffer.n;
+  s->points_room    = buffer.n_points;
+  lists->facet      = buffer.facet;
+  lists->facet_size = buffer.size;
   PetscCall(SearchPartnersLearn(s, lists, field, tree));
   BoxTreeDestroy(&tree);
   PetscCall(PetscFree3(found, ends, buffer.position));
@@ -418,12 +423,14 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(PetscMalloc1(3 * s->slaves->n, &normals));
   if (partners) PetscCall(SearchPartners(s, u, t, motion, normals));
   lists->empty = (PetscBool)(partners && !s->partners.any);
+  PetscCall(NeighbourListsChoosePoints(s, lists));
   SearchSlaveBox(s, box);
   PetscCall(SearchFieldCreate(s, u, t, box, distance, (PetscBool)(s->fit->fitted && (!partners || s->partners.any)),
                               lists, &field));
   PetscCall(NeighbourListsCreateSlaves(s, lists));
-  if (!partners) PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, normals));
-  PetscCall(PetscArraycpy(lists->slave_normal, normals, 3 * s->slaves->n));
+  if (!partners) PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, NULL, normals));
+  for (PetscInt i = 0; i < lists->n_near; i++)
+    PetscCall(PetscArraycpy(&lists->slave_normal[3 * lists->near[i]], &normals[3 * lists->near[i]], 3));
   PetscCall(PetscFree(normals));
   if (s->master) PetscCall(SlavePointsFindEnds(s->slaves, u));
   if (s->fit->fitted) PetscCall(FitSupportCreate(s, lists, &field, &fit));
@@ -433,7 +440,8 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   if (s->fit->fitted) PetscCall(FitSupportDestroy(&fit));
   if (s->keeps_faces) PetscCall(NeighbourListsTakeFaces(lists, &field));
   PetscCall(NeighbourListsUpdate(s, lists, u, t, NULL));
-  for (PetscInt q = 0; q < lists->n_slaves; q++) NeighbourListsCentre(lists, q, &lists->centre[2 * q]);
+  for (PetscInt i = 0; i < lists->n_near; i++)
+    NeighbourListsCentre(lists, lists->near[i], &lists->centre[2 * lists->near[i]]);
   PetscCall(SearchFieldDestroy(&field));
   *out = lists;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -77,65 +77,50 @@ static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest present extent of a face of the master (length). Faces of a tool keep theirs, along any axis that
-   between their corners where they have no other nodes. */
-static PetscErrorCode LargestExtent(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal *extent)
+/* Marks the faces of the master within a distance of the boxes, and takes in their largest present extent (length). */
+static PetscErrorCode MarkNear(ContactSearch s, const PetscReal *u, PetscReal t, PetscInt n_boxes,
+                               const PetscReal *boxes, PetscReal distance, PetscBool *some, PetscReal *extent)
 {
-  const ContactSurface master   = s->master;
-  const int            dim      = s->mesh->dim;
-  const PetscBool      straight = (PetscBool)(master->rigid && master->order == 1);
-  PetscReal            x[FACE_MAX_NODES * 3], box[6];
+  const int dim = s->mesh->dim;
+  PetscReal x[FACE_MAX_NODES * 3], box[6];
 
   PetscFunctionBeginUser;
-  *extent = straight ? master->max_extent : 0;
-  if (straight) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt f = 0; f < master->n_faces; f++) {
-    PetscReal square = 0;
+  for (PetscInt b = 0; b < n_boxes; b++) {
+    PetscInt n, *faces;
 
-    SearchFacePositions(s, master, f, u, t, x);
-    SearchBoxEmpty(box);
-    for (int a = 0; a < ElementGet(master->faces[f].type)->nodes; a++) SearchBoxAdd(box, dim, &x[a * dim]);
-    for (int d = 0; d < dim; d++) square += PetscSqr(box[3 + d] - box[d]);
-    *extent = PetscMax(*extent, PetscSqrtReal(square));
+    PetscCall(SearchNearBox(s, s->master, u, t, &boxes[6 * b], distance, &n, &faces));
+    for (PetscInt i = 0; i < n; i++) {
+      PetscReal square = 0;
+
+      some[faces[i]] = PETSC_TRUE;
+      SearchFacePositions(s, s->master, faces[i], u, t, x);
+      SearchBoxEmpty(box);
+      for (int a = 0; a < ElementGet(s->master->faces[faces[i]].type)->nodes; a++) SearchBoxAdd(box, dim, &x[a * dim]);
+      for (int d = 0; d < dim; d++) square += PetscSqr(box[3 + d] - box[d]);
+      *extent = PetscMax(*extent, PetscSqrtReal(square));
+    }
+    PetscCall(PetscFree(faces));
   }
-  if (!master->rigid) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, extent, 1, MPIU_REAL, MPIU_MAX, s->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Marks the faces of the master whose nodes' geometry is needed, or from which it comes: the geometry of a node takes
-   two rings of faces around it. Faces beyond the distance from the boxes by two present extents of the largest face
-   are no part of these rings. Ranks agree where they share nodes. */
+   two rings of faces around it. A ring is no farther from the boxes than the one inside of it by the largest extent of
+   a face there. Ranks agree where they share nodes. */
 static PetscErrorCode MarkFaces(ContactSearch s, const PetscReal *u, PetscReal t, PetscInt n_boxes,
                                 const PetscReal *boxes, PetscReal distance, PetscBool *some)
 {
   enum { RINGS = 2 };
-  PetscReal x[FACE_MAX_NODES * 3], extent;
 
   PetscFunctionBeginUser;
-  PetscCall(LargestExtent(s, u, t, &extent));
-  for (PetscInt f = 0; f < s->master->n_faces; f++) {
-    const int nodes = ElementGet(s->master->faces[f].type)->nodes;
+  PetscCall(PetscArrayzero(some, s->master->n_faces));
+  for (int ring = 0; ring <= RINGS; ring++) {
+    PetscReal extent = 0;
 
-    SearchFacePositions(s, s->master, f, u, t, x);
-    some[f] = PETSC_FALSE;
-    for (PetscInt b = 0; b < n_boxes && !some[f]; b++)
-      some[f] = SearchSomeImageMeets(s, nodes, x, &boxes[6 * b], distance + RINGS * extent);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Places the nodes of a tool once for all its faces. */
-static PetscErrorCode PlaceTool(ContactSearch s, PetscReal t)
-{
-  const int dim = s->mesh->dim;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(s->master->rigid->n_nodes * dim, &s->rigid_x));
-  for (PetscInt i = 0; i < s->master->rigid->n_nodes; i++) {
-    PetscReal x[3];
-
-    SearchRigidPosition(s, i, t, x);
-    for (int d = 0; d < dim; d++) s->rigid_x[i * dim + d] = x[d];
+    PetscCall(MarkNear(s, u, t, n_boxes, boxes, distance, some, &extent));
+    if (ring < RINGS && !s->master->rigid)
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &extent, 1, MPIU_REAL, MPIU_MAX, s->mesh->comm));
+    distance += (1 + SEARCH_ON_PLANE) * extent; /* round-off leaves no face out that touches */
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -187,7 +172,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   *field     = (SearchField){0};
   lists->dim = mesh->dim;
   ToolsPlace(mesh, u, t);
-  if (rigid) PetscCall(PlaceTool(s, t));
+  PetscCall(SearchStateBegin(s));
   PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
   PetscCall(PetscMalloc1(6 * size, &boxes));
   if (s->master && !rigid) PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, mesh->comm));
@@ -202,7 +187,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   else
     PetscCall(SearchExchangeFaces(s, geometry, u, boxes, distance, &field->n_records, &field->records));
   PetscCall(PetscFree(boxes));
-  PetscCall(PetscFree(s->rigid_x));
+  PetscCall(SearchStateEnd(s));
   FaceRecordsSort(field->n_records, field->records);
   PetscCall(PetscFree(geometry));
   if (s->maps && s->maps->ptr) PetscCall(FetchMaps(s, field)); /* partners are sought before there are maps */

@@ -23,15 +23,38 @@ static PetscErrorCode CreateForest(SlavePoints points)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A face goes to each rank that owns one of its nodes. */
-static PetscBool OwnsNode(const void *context, PetscInt f, PetscMPIInt r)
+/* Does a rank own one of a face's nodes? */
+static PetscBool OwnsNode(ContactSurface surface, PetscInt f, PetscMPIInt r)
 {
-  const ContactSurface surface = (const ContactSurface)context;
-  const Facet         *facet   = &surface->faces[f];
+  const Facet *facet = &surface->faces[f];
 
   for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
     if (surface->mesh->node_owner[facet->nodes[a]] == r) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+/* Sends each face to each rank that owns one of its nodes, and sorts what has arrived. */
+static PetscErrorCode ShareFaces(ContactSurface surface, PetscInt *n_records, FaceRecord **records)
+{
+  PetscInt   *count, *faces, total = 0;
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(surface->mesh->comm, &size));
+  PetscCall(PetscCalloc1(size, &count));
+  PetscCall(PetscMalloc1(PetscMin(size, FACE_MAX_NODES) * surface->n_faces, &faces));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    for (PetscInt f = 0; f < surface->n_faces; f++) {
+      if (!OwnsNode(surface, f, r)) continue;
+      faces[total++] = f;
+      count[r]++;
+    }
+  }
+  PetscCall(FaceRecordsShare(surface, NULL, NULL, count, faces, n_records, records));
+  FaceRecordsSort(*n_records, *records);
+  PetscCall(PetscFree(faces));
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Takes the nodes of slave points that are nodes, and those around them where faces have arrived. */
@@ -88,10 +111,7 @@ PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const 
   points->mesh    = mesh;
   points->surface = surface;
   points->n       = n;
-  if (levers) {
-    PetscCall(FaceRecordsShare(surface, NULL, NULL, OwnsNode, surface, &n_records, &records));
-    FaceRecordsSort(n_records, records);
-  }
+  if (levers) PetscCall(ShareFaces(surface, &n_records, &records));
   PetscCall(TakeNodes(points, nodes, n_records, records));
   PetscCall(PetscMalloc6(n + 1, &points->ptr, n, &points->node, n, &points->S, n, &points->hat, n, &points->weight,
                          n * mesh->dim, &points->offset));
@@ -171,8 +191,7 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
   points->mesh    = surface->mesh;
   points->surface = surface;
   points->finer   = finer;
-  PetscCall(FaceRecordsShare(surface, NULL, NULL, OwnsNode, surface, &n_records, &records));
-  FaceRecordsSort(n_records, records);
+  PetscCall(ShareFaces(surface, &n_records, &records));
   PetscCall(TakeRecords(points, n_records, records));
   for (PetscInt f = 0; f < n_records; f++) {
     points->first[f] = n;
@@ -328,6 +347,31 @@ void SlavePointsPosition(SlavePoints points, PetscInt q, PetscReal *x)
       x[d] += points->S[k] * (points->nodes[points->node[k]].X[d] + points->u[points->node[k] * dim + d]);
 }
 
+/* Marks the mesh's nodes, on all ranks, of which some points are made. */
+static PetscErrorCode MarkNodes(SlavePoints points, const PetscBool *some, PetscReal *marks)
+{
+  PetscReal *mine;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(points->n_nodes, &mine));
+  for (PetscInt q = 0; q < points->n; q++)
+    for (PetscInt k = points->ptr[q]; k < points->ptr[q + 1] && some[q]; k++) mine[points->node[k]] = 1;
+  PetscCall(PetscArrayzero(marks, points->mesh->n_nodes));
+  PetscCall(PetscSFReduceBegin(points->sf, MPIU_REAL, mine, marks, MPIU_MAX));
+  PetscCall(PetscSFReduceEnd(points->sf, MPIU_REAL, mine, marks, MPIU_MAX));
+  PetscCall(MeshSumNodes(points->mesh, 1, marks));
+  PetscCall(PetscFree(mine));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Has a face a marked node? marks NULL: it counts as one. */
+static PetscBool IsMarked(const Facet *face, const PetscReal *marks)
+{
+  for (int a = 0; a < ElementGet(face->type)->nodes && marks; a++)
+    if (marks[face->nodes[a]] > 0) return PETSC_TRUE;
+  return (PetscBool)!marks;
+}
+
 /* Normals at nodes: the area-weighted mean normal of the faces around each node. */
 static PetscErrorCode NodeNormals(SlavePoints points, const PetscReal *u, PetscReal *normals)
 {
@@ -344,14 +388,17 @@ static PetscErrorCode NodeNormals(SlavePoints points, const PetscReal *u, PetscR
 }
 
 /* Mean normals of the faces around each node, weighted by the hat functions. On a plane of symmetry the other half
-   cancels the part along the plane's normal. */
-static PetscErrorCode HatNormals(SlavePoints points, int n_images, const SurfaceImage *images, const PetscReal *u)
+   cancels the part along the plane's normal. some: only nodes of which these points are made are right; NULL: all. */
+static PetscErrorCode HatNormals(SlavePoints points, int n_images, const SurfaceImage *images, const PetscReal *u,
+                                 const PetscBool *some)
 {
   Mesh       mesh = points->mesh;
   const int  dim  = mesh->dim;
-  PetscReal *sum, *at;
+  PetscReal *sum, *at, *marks = NULL;
 
   PetscFunctionBeginUser;
+  if (some) PetscCall(PetscMalloc1(mesh->n_nodes, &marks));
+  if (some) PetscCall(MarkNodes(points, some, marks));
   PetscCall(PetscCalloc2(mesh->n_nodes * dim, &sum, points->n_nodes * dim, &at));
   for (PetscInt f = 0; f < points->surface->n_faces; f++) {
     const Facet    *facet = &points->surface->faces[f];
@@ -359,6 +406,7 @@ static PetscErrorCode HatNormals(SlavePoints points, int n_images, const Surface
     const int       nodes = ElementGet(facet->type)->nodes;
     double          x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS], normal[FACE_RULE_POINTS * 3];
 
+    if (!IsMarked(facet, marks)) continue;
     for (int a = 0; a < nodes; a++)
       for (int d = 0; d < dim; d++)
         x[a * dim + d] = mesh->coords[facet->nodes[a] * dim + d] + u[facet->nodes[a] * dim + d];
@@ -377,6 +425,7 @@ static PetscErrorCode HatNormals(SlavePoints points, int n_images, const Surface
         if (images[bit].sign[d] < 0) points->normal[3 * i + d] = 0;
   }
   PetscCall(PetscFree2(sum, at));
+  PetscCall(PetscFree(marks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -411,25 +460,29 @@ void SlavePointsFacePositions(SlavePoints points, PetscInt f, PetscReal *x)
 + points   - the slave points; their mean normals around nodes are set in surface-to-surface contact
 . n_images - number of mirror images of the pair
 . images   - the images
-- u        - local displacements u[mesh n_nodes*dim] of the last SlavePointsMove(), ghosts included
+. u        - local displacements u[mesh n_nodes*dim] of the last SlavePointsMove(), ghosts included
+- some     - which points are asked for; NULL: all, on all ranks
 
   Output Parameter:
-. normals - normals[n*3], out of the slave's body, of any length
+. normals - normals[n*3], out of the slave's body, of any length; those of points that are not asked for may not be set
 @*/
 PetscErrorCode SlavePointsNormals(SlavePoints points, int n_images, const SurfaceImage *images, const PetscReal *u,
-                                  PetscReal *normals)
+                                  const PetscBool *some, PetscReal *normals)
 {
   const int dim = points->mesh->dim;
 
   PetscFunctionBeginUser;
   if (points->face_sf)
-    PetscCall(HatNormals(points, n_images, images, u));
+    PetscCall(HatNormals(points, n_images, images, u, some));
   else
     PetscCall(NodeNormals(points, u, normals));
   for (PetscInt f = 0; f < points->n_faces; f++) {
     const Facet *facet = &points->faces[f];
     double       x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS];
+    PetscBool    asked = (PetscBool)!some;
 
+    for (PetscInt q = points->first[f]; q < points->first[f + 1] && !asked; q++) asked = some[q];
+    if (!asked) continue;
     SlavePointsFacePositions(points, f, x);
     FaceRuleAreas(FaceRuleOf(facet->type, points->finer, points->ends[f]), facet->type, dim, GEOMETRY_SOLID, x, area,
                   &normals[3 * points->first[f]]);
@@ -461,28 +514,53 @@ PetscErrorCode SlavePointsFindEnds(SlavePoints points, const PetscReal *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds the faces of the points on this rank that are touched where they live. */
+static PetscErrorCode TouchedFaces(SlavePoints points, const PetscBool *touched, PetscInt *n, PetscInt **faces)
+{
+  PetscInt *at_home, *here;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(points->surface->n_faces, &at_home, points->n_faces, &here));
+  for (PetscInt f = 0; f < points->surface->n_faces; f++) at_home[f] = touched[f];
+  PetscCall(PetscSFBcastBegin(points->face_sf, MPIU_INT, at_home, here, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(points->face_sf, MPIU_INT, at_home, here, MPI_REPLACE));
+  PetscCall(PetscMalloc1(points->n_faces, faces));
+  *n = 0;
+  for (PetscInt f = 0; f < points->n_faces; f++)
+    if (here[f]) (*faces)[(*n)++] = f;
+  PetscCall(PetscFree2(at_home, here));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SlavePointsSetOffsets - takes the offsets of this rank's own faces to the points on all ranks.
 
   Collective
 
   Input Parameters:
-+ points - the slave points
-- offset - offset[faces of the surface][FACE_RULE_POINTS*dim] (length)
++ points  - the slave points
+. offset  - offset[faces of the surface][FACE_RULE_POINTS*dim] (length)
+- touched - touched[faces of the surface]: the others have always been 0
 @*/
-PetscErrorCode SlavePointsSetOffsets(SlavePoints points, const PetscReal *offset)
+PetscErrorCode SlavePointsSetOffsets(SlavePoints points, const PetscReal *offset, const PetscBool *touched)
 {
   const int  dim = points->mesh->dim;
   PetscReal *arrived;
+  PetscInt   n, *faces;
+  PetscSF    some;
 
   PetscFunctionBeginUser;
+  PetscCall(TouchedFaces(points, touched, &n, &faces));
+  PetscCall(PetscSFCreateEmbeddedLeafSF(points->face_sf, n, faces, &some));
   PetscCall(PetscMalloc1(points->n_faces * FACE_RULE_POINTS * dim, &arrived));
-  PetscCall(PetscSFBcastBegin(points->face_sf, points->face_block, offset, arrived, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(points->face_sf, points->face_block, offset, arrived, MPI_REPLACE));
-  for (PetscInt f = 0; f < points->n_faces; f++)
-    PetscCall(PetscArraycpy(&points->offset[points->first[f] * dim], &arrived[f * FACE_RULE_POINTS * dim],
-                            (points->first[f + 1] - points->first[f]) * dim));
+  PetscCall(PetscSFBcastBegin(some, points->face_block, offset, arrived, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(some, points->face_block, offset, arrived, MPI_REPLACE));
+  for (PetscInt i = 0; i < n; i++)
+    PetscCall(PetscArraycpy(&points->offset[points->first[faces[i]] * dim], &arrived[faces[i] * FACE_RULE_POINTS * dim],
+                            (points->first[faces[i] + 1] - points->first[faces[i]]) * dim));
   PetscCall(PetscFree(arrived));
+  PetscCall(PetscSFDestroy(&some));
+  PetscCall(PetscFree(faces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -51,8 +51,8 @@ PetscInt       SlavePointFace(SlavePoints, PetscInt q);
 void           SlavePointsPosition(SlavePoints, PetscInt q, PetscReal *x);
 void           SlavePointsFacePositions(SlavePoints, PetscInt f, PetscReal *x);
 PetscErrorCode SlavePointsNormals(SlavePoints, int n_images, const SurfaceImage *, const PetscReal *u,
-                                  PetscReal *normals);
+                                  const PetscBool *some, PetscReal *normals);
 PetscErrorCode SlavePointsFindEnds(SlavePoints, const PetscReal *u);
-PetscErrorCode SlavePointsSetOffsets(SlavePoints, const PetscReal *offset);
+PetscErrorCode SlavePointsSetOffsets(SlavePoints, const PetscReal *offset, const PetscBool *touched);
 PetscErrorCode SlavePointsSetMaps(SlavePoints, const FaceMaps *);
 PetscErrorCode SlavePointsHatAreas(SlavePoints, Geometry, const PetscReal *u, PetscReal *area);

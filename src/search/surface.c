@@ -201,6 +201,7 @@ PetscErrorCode SurfaceDestroy(ContactSurface *surface)
   PetscCall(PetscFree3((*surface)->faces, (*surface)->face_size, (*surface)->face_height));
   PetscCall(PetscFree((*surface)->face_marks));
   PetscCall(PetscFree((*surface)->face_ends));
+  PetscCall(FaceBlocksDestroy(&(*surface)->blocks));
   PetscCall(PetscFree(*surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,7 +9,7 @@
    other at all. SurfaceReflect() and SurfaceImageFacet() take positions and faces to a mirror image. */
 #pragma once
 #include "bodies/elasticity.h"
-#include "smooth/facet.h"
+#include "search/faceblocks.h"
 #include <stdint.h>
 
 /* Marks of a face, see facemarks.h */
@@ -45,6 +45,7 @@ typedef struct {
   FaceMarks *face_marks; /* of each face; NULL: there are none */
   int       *face_ends;  /* of each face, bit e: edge e is an end, see surfaceends.h; NULL: none was sought */
   PetscInt   turned;     /* faces of a rigid tool whose normals were turned */
+  FaceBlocks blocks;     /* NULL before a search has asked for them; of a rigid tool in its own frame */
 } *ContactSurface;
 
 PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const char *key, const char *name,

@@ -149,6 +149,7 @@ FULL = {
     f"{PYTHON} scripts/all_table.py --record runs/records/all.csv": printed("all_table", "all"),
     f"{PYTHON} scripts/overhead_table.py --record runs/records/all_overhead.csv": printed("overhead_table",
                                                                                       "all_overhead"),
+    f"{PYTHON} scripts/search_table.py --record runs/records/search.csv": printed("search_table", "search"),
     f"{PYTHON} tests/hard/run.py --group guards":
     f"{PYTHON} tests/hard/run.py {BURNISH} --out $WORK/out/hard --case 'corner of two walls' --ranks 1",
     f"{PYTHON} tests/hard/run.py --record runs/records/hard.csv":

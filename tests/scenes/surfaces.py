@@ -10,6 +10,7 @@ BEAMS, BLOCK, BLADE = SCENES / "crossed_beams.yaml", SCENES / "patch.yaml", SCEN
 PRESSED = ["supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_min, uz: 0}]",
            "loads=[{surface: y_max, uy: -0.1}]", "contact=[{name: own, surfaces: all}]"]
 PLATE = SCENES / "plate_block.yaml"
+PAD = SCENES / "pad_between_tools.yaml"
 BUMPER_SPREAD = 5e-3  # of its force: the two formulations on its coarse mesh
 EXACT = 1e-6  # forces and pressures of the same problem written in another way
 SMOOTHED = 1e-3  # the smooth surface of a bent tip of four faces is not its faces: forces, and the largest pressure
@@ -177,6 +178,17 @@ def still():
         check.holds(f"iterations on {n} ranks", other["newton_iterations"] == one["newton_iterations"])
 
 
+def tools():
+    """A pad between two rigid sheets that close on it and turn: more faces of the sheets, which meet nothing, change
+    nothing, and neither do more ranks."""
+    small, *others = (run(args, PAD, out=f"tools_{n}_{ranks}", ranks=ranks, overrides=[
+        f"mesh.parameters.n={n}", "output.every=0"]).summary() for n, ranks in ((30, 1), (60, 2), (60, 3)))
+    check.holds("both sheets are in contact", [pair["nodes"] > 0 for pair in small["contact"]] == [False, True, True])
+    for k, other in enumerate(others):
+        check.near(f"force of run {k}", other["probes"]["force"] / small["probes"]["force"], 1, 1e-9)
+        check.holds(f"iterations of run {k}", other["newton_iterations"] == small["newton_iterations"])
+
+
 def override():
     """A pair by slave and master takes its surfaces from a list of all bodies, in both formulations."""
     for formulation in ("node_to_surface", "surface_to_surface"):
@@ -301,7 +313,8 @@ def refusals():
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, refined, mirror, walls, ranks, refusals, override, friction, overlap, bumper, edges, knife, live or still"))
+args = arguments(("case", "frame, refined, mirror, walls, ranks, refusals, override, friction, overlap, bumper, edges, knife, live, still or "
+                              "tools"))
 check = Check()
 if args.case == "frame":
     for smoother in ("facet", "diffuse"):
@@ -312,5 +325,6 @@ elif args.case == "mirror":
     mirror("surface_to_surface")
 else:
     {"walls": walls, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
-     "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "live": live, "refined": refined, "still": still}[args.case]()
+     "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "live": live, "refined": refined, "still": still,
+     "tools": tools}[args.case]()
 check.finish()

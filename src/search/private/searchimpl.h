@@ -1,9 +1,9 @@
 /* Internals that the files of the search share and nobody else sees: faces on their way between ranks, candidates,
    growing lists, fits that are being made.
 
-   SearchFieldCreate() (searchfield.c) collects faces with faceexchange.c, makes candidates with candidate.c and numbers
-   nodes and points with neighbourlists.c. FitSupportCreate() (fitsupport.c) then prepares the fits, and
-   FitSupportSlave() makes one for each slave point. Offsets and the misses of a master's nodes use
+   SearchFieldCreate() (searchfield.c) collects faces with nearbox.c and faceexchange.c, makes candidates with
+   candidate.c and numbers nodes and points with neighbourlists.c. FitSupportCreate() (fitsupport.c) then prepares the
+   fits, and FitSupportSlave() makes one for each slave point. Offsets and the misses of a master's nodes use
    MasterFitsCreate() and FitSupportClimb() for fits of the surface itself. */
 #pragma once
 #include "base/boxtree.h"
@@ -52,8 +52,13 @@ struct _n_ContactSearch {
   PetscReal           reach, margin; /* lengths, without the motion */
   PetscReal           fit_reach;     /* SearchFitReach() */
   PetscReal          *rigid_x;       /* of a tool's nodes (length), while faces are collected; else NULL */
+  char               *rigid_known;   /* of each of them: its position has been asked for */
+  PetscBool           holds;         /* between SearchStateBegin() and SearchStateEnd() */
+  int                 n_blocks_held; /* blocks that have been placed since, of slave and master */
+  FaceBlocks          blocks_held[2];
   PetscInt            room, points_room; /* of the facets and points of the last lists */
   Partners            partners;
+  NeighbourLists spare; /* lists that were given back, of which only what belongs to slave points is left, or NULL */
 };
 
 /* A face or a mirror image of it, in the present position. */
@@ -145,7 +150,7 @@ PetscReal      CandidateBoxDistance(int dim, const Candidate *, const PetscReal 
 PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, PetscBool facing, BoxTree *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
 PetscErrorCode ListBufferAddPoints(ListBuffer *, PetscInt first, PetscInt n, const PetscInt *points);
-/* faceexchange.c */
+/* searchbox.c */
 void      SearchSlaveBox(ContactSearch, PetscReal box[6]);
 void      SearchMasterBox(ContactSearch, const PetscReal *u, PetscReal t, const PetscBool *some, PetscReal box[6]);
 void      SearchBoxEmpty(PetscReal box[6]);
@@ -153,15 +158,25 @@ void      SearchBoxAdd(PetscReal box[6], int dim, const PetscReal *x);
 void      SearchFacePositions(ContactSearch, ContactSurface, PetscInt f, const PetscReal *u, PetscReal t, PetscReal *x);
 PetscBool SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, PetscReal distance);
 void      SearchRigidPosition(ContactSearch, PetscInt n, PetscReal t, PetscReal x[3]);
+PetscBool SearchFaceMeets(int dim, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance);
 PetscBool SearchSomeImageMeets(ContactSearch, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance);
+/* faceexchange.c */
 PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const PetscReal *u, const PetscReal *boxes,
                                    PetscReal distance, PetscInt *n, FaceRecord **);
 PetscErrorCode SearchPickRigidFaces(ContactSearch, const NodeGeometry *, PetscReal t, const PetscReal box[6],
                                     PetscReal distance, PetscInt *n, FaceRecord **);
+/* nearbox.c */
+PetscErrorCode SearchStateBegin(ContactSearch);
+PetscErrorCode SearchStateEnd(ContactSearch);
+PetscErrorCode SearchBlocks(ContactSearch, ContactSurface, const PetscReal *u, FaceBlocks *);
+PetscErrorCode SearchNearBox(ContactSearch, ContactSurface, const PetscReal *u, PetscReal t, const PetscReal box[6],
+                             PetscReal distance, PetscInt *n, PetscInt **faces);
 /* neighbourlists.c */
 PetscErrorCode NeighbourListsCreateNodes(ContactSearch, SearchField *, NeighbourLists);
 PetscErrorCode NeighbourListsCreatePoints(ContactSearch, NeighbourLists, SearchField *);
+PetscErrorCode NeighbourListsChoosePoints(ContactSearch, NeighbourLists);
 PetscErrorCode NeighbourListsCreateSlaves(ContactSearch, NeighbourLists);
+PetscErrorCode NeighbourListsFreeSpare(ContactSearch);
 void           NeighbourListsPointGeometry(ContactSearch, NeighbourLists, const SearchField *, NodeGeometry *of_nodes,
                                            NodeGeometry *of_points);
 PetscErrorCode NeighbourListsUpdateNodes(ContactSearch, NeighbourLists, const PetscReal *u, PetscReal t);
