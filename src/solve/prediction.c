@@ -265,6 +265,29 @@ static PetscErrorCode ModelPredictPieces(Model model, Vec x, PetscBool all, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Repeats the prediction x in pieces, without friction: first with all contact softened, then with the new one alone.
+   Each way ends where it grows longer. *far: turn of cells in x, over the largest one. */
+static PetscErrorCode ModelPredictStrictly(Model model, Vec x, PetscReal *far, PetscInt *pieces, PetscBool *settled,
+                                           SolveReport *report)
+{
+  const SolveResult result = report->result;
+  PetscReal         turn, *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &v));
+  PetscCall(ProblemDisplacements(model->problem, x, model->t, v));
+  PetscCall(ModelLargestTurn(model, model->work->accepted_u, v, &turn));
+  PetscCall(PetscFree(v));
+  *far = turn / MODEL_FARTHEST;
+  for (int keep = 0; keep <= 1 && !*settled; keep++) {
+    report->result       = result;
+    model->work->softens = (PetscBool)!keep;
+    PetscCall(ModelPredictPieces(model, x, !keep, PETSC_TRUE, pieces, settled, report));
+    if (!*pieces) model->work->softens = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelPredictFar - repeats the prediction in pieces, where it went too far for one linear step.
 
@@ -282,8 +305,8 @@ static PetscErrorCode ModelPredictPieces(Model model, Vec x, PetscBool all, Pets
   At first all contact is softened. What is pressed together may then spring back, so that the pieces lead away from
   every equilibrium: a way that is longer after a piece than before it says so. Then the pieces are made anew, and
   contact that the first linear step counted on keeps its penalty. Not so with friction: a linear step takes what sticks
-  along, although most of it will slip. If either way grows longer, the first is gone to its end, with the lists that it
-  began with.
+  along, although most of it will slip. If either way grows longer, the step is too long: it is not begun where a
+shorter one may be tried. Else the first way is gone to its end, with the lists that it began with.
 @*/
 PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 {
@@ -298,13 +321,10 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
   if (model->scene->kinematics == KINEMATICS_SMALL || model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(model->x, &x));
   PetscCall(VecCopy(model->x, x));
-  for (int keep = 0; keep <= 1 && keeps && !settled; keep++) {
-    report->result       = result;
-    model->work->softens = (PetscBool)!keep;
-    PetscCall(ModelPredictPieces(model, x, !keep, PETSC_TRUE, &pieces, &settled, report));
-    if (!pieces) model->work->softens = PETSC_FALSE;
-  }
-  if (!settled) {
+  if (keeps) PetscCall(ModelPredictStrictly(model, x, &report->far, &pieces, &settled, report));
+  if (keeps && !settled && model->shortens)
+    report->result = SOLVE_FAR;
+  else if (!settled) {
     report->result       = result;
     model->work->softens = PETSC_TRUE;
     if (keeps)
@@ -312,7 +332,8 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
                                    model->problem->expected));
     PetscCall(ModelPredictPieces(model, x, PETSC_TRUE, PETSC_FALSE, &pieces, &settled, report));
   }
-  if ((pieces || model->work->unsettled) && model->contact) PetscCall(ModelStayBehind(model, report));
+  if ((pieces || model->work->unsettled) && model->contact && report->result != SOLVE_FAR)
+    PetscCall(ModelStayBehind(model, report));
   PetscCall(VecDestroy(&x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
