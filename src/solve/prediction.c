@@ -200,7 +200,8 @@ static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t,
    element, or has not found its contact and is farther from balance than that state. Close to a limit of the stability
    that contact gives a linear step goes far, however little the load changes, and its pieces lead away from every
    equilibrium. A tool that leaves by much more than bodies spring back drags them along where the prediction holds
-   contact. */
+   contact. A prediction that lists do not reach is judged with new ones: in the accepted state what is prescribed moves
+   alone, and stiff cells beside it are far from balance. */
 static PetscErrorCode ModelStayBehind(Model model, SolveReport *report)
 {
   const Problem problem = model->problem;
@@ -211,6 +212,10 @@ static PetscErrorCode ModelStayBehind(Model model, SolveReport *report)
   if (report->result == SOLVE_CONVERGED) {
     if (model->work->unsettled) PetscCall(ModelResidualAt(model, model->work->accepted_x, &stands, &here));
     PetscCall(ModelResidualAt(model, model->x, &ok, &there));
+    if (ok && here < there && there == PETSC_INFINITY) {
+      PetscCall(ModelReachOn(model, problem->trial, model->t, report));
+      PetscCall(ModelResidualAt(model, model->x, &ok, &there));
+    }
   }
   if (ok && !(here < there)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscInfo(model->snes, "the prediction goes too far: the step starts from the accepted state\n"));
