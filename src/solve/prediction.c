@@ -102,12 +102,13 @@ PetscErrorCode ModelExtrapolate(Model model, PetscReal t, PetscReal *u, Vec x, P
 /* A linear step from the extrapolated state, which is Newton's first iteration from there. That state is in no
    equilibrium: an extrapolation changes volumes by a little, and what that does to the pressure of stiff ones must not
    get into the tangent, which has that of the accepted state. Three rings on each other (quad9, nu 0.499) take 32
-   iterations, and else 299 with two failed steps. Not so where bodies yield: metals are not stiff in volume, and a sheet
-   whose hole is expanded takes 241 iterations instead of 132. work->extrapolated: the step was made and did not go far.
+   iterations, and else 299 with two failed steps. Not so where bodies yield: metals are not stiff in volume, and a
+   sheet whose hole is expanded takes 241 iterations instead of 132. work->extrapolated: the step was made and did not
+   go far.
  */
 static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *report)
 {
-  ModelWork            *work      = model->work;
+  ModelWork            *work     = model->work;
   const StressReference accepted = {work->solved, 0, 0}, *reference = NULL;
   const PetscInt        n = model->mesh->n_nodes * model->mesh->dim;
   PetscReal            *u, *v, turn;
@@ -119,8 +120,7 @@ static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *re
   if (work->extrapolated)
     PetscCall(ProblemInOrder(model->problem, work->accepted_u, work->accepted_t, u, model->t, &work->extrapolated));
   if (work->extrapolated) {
-    PetscCall(
-      ModelStepLoads(model, u, reference, model->t, (PetscBool)(model->contact != NULL), PETSC_FALSE, report));
+    PetscCall(ModelStepLoads(model, u, reference, model->t, (PetscBool)(model->contact != NULL), PETSC_FALSE, report));
     PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
     PetscCall(ModelLargestTurn(model, u, v, &turn));
     work->extrapolated = (PetscBool)(report->result == SOLVE_CONVERGED && turn <= MODEL_FARTHEST);
