@@ -102,9 +102,8 @@ PetscErrorCode ModelExtrapolate(Model model, PetscReal t, PetscReal *u, Vec x, P
 /* A linear step from the extrapolated state, which is Newton's first iteration from there. That state is in no
    equilibrium: an extrapolation changes volumes by a little, and what that does to the pressure of stiff ones must not
    get into the tangent, which has that of the accepted state. Three rings on each other (quad9, nu 0.499) take 32
-   iterations, and else 299 with two failed steps. Not so where bodies yield: metals are not stiff in volume, and a
-   sheet whose hole is expanded takes 241 iterations instead of 132. work->extrapolated: the step was made and did not
-   go far.
+   iterations, and else 299 with two failed steps. Without rubber the tangent is the state's own: a steel sheet whose
+   hole is expanded would take 241 iterations instead of 132. work->extrapolated: the step was made and did not go far.
  */
 static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *report)
 {
@@ -114,7 +113,7 @@ static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *re
   PetscReal            *u, *v, turn;
 
   PetscFunctionBeginUser;
-  if (work->extrapolates && !ProblemIsPlastic(model->problem)) reference = &accepted;
+  if (work->rubber && !ProblemIsPlastic(model->problem)) reference = &accepted;
   PetscCall(PetscMalloc2(n, &u, n, &v));
   PetscCall(ModelExtrapolate(model, model->t, u, model->x, &work->extrapolated));
   if (work->extrapolated)
