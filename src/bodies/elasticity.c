@@ -816,15 +816,24 @@ static PetscErrorCode CheckTangent(Elasticity e)
   Input Parameter:
 . e - the elasticity
 
-  Output Parameter:
-. any - the same on all ranks, which then take part in changing multipliers together
+  Output Parameters:
++ any    - the same on all ranks, which then take part in changing multipliers together
+- rubber - some of them are of bodies that do not yield, and the pressure of the volume is what changes
 @*/
-PetscErrorCode ElasticityExtrapolates(Elasticity e, PetscBool *any)
+PetscErrorCode ElasticityExtrapolates(Elasticity e, PetscBool *any, PetscBool *rubber)
 {
   PetscFunctionBeginUser;
-  *any = PETSC_FALSE;
-  for (int g = 0; g < e->n_groups; g++) *any = (PetscBool)(*any || ElementExtrapolates(&e->groups[g].kernel));
+  *any = *rubber = PETSC_FALSE;
+  for (int g = 0; g < e->n_groups; g++) {
+    const KernelCase *kernel = &e->groups[g].kernel;
+    const ElasticLaw *law    = MaterialGetLaw(kernel->law);
+
+    if (!ElementExtrapolates(kernel)) continue;
+    *any    = PETSC_TRUE;
+    *rubber = (PetscBool)(*rubber || (law->separable && !law->plastic));
+  }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, any, 1, MPIU_BOOL, MPI_LOR, e->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rubber, 1, MPIU_BOOL, MPI_LOR, e->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

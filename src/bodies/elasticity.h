@@ -32,7 +32,7 @@ PetscErrorCode ElasticityResidual(Elasticity, const PetscReal *u, PetscReal *f, 
 PetscErrorCode ElasticityVolumeEnergy(Elasticity, const PetscReal *u, PetscReal *energy);
 PetscErrorCode ElasticityTangent(Elasticity, const PetscReal *u, const StressReference *);
 PetscErrorCode ElasticityReleaseTangent(Elasticity);
-PetscErrorCode ElasticityExtrapolates(Elasticity, PetscBool *any);
+PetscErrorCode ElasticityExtrapolates(Elasticity, PetscBool *any, PetscBool *rubber);
 PetscErrorCode ElasticityAddBlock(Elasticity, PetscInt n, const PetscInt nodes[], const PetscReal k[]);
 PetscErrorCode ElasticityMultiplyLocal(Elasticity, const PetscReal *x, PetscReal *y);
 PetscErrorCode ElasticityMultiplyTransposed(Elasticity, const PetscReal *x, PetscReal *y);

@@ -679,7 +679,7 @@ static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly
   } else
     PetscCall(ModelStart(model, report));
   PetscCall(ModelJudgeFacing(model, report));
-  if (report->result == SOLVE_FACING) PetscFunctionReturn(PETSC_SUCCESS);
+  if (SolveHasNotBegun(report->result)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelRampPenalty(model, report));
   if (report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -745,7 +745,8 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
 
   Notes:
   On success model->u, model->x and the contact state are the solution, which is not accepted yet. On failure the caller
-  must call ModelRestore(). With SOLVE_FACING the solve has not begun, and a shorter step takes its first iterate.
+  must call ModelRestore(). With SOLVE_FACING the solve has not begun, and a shorter step takes its first iterate. With
+  SOLVE_FAR it has not begun, either.
 
   Contact lists are made before the first solve and are frozen in each solve by Newton's method. After each solve they
   are checked and made anew, at most EQUILIBRIUM_MAX_LISTS times. Then penalties that are adjusted within the step are

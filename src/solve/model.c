@@ -23,6 +23,7 @@ const char *const SolveResults[] = {
   "a fluid leaks",
   "a rigid tool turned too far in one step",
   "surfaces that lie opposite each other turn too far in one step",
+  "the bodies go too far in one step",
   "a routine of the user's (law: umat) failed",
   "the bodies came to no rest in pseudo-time",
   "the tangent was indefinite on the way, and the first step is too long to say whether the bodies jump",

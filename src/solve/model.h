@@ -32,6 +32,7 @@ typedef enum {
   SOLVE_LEAKED,
   SOLVE_TURNED,
   SOLVE_FACING,
+  SOLVE_FAR,
   SOLVE_ROUTINE,
   SOLVE_RESTLESS,
   SOLVE_JUMP,
@@ -80,6 +81,7 @@ typedef struct {
   PetscReal   damping;     /* energy that the restraint took */
   char        jump[256];   /* the node that jumped to another equilibrium, and how far; empty: none did */
   PetscReal   facing;      /* SOLVE_FACING: turn of surfaces that lie opposite each other (radians) */
+  PetscReal   far;         /* SOLVE_FAR: turn of cells in the first linear step, over the largest one */
   PetscReal   excess;      /* SOLVE_UNCERTIFIED: depth over what is allowed; INFINITY: it is no depth */
   char        detail[256]; /* where a failed solve failed, in gmsh's tags */
   Failure     failure;     /* more about a failed solve */
@@ -106,11 +108,18 @@ typedef struct _n_Model {
   Vec           x;      /* free displacements (length) */
   PetscReal    *u;      /* local displacements u[n_nodes*dim] (length) at load parameter t, prescribed ones included */
   PetscReal     t;
-  EnergyBalance balance;   /* NULL: no body is plastic, and no step is judged */
-  PetscReal   most_facing; /* turn (radians) of surfaces opposite each other above which ModelSolve() does not begin */
-  Certificate certificate; /* NULL: there is no contact, or the scene switches it off */
+  EnergyBalance balance; /* NULL: no body is plastic, and no step is judged */
+  PetscReal most_facing; /* turn (radians) of surfaces opposite each other above which ModelSolve() does not begin */
+  PetscBool shortens; /* ModelSolve() does not begin where the first linear step goes too far and pieces do not help */
+  Certificate          certificate; /* NULL: there is no contact, or the scene switches it off */
   struct _n_ModelWork *work;
 } *Model;
+
+/* Says whether a solve was given up before Newton's method began, for a shorter step. */
+static inline PetscBool SolveHasNotBegun(SolveResult result)
+{
+  return (PetscBool)(result == SOLVE_FACING || result == SOLVE_FAR);
+}
 
 PetscErrorCode ModelCreate(Scene, Mesh, Model *);
 PetscErrorCode ModelDestroy(Model *);

@@ -149,7 +149,7 @@ static PetscErrorCode ModelCreateReference(Model model)
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsHasName(NULL, NULL, "-snes_test_jacobian", &test));
   if (test) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ElasticityExtrapolates(model->problem->elasticity, &model->work->extrapolates));
+  PetscCall(ElasticityExtrapolates(model->problem->elasticity, &model->work->extrapolates, &model->work->rubber));
   if (model->work->extrapolates) PetscCall(PetscCalloc2(n, &model->work->solved, n, &model->work->from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -83,6 +83,44 @@ PetscErrorCode ModelDropPressures(Model model, Vec from, Vec to)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Separates two motions that are equally soft, one of which has a stiffness below 0: inverse iterations go to and fro
+   between their sums, and held along a sum a body is free along the difference. From b, of norm 1, and what the tangent
+   gives for it as a force, v, and without pressures c, follows the plane of the two (Rayleigh and Ritz). b becomes the
+   softer of them, v and c what the tangent gives for it. inverse: b . c. */
+static PetscErrorCode SeparateMotions(Model model, KSP ksp, Vec b, Vec v, Vec c, PetscReal *inverse)
+{
+  PetscReal across, own, off, mean, root, softer, first, second;
+  Vec       q, z, w;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(b, &q));
+  PetscCall(VecDuplicate(b, &z));
+  PetscCall(VecDuplicate(b, &w));
+  PetscCall(VecWAXPY(q, -*inverse, b, c));
+  PetscCall(VecNormalize(q, &across));
+  PetscCall(KSPSolve(ksp, q, z));
+  PetscCall(ModelDropPressures(model, z, w));
+  PetscCall(VecDotRealPart(b, w, &off));
+  PetscCall(VecDotRealPart(q, w, &own));
+  off    = (off + across) / 2; /* they differ only where loads follow the surface */
+  mean   = (*inverse + own) / 2;
+  root   = PetscSqrtReal(PetscSqr((*inverse - own) / 2) + PetscSqr(off));
+  softer = mean + (mean >= 0 ? root : -root);
+  first  = PetscAbsReal(*inverse - softer) > PetscAbsReal(own - softer) ? off : softer - own;
+  second = PetscAbsReal(*inverse - softer) > PetscAbsReal(own - softer) ? softer - *inverse : off;
+  root   = PetscSqrtReal(PetscSqr(first) + PetscSqr(second));
+  if (root > 0) {
+    PetscCall(VecAXPBY(v, second / root, first / root, z));
+    PetscCall(VecAXPBY(b, second / root, first / root, q));
+    PetscCall(ModelDropPressures(model, v, c));
+    PetscCall(VecDotRealPart(b, c, inverse));
+  }
+  PetscCall(VecDestroy(&w));
+  PetscCall(VecDestroy(&z));
+  PetscCall(VecDestroy(&q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelSoftMotion - finds the softest motion in a linear step.
 
@@ -120,6 +158,10 @@ PetscErrorCode ModelSoftMotion(Model model, Vec y, Vec v, PetscReal *stiffness, 
     PetscCall(KSPSolve(ksp, b, v));
     PetscCall(VecDotRealPart(v, b, &inverse));
     PetscCall(ModelDropPressures(model, v, c));
+    PetscCall(VecNorm(c, NORM_2, &norm));
+  }
+  if (norm > 0 && PetscAbsReal(inverse) < (1 - SOFT_SAME) * norm) {
+    PetscCall(SeparateMotions(model, ksp, b, v, c, &inverse));
     PetscCall(VecNorm(c, NORM_2, &norm));
   }
   PetscCall(VecCopy(c, b));

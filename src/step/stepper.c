@@ -34,7 +34,7 @@
 #define STEPPER_HALVE 2.0
 
 /* What bounds a step and may have another cause than its length */
-typedef enum { BOUND_LAG, BOUND_TRAVEL, BOUND_FACING, BOUNDS } Bound;
+typedef enum { BOUND_LAG, BOUND_TRAVEL, BOUND_FACING, BOUND_FAR, BOUNDS } Bound;
 
 /* Accepted steps whose pace tells a limit load: two pairs of neighbours must tell the same */
 enum { PACE_STEPS = 3 };
@@ -61,6 +61,7 @@ struct _n_LoadStepper {
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
   PetscReal            used[BOUNDS]; /* by the last attempt of this step, of what is allowed; 0: none */
+  PetscBool            shortens;     /* this step may be made shorter if its first linear step goes too far */
   PetscReal            most_facing;  /* turn (radians) of surfaces that lie opposite each other in this step */
   Pace                 pace;
   PetscInt             damped; /* 1: the last accepted step was damped */
@@ -628,6 +629,7 @@ static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscRe
   const PetscBool slowly = (PetscBool)(*failures >= STEPPER_STATIC);
 
   PetscFunctionBeginUser;
+  stepper->model->shortens = (PetscBool)(stepper->shortens && !slowly && STEPPER_CUT * dt >= stepper->size.dt_min);
   if (slowly) {
     PetscCall(ModelSolveSlowly(stepper->model, end, solve));
     *failures = 0;
@@ -659,6 +661,20 @@ static void LoadStepperFace(LoadStepper stepper, PetscReal dt, PetscReal turn)
     stepper->size.dt = PetscMax(STEPPER_CUT, STEPPER_STRAIN * STEPPER_FACING / turn) * dt;
 }
 
+/* Shortens a step of dt that was not begun: see LoadStepperFace(); or its first linear step goes too far, by `far`, and
+   no way in pieces gets there. Newton's method fails in such steps, or takes many iterations. Where a shorter one went
+   as far, the length is not the cause, and Newton's method is tried. */
+static void LoadStepperShorten(LoadStepper stepper, PetscReal dt, const SolveReport *solve)
+{
+  if (solve->result == SOLVE_FACING)
+    LoadStepperFace(stepper, dt, solve->facing);
+  else {
+    stepper->report.steps_repeated++;
+    stepper->shortens = (PetscBool)!StepStays(stepper, BOUND_FAR, solve->far);
+    if (stepper->shortens) stepper->size.dt = STEPPER_CUT * dt;
+  }
+}
+
 /* Tries one step, and repeats it with smaller dt until it converges and the control accepts it, or dt falls below
    dt_min. A step whose first linear solve is singular is not repeated, because the tangent at its start is singular for
    any dt. A fluid that leaks ends the steps. */
@@ -677,6 +693,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   *advanced = PETSC_FALSE;
   PetscCall(PetscArrayzero(stepper->used, BOUNDS));
   stepper->most_facing = STEPPER_FACING;
+  stepper->shortens    = (PetscBool)(stepper->kind != STEP_FIXED);
   *record              = (StepRecord){.step = report->steps + 1};
   PetscCall(LoadStepperPredict(stepper, record));
   while (PETSC_TRUE) {
@@ -684,7 +701,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
 
     model->most_facing = STEPPER_CUT * dt < stepper->size.dt_min ? INFINITY : stepper->most_facing;
     PetscCall(LoadStepperTry(stepper, end, dt, &failures, &solve));
-    record->attempts += solve.result != SOLVE_FACING;
+    record->attempts += !SolveHasNotBegun(solve.result);
     CountSolve(end, &solve, record, &stepper->report);
     if (solve.result == SOLVE_CONVERGED) {
       PetscCall(LoadStepperJudge(stepper, dt, &most, advanced));
@@ -695,9 +712,9 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
       }
       PetscCall(ModelCertify(model, &solve));
     }
-    if (solve.result == SOLVE_FACING) {
+    if (SolveHasNotBegun(solve.result)) {
       PetscCall(ModelRestore(model));
-      LoadStepperFace(stepper, dt, solve.facing);
+      LoadStepperShorten(stepper, dt, &solve);
       continue;
     }
     *advanced = (PetscBool)(solve.result == SOLVE_CONVERGED);

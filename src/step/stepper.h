@@ -26,7 +26,7 @@ typedef struct {
   PetscBool done;                                /* t = 1 was reached, or a fluid leaks */
   PetscBool leaks;                               /* a fluid leaks: the load ends before t = 1 */
   PetscBool stopped;                             /* LoadStepperStop() ended it before */
-  PetscInt  steps, steps_failed, steps_repeated; /* repeated: taken back, to touch less or to find a leak */
+  PetscInt  steps, steps_failed, steps_repeated; /* repeated: taken back, to touch or move less, or to find a leak */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;
   PetscInt  relaxed;    /* times that the contact springs were relaxed */
   PetscReal taken;      /* energy that the contact springs took out of the bodies */

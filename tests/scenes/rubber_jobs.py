@@ -10,12 +10,19 @@ MORE = 1.5  # times the steps of the lower ratio
 JOBS = ["bush_bonded", "tube_flattened"]
 # With that search the first takes 10 steps, 1 failed, instead of 6, the second 8, 2 failed, instead of 5.
 SNAPS = ["lip_inverted", "plug_orifice"]
+# With the tangent of an extrapolated state as it is, whose volume is off, these take 14 steps, 2 failed, instead of 6.
+RINGS = {"stacked_rings": (0, 1, 2)}
+# Where lists that do not reach the end of the first linear step stand for imbalance: 10 steps, 2 failed, instead of 7.
+DRAWN = {"sheet_over_edge": (1, )}
 
 args = arguments(("cases", "jobs in which nothing snaps, or others too", ("few", "all")))
 check = Check()
-for job in JOBS + (SNAPS if args.cases == "all" else []):
+first = dict.fromkeys(JOBS, (0, )) | RINGS
+others = dict.fromkeys(SNAPS, (0, )) | DRAWN
+for job, bodies in (first | (others if args.cases == "all" else {})).items():
     low, high = (run(args, SCENES.parent / f"jobs/{job}.yaml", out=f"{job}_{nu}",
-                     overrides=(f"bodies.0.material.nu={nu}", "output.every=0")).summary() for nu in RATIOS)
+                     overrides=(*(f"bodies.{i}.material.nu={nu}" for i in bodies), "output.every=0")).summary()
+                 for nu in RATIOS)
     check.holds(f"{job}: steps", high["steps"] <= MORE * low["steps"], f"{high['steps']} instead of {low['steps']}")
     check.holds(f"{job}: no failed steps", high["steps_failed"] == 0, str(high["steps_failed"]))
 if args.cases == "all":

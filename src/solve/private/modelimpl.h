@@ -117,6 +117,7 @@ typedef struct _n_ModelWork {
   char      cycle[256];   /* the last repetition in words */
 
   PetscBool  extrapolates; /* stresses are extrapolated; the same on all ranks, some of which may have no nodes */
+  PetscBool  rubber;       /* so are pressures of volumes of bodies that do not yield */
   PetscReal *solved;       /* local displacements (length) at the last equilibrium, where stresses are extrapolated */
   PetscReal *from;         /* those from which the last step led to the iterate */
   PetscBool  shortened;    /* that step was shortened */
