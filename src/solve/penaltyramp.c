@@ -28,16 +28,31 @@ static PetscErrorCode ModelUnpredictedEnergy(Model model, PetscReal *energy)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Has the prediction missed the contact that it counted on? Surfaces that slide far, or bend, end deep in each other
+   although the linear step holds them together. Softened, these terms share the load as new ones do. Not so with
+   friction, which softened contact lets go. `elastic`: energy at the trial displacements. */
+static PetscErrorCode ModelMissesContact(Model model, PetscReal elastic, PetscBool *misses)
+{
+  PetscReal energy;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  *misses = PETSC_FALSE;
+  if (ContactHasFriction(model->contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ProblemEnergy(model->problem, model->problem->trial, model->t, ENERGY_CONTACT, &energy, &ok));
+  *misses = (PetscBool)(energy > RAMP_UNPREDICTED * elastic);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Chooses the stiffest penalties with which contact stores little energy at model->x. They are the full penalties
    divided by a power of RAMP_FACTOR, but at least `least`. With unpredicted, only terms that the prediction found open
-   count. least, full and *most are multiples of the automatic penalty. */
+   count, unless it misses the others, too. least, full and *most are multiples of the automatic penalty. */
 static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, PetscReal least, PetscReal full,
                                           PetscReal *most)
 {
-  const Problem   problem = model->problem;
-  const PetscBool all     = model->work->softens;
-  PetscReal       elastic, accepted, allowed, energy;
-  PetscBool       ok;
+  const Problem problem = model->problem;
+  PetscReal     elastic, accepted, allowed, energy;
+  PetscBool     ok, misses = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(ProblemSetTrial(problem, model->x, model->t));
@@ -45,9 +60,11 @@ static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, Pe
   PetscCall(ProblemEnergy(problem, model->work->accepted_u, model->work->accepted_t, ENERGY_ELASTIC, &accepted, &ok));
   allowed = unpredicted ? PetscMax(RAMP_UNPREDICTED * PetscAbsReal(elastic - accepted), RAMP_NEGLIGIBLE * elastic)
                         : RAMP_RAISED * elastic;
+  if (unpredicted) PetscCall(ModelMissesContact(model, elastic, &misses));
+  if (misses) model->work->softens = PETSC_TRUE;
   for (*most = full;; *most = PetscMax(least, *most / RAMP_FACTOR)) {
-    PetscCall(ContactSoften(model->contact, *most, all));
-    if (unpredicted)
+    PetscCall(ContactSoften(model->contact, *most, model->work->softens));
+    if (unpredicted && !misses)
       PetscCall(ModelUnpredictedEnergy(model, &energy));
     else
       PetscCall(ProblemEnergy(problem, problem->trial, model->t, ENERGY_CONTACT, &energy, &ok));
