@@ -140,7 +140,7 @@ static void JudgeCrossings(const Look *look, const Edge *edge, Place a[2][2], co
     depth = GoesOut(&last, piece, e) ? last.distance : -last.distance;
     if (!last.over || depth <= 0) continue;
     for (int d = 0; d < 3; d++) at[d] = (1 - last.place) * a[1][0][d] + last.place * a[1][1][d];
-    depth = fmin(depth, DepthBehind(piece, e, at));
+    depth   = fmin(depth, DepthBehind(piece, e, at));
     allowed = EdgeAllowed(look, edge, piece, depth);
     if (!(depth > allowed)) continue;
     finding = (Finding){.kind    = FINDING_EDGES,

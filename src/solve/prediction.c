@@ -282,14 +282,15 @@ static PetscErrorCode ModelPredictPieces(Model model, Vec x, PetscBool all, Pets
 @*/
 PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 {
-  const PetscBool   keeps   = (PetscBool)(model->contact != NULL);
-  const SolveResult result  = report->result;
-  PetscBool         settled = PETSC_FALSE;
-  PetscInt          pieces  = 0;
+  const PetscBool   keeps    = (PetscBool)(model->contact != NULL);
+  const PetscBool   friction = ContactHasFriction(model->contact);
+  const SolveResult result   = report->result;
+  PetscBool         settled  = PETSC_FALSE;
+  PetscInt          pieces   = 0;
   Vec               x;
 
   PetscFunctionBeginUser;
-  model->work->softens = (PetscBool)!keeps;
+  model->work->softens = (PetscBool)(!keeps || friction);
   if (model->scene->kinematics == KINEMATICS_SMALL || model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(model->x, &x));
   PetscCall(VecCopy(model->x, x));
@@ -297,7 +298,7 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
     report->result       = result;
     model->work->softens = (PetscBool)!keep;
     PetscCall(ModelPredictPieces(model, x, !keep, PETSC_TRUE, &pieces, &settled, report));
-    if (!pieces) model->work->softens = PETSC_FALSE;
+    if (!pieces) model->work->softens = friction;
   }
   if (!settled) {
     report->result       = result;
