@@ -277,20 +277,20 @@ static PetscErrorCode ModelPredictPieces(Model model, Vec x, PetscBool all, Pets
 
   At first all contact is softened. What is pressed together may then spring back, so that the pieces lead away from
   every equilibrium: a way that is longer after a piece than before it says so. Then the pieces are made anew, and
-  contact that the first linear step counted on keeps its penalty. If either way grows longer, the first is gone to its
-  end, with the lists that it began with.
+  contact that the first linear step counted on keeps its penalty. Not so with friction: a linear step takes what sticks
+  along, although most of it will slip. If either way grows longer, the first is gone to its end, with the lists that it
+  began with.
 @*/
 PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 {
-  const PetscBool   keeps    = (PetscBool)(model->contact != NULL);
-  const PetscBool   friction = ContactHasFriction(model->contact);
-  const SolveResult result   = report->result;
-  PetscBool         settled  = PETSC_FALSE;
-  PetscInt          pieces   = 0;
+  const PetscBool   keeps   = (PetscBool)(model->contact && !ContactHasFriction(model->contact));
+  const SolveResult result  = report->result;
+  PetscBool         settled = PETSC_FALSE;
+  PetscInt          pieces  = 0;
   Vec               x;
 
   PetscFunctionBeginUser;
-  model->work->softens = (PetscBool)(!keeps || friction);
+  model->work->softens = (PetscBool)!keeps;
   if (model->scene->kinematics == KINEMATICS_SMALL || model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(model->x, &x));
   PetscCall(VecCopy(model->x, x));
@@ -298,7 +298,7 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
     report->result       = result;
     model->work->softens = (PetscBool)!keep;
     PetscCall(ModelPredictPieces(model, x, !keep, PETSC_TRUE, &pieces, &settled, report));
-    if (!pieces) model->work->softens = friction;
+    if (!pieces) model->work->softens = PETSC_FALSE;
   }
   if (!settled) {
     report->result       = result;
