@@ -100,6 +100,25 @@ static int GoesOut(const EdgeEnd *end, const Piece *piece, int e)
   return Dot(end->towards[0], piece->normal[1]) + Dot(end->towards[0], piece->across[e]) > 0;
 }
 
+/* Depth of a place behind the faces around an edge of a piece, at the end of the step: below 0 in front of the body.
+   Where an edge slides along a face over the end of that face, it has crossed the edge there by as much as it has slid,
+   but stands no deeper than it is pressed into the face. */
+static double DepthBehind(const Piece *piece, int e, const Place at)
+{
+  double one = 0, other = 0, t[3], out[3];
+
+  for (int d = 0; d < 3; d++) {
+    const double r = piece->x[1][e][d] - at[d];
+
+    one += piece->normal[1][d] * r;
+    other += piece->across[e][d] * r;
+    t[d] = piece->x[1][(e + 1) % 3][d] - piece->x[1][e][d];
+  }
+  for (int d = 0; d < 3; d++)
+    out[d] = t[(d + 1) % 3] * piece->normal[1][(d + 2) % 3] - t[(d + 2) % 3] * piece->normal[1][(d + 1) % 3];
+  return Dot(piece->across[e], out) > 0 ? fmin(one, other) : fmax(one, other);
+}
+
 /* Judges an edge, with the box that it sweeps, that crosses the edges of a piece. a: its ends at both states. */
 static void JudgeCrossings(const Look *look, const Edge *edge, Place a[2][2], const Box box, const Piece *piece,
                            Finding *worst)
@@ -108,6 +127,7 @@ static void JudgeCrossings(const Look *look, const Edge *edge, Place a[2][2], co
     Place   b[2][2];
     Box     other;
     EdgeEnd last;
+    Place   at;
     double  allowed, depth;
     Finding finding;
 
@@ -119,6 +139,8 @@ static void JudgeCrossings(const Look *look, const Edge *edge, Place a[2][2], co
       continue;
     depth = GoesOut(&last, piece, e) ? last.distance : -last.distance;
     if (!last.over || depth <= 0) continue;
+    for (int d = 0; d < 3; d++) at[d] = (1 - last.place) * a[1][0][d] + last.place * a[1][1][d];
+    depth   = fmin(depth, DepthBehind(piece, e, at));
     allowed = EdgeAllowed(look, edge, piece, depth);
     if (!(depth > allowed)) continue;
     finding = (Finding){.kind    = FINDING_EDGES,

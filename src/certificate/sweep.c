@@ -542,5 +542,6 @@ int SweepEdges(const Place a0[2], const Place a1[2], const Place b0[2], const Pl
   Cross(u1, v1, normal);
   end->distance = first * Dot(normal, r1) / fmax(sqrt(Dot(normal, normal)), 1e-300);
   end->over     = EdgesAcross(a1, b1, at, normal);
+  end->place    = end->over ? at[0] : 0;
   return crossed;
 }

@@ -31,6 +31,7 @@ typedef struct {
 typedef struct {
   double distance;           /* along their common normal, with the sign that it had before the crossing (length) */
   int    over;               /* their closest points are inside both */
+  double place;              /* that of the first edge on it, 0 to 1; where they are over each other */
   double s[SWEEP_MAX];       /* when they crossed */
   Place  towards[SWEEP_MAX]; /* common normal then, from the first edge to the other one before they crossed */
 } EdgeEnd;

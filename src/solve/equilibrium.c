@@ -663,9 +663,33 @@ static PetscErrorCode ModelJudgeFacing(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether a solve has failed on its way from the first iterate. */
+static PetscBool LosesWay(SolveResult result)
+{
+  return (PetscBool)(result == SOLVE_ITERATIONS || result == SOLVE_LINE_SEARCH || result == SOLVE_DOMAIN ||
+                     result == SOLVE_CYCLE);
+}
+
+/* Finds the first solution of a load step to t from the accepted state once more, by way of softened penalties for all
+   contact. Not so with friction: what is softened slips, and such a solve fails, too. */
+static PetscErrorCode ModelSolveSoftly(Model model, PetscReal t, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscInfo(model->snes, "%s: once more with softened penalties\n", SolveResults[report->result]));
+  report->result = SOLVE_CONVERGED;
+  PetscCall(ModelDepart(model, t));
+  PetscCall(ModelStart(model, report));
+  if (SolveHasNotBegun(report->result)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelRampPenalty(model, PETSC_TRUE, report));
+  if (report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Finds the first solution of a load step to t from the accepted state. */
 static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly, SolveReport *report)
 {
+  PetscBool overdone;
+
   PetscFunctionBeginUser;
   if (slowly) {
     model->t = t;
@@ -680,8 +704,11 @@ static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly
     PetscCall(ModelStart(model, report));
   PetscCall(ModelJudgeFacing(model, report));
   if (SolveHasNotBegun(report->result)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ModelRampPenalty(model, report));
+  PetscCall(ModelContactOverdone(model, &overdone));
+  PetscCall(ModelRampPenalty(model, PETSC_FALSE, report));
   if (report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
+  if (overdone && !ContactHasFriction(model->contact) && LosesWay(report->result))
+    PetscCall(ModelSolveSoftly(model, t, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -34,10 +34,9 @@ static PetscErrorCode ModelUnpredictedEnergy(Model model, PetscReal *energy)
 static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, PetscReal least, PetscReal full,
                                           PetscReal *most)
 {
-  const Problem   problem = model->problem;
-  const PetscBool all     = model->work->softens;
-  PetscReal       elastic, accepted, allowed, energy;
-  PetscBool       ok;
+  const Problem problem = model->problem;
+  PetscReal     elastic, accepted, allowed, energy;
+  PetscBool     ok;
 
   PetscFunctionBeginUser;
   PetscCall(ProblemSetTrial(problem, model->x, model->t));
@@ -46,7 +45,7 @@ static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, Pe
   allowed = unpredicted ? PetscMax(RAMP_UNPREDICTED * PetscAbsReal(elastic - accepted), RAMP_NEGLIGIBLE * elastic)
                         : RAMP_RAISED * elastic;
   for (*most = full;; *most = PetscMax(least, *most / RAMP_FACTOR)) {
-    PetscCall(ContactSoften(model->contact, *most, all));
+    PetscCall(ContactSoften(model->contact, *most, model->work->softens));
     if (unpredicted)
       PetscCall(ModelUnpredictedEnergy(model, &energy));
     else
@@ -76,6 +75,38 @@ static PetscErrorCode ModelSolveSoft(Model model, PetscReal most, SolveReport *r
 }
 
 /*@
+  ModelContactOverdone - says whether contact stores so much at the first iterate that solves with softened penalties
+may help, also where the prediction counted on that contact.
+
+  Collective
+
+  Input Parameter:
+. model - after the prediction
+
+  Output Parameter:
+. overdone - it does
+
+  Note:
+  Surfaces that slide far, or bend, end deep in each other although the linear step holds them together. Newton's method
+  mostly puts that right in one iteration. Where it does not, elements are nearly inverted on the way.
+@*/
+PetscErrorCode ModelContactOverdone(Model model, PetscBool *overdone)
+{
+  const Problem problem = model->problem;
+  PetscReal     elastic, energy;
+  PetscBool     ok, whole;
+
+  PetscFunctionBeginUser;
+  *overdone = PETSC_FALSE;
+  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ProblemSetTrial(problem, model->x, model->t));
+  PetscCall(ProblemEnergy(problem, problem->trial, model->t, ENERGY_ELASTIC, &elastic, &ok));
+  PetscCall(ProblemEnergy(problem, problem->trial, model->t, ENERGY_CONTACT, &energy, &whole));
+  *overdone = (PetscBool)(ok && energy > RAMP_UNPREDICTED * elastic);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ModelRampPenalty - improves the first iterate by solves with softened penalties, where the prediction met contact that
   it did not count on.
 
@@ -83,6 +114,7 @@ static PetscErrorCode ModelSolveSoft(Model model, PetscReal most, SolveReport *r
 
   Input Parameters:
 + model  - after the prediction
+. all    - penalties are softened for all contact, whether the prediction counted on it or not
 - report - costs and failures are added to it
 
   Output Parameter:
@@ -93,7 +125,7 @@ static PetscErrorCode ModelSolveSoft(Model model, PetscReal most, SolveReport *r
   kink to the next. With soft ones the nodes share the load at once. Each solve starts from the end of the one before,
   has stiffer penalties and is not solved to its end. The solve with the full penalties is the caller's.
 @*/
-PetscErrorCode ModelRampPenalty(Model model, SolveReport *report)
+PetscErrorCode ModelRampPenalty(Model model, PetscBool all, SolveReport *report)
 {
   PetscReal full, most;
   PetscBool hold;
@@ -102,7 +134,8 @@ PetscErrorCode ModelRampPenalty(Model model, SolveReport *report)
   if (!model->contact || report->result != SOLVE_CONVERGED) PetscFunctionReturn(PETSC_SUCCESS);
   model->work->renewed = 0;
   PetscCall(ContactStiffest(model->contact, &full));
-  PetscCall(ModelChooseSoftness(model, PETSC_TRUE, RAMP_LEAST, full, &most));
+  if (all) model->work->softens = PETSC_TRUE;
+  PetscCall(ModelChooseSoftness(model, (PetscBool)!all, RAMP_LEAST, full, &most));
   while (most < full) {
     PetscCall(ModelSolveSoft(model, most, report));
     if (report->result != SOLVE_CONVERGED) break;

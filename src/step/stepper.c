@@ -738,6 +738,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     if (solve.result != SOLVE_LEAK) longest = PetscMax(longest, dt);
     stepper->size.failed_dt = recovers ? 0 : longest; /* what fails again on the way back is no matter of the place */
     stepper->size.dt        = STEPPER_CUT * dt;
+    stepper->size.last_dt   = 0; /* the control is not to return to a length like the one that has failed */
     if (stepper->size.dt < stepper->size.dt_min || singular || BoundIsReached(&solve, dt, end)) {
       PetscCall(ReportFailure(stepper, t, end, first, dt, record->attempts, &solve));
       PetscFunctionReturn(PETSC_SUCCESS);

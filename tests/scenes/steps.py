@@ -16,13 +16,15 @@ for point in (0.15, 0.3, 0.77, 1):
     check.holds(f"lands on {point}", point in t)
 check.holds("no step beyond sqrt(2) dt", max(b - a for a, b in zip([0, *t], t)) <= 2**0.5 * 0.13 + 1e-12)
 
-# 2. Cutback: three iterations are too few for a tenth of the way where no factor settles their contact; the cut steps
-# reach the same end as steps that never failed. The end is off the facets' edges: a node over one is pushed to either
+# 2. Cutback: three iterations are too few for a tenth of the way where no factor settles their contact, and where
+# friction, next to none, keeps a solve from being made once more with softened penalties; the cut steps reach the same
+# end as steps that never failed. The end is off the facets' edges: a node over one is pushed to either
 # side, by round-off.
 slide = SCENES.parent.parent / "runs" / "slide_cylinder.yaml"
 turn = ("stepping.initial=0.1", "bodies.1.rigid.motion=[{rz: 59, history: [[0, 0], [0.2, 0], [1, 1]]}]")
 good = run(args, slide, out="uncut", overrides=turn)
-cut = run(args, slide, out="cut", overrides=(*turn, "solver.max_iterations=3", "solver.type=iterative"))
+cut = run(args, slide, out="cut", overrides=(*turn, "solver.max_iterations=3", "solver.type=iterative",
+                                              "contact.0.friction.mu=1e-10"))
 check.holds("uncut run never failed", good.summary()["steps_failed"] == 0)
 check.holds("cut run failed and went on",
             cut.summary()["steps_failed"] > 0, f"{cut.summary()['steps_failed']} failed steps")

@@ -188,7 +188,8 @@ typedef PetscErrorCode (*ModelStage)(Model, SolveReport *);
 PetscErrorCode ModelAnchor(Model);
 PetscErrorCode ModelSolveDamped(Model, ModelStage start, ModelStage solve, SolveReport *);
 /* penaltyramp.c */
-PetscErrorCode ModelRampPenalty(Model, SolveReport *);
+PetscErrorCode ModelContactOverdone(Model, PetscBool *overdone);
+PetscErrorCode ModelRampPenalty(Model, PetscBool all, SolveReport *);
 /* penaltyerror.c */
 PetscErrorCode ModelCreatePenaltyError(Model);
 void           ModelForgetPenaltyError(Model, PetscBool anew);
