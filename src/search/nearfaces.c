@@ -39,6 +39,7 @@ static void VisitFace(ContactSearch s, ContactSurface surface, PetscInt f, const
       if (master) SurfaceReflect(&s->images[m], dim, &x[a * dim], y);
       SearchBoxAdd(box, dim, y);
     }
+    if (dim == 2) box[2] = box[5] = 0;
     visit(f, box, context);
   }
 }
