@@ -684,6 +684,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   StepperReport  *report = &stepper->report;
   const PetscReal t = model->t, first = stepper->size.dt;
   const PetscBool recovers = (PetscBool)(stepper->size.failed_dt > 0);
+  const PetscReal last     = stepper->size.last_dt;
   SolveReport     solve;
   PetscReal       most, longest = 0; /* of the attempts that failed */
   PetscBool       clipped, singular;
@@ -719,6 +720,8 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     }
     *advanced = (PetscBool)(solve.result == SOLVE_CONVERGED);
     if (*advanced) {
+      if (solve.damped || solve.jump[0])
+        stepper->size.last_dt = last; /* behind a jump steps may be as long as before */
       PetscCall(LoadStepperAccept(stepper, dt, most, clipped, &solve, record));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
