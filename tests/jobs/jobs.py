@@ -266,6 +266,18 @@ JOBS = [
         Answer("grip", 1979, 0.05, "limit"),
         Answer("hold", 228, 0.3, "limit"),
     ], steps=14, pairs=2),
+    Job("vee_jaws", "rod drawn out of two jaws with vees, in space", [
+        Answer("pull", 381.84, 0.2, "closed form"),
+    ], steps=14),
+    Job("wedge_brake", "shoe between a slope and a rail that moves", [
+        Answer("brake", 149.776, 0.05, "closed form"),
+    ], steps=10, pairs=2),
+    Job("gasket_bead", "beads of a gasket between rough flanges", [
+        Answer("force", 2.5112, 0.02, "limit"),
+    ], steps=12, pairs=2),
+    Job("foam_ball", "rough ball pressed into foam, in space", [
+        Answer("force", 10.27, 0.2, "limit"),
+    ], steps=12),
     Job("cam_follower", "cam lifts a follower", [
         Answer("lift", 3.344, 0.06, "limit"),
         Answer("torque", -161.8, 0.05, "limit"),

@@ -1,0 +1,40 @@
+// A rod between two jaws with vees of 90 degrees, a quarter of it. Lengths in mm.
+DefineConstant[ refine = {1, Name "divides all element sizes"} ];
+r = 5;            // radius of the rod
+s = r / Sqrt(2);  // it touches a flank there
+h = 1 / refine;   // element size
+length = 15;      // of the jaw
+over = 5;         // of the rod beyond each end of the jaw
+Point(1) = {0, 0, -over, h};
+Point(2) = {r, 0, -over, h};
+Point(3) = {0, r, -over, h};
+Line(1) = {1, 2};
+Circle(2) = {2, 1, 3};
+Line(3) = {3, 1};
+Curve Loop(1) = {1, 2, 3};
+Plane Surface(1) = {1};
+Recombine Surface{1};
+Point(11) = {0, 2*s, 0, h};
+Point(12) = {1.5*s, 0.5*s, 0, h};
+Point(13) = {9, 0.5*s, 0, 2*h};
+Point(14) = {9, 12, 0, 2*h};
+Point(15) = {0, 12, 0, 2*h};
+Line(11) = {11, 12};
+Line(12) = {12, 13};
+Line(13) = {13, 14};
+Line(14) = {14, 15};
+Line(15) = {15, 11};
+Curve Loop(2) = {11, 12, 13, 14, 15};
+Plane Surface(2) = {2};
+Recombine Surface{2};
+rod[] = Extrude {0, 0, length + 2*over} { Surface{1}; Layers{Round(13*refine)}; Recombine; };
+jaw[] = Extrude {0, 0, length} { Surface{2}; Layers{Round(7*refine)}; Recombine; };
+Physical Volume("rod") = {rod[1]};
+Physical Volume("jaw") = {jaw[1]};
+Physical Surface("rod_skin") = {rod[3]};
+Physical Surface("rod_end") = {rod[0]};
+Physical Surface("flank") = {jaw[2]};
+Physical Surface("jaw_top") = {jaw[5]};
+Physical Surface("jaw_rear") = {2};
+Physical Surface("middle_x") = {rod[4], jaw[6]};
+Physical Surface("middle_y") = {rod[2]};
