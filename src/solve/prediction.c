@@ -313,7 +313,7 @@ static PetscErrorCode ModelPredictStrictly(Model model, Vec x, PetscReal *far, P
   every equilibrium: a way that is longer after a piece than before it says so. Then the pieces are made anew, and
   contact that the first linear step counted on keeps its penalty. Not so with friction: a linear step takes what sticks
   along, although most of it will slip. If either way grows longer, the step is too long: it is not begun where a
-shorter one may be tried. Else the first way is gone to its end, with the lists that it began with.
+  shorter one may be tried. Else the first way is gone to its end, with the lists that it began with.
 @*/
 PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 {

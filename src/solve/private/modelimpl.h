@@ -109,6 +109,8 @@ typedef struct _n_ModelWork {
   PetscBool unsettled;    /* the contact at the end of the last linear step was not found */
   PetscBool softens;      /* soft penalties are those of all contact, also of what the prediction counted on */
   PetscBool strayed;      /* a step uphill close to an equilibrium was turned round: the solve may end far from there */
+  PetscReal jumped;       /* distance by which the last attempt of this step jumped (length); 0: it did not */
+  PetscInt  jumps_alike;  /* attempts of this step, up to the last one, that jumped as far as the one before them */
   PetscReal start;        /* residual norm where Newton's method started; 0: it has not started */
   PetscReal energy;       /* the last energy that the line search evaluated; 0: none */
   PetscInt  renewed;      /* times that a slave point slid out of its lists and new lists were made */
