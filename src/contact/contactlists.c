@@ -14,6 +14,11 @@
 /* A fit's frame may turn by 5 degrees before the step is solved again with a new one: cosine of that angle. */
 #define CONTACT_FRAME_COSINE 0.9962
 
+/* A frame turns back if it is nearer to an earlier one than to the one in force: by this part of the angle's square.
+   Frames at an angle of less than about 1e-4 are the same (1 - cosine), so that rounding decides nothing. */
+#define CONTACT_FRAME_BACK 0.25
+#define CONTACT_FRAME_SAME 1e-8
+
 /* Part of the largest penetration. An open node that its fresh fit finds farther than that behind the master was open
    by mistake. */
 #define CONTACT_FIT_AGREES 0.1
@@ -436,8 +441,8 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscBool al
 /* A fit that the next lists make with another frame or other points, and that turns back a second time within a step,
    keeps the frame that the next lists have, to the end of the step. The frame is that of the points around the nearest
    facet, and so are the points. On a coarse bend two facets may hand a point to and fro: with the fit of either the
-   solution has the other one nearest. A fit turns back where the next frame is nearer to the last one that was replaced
-   than to the one in force. */
+   solution has the other one nearest. A fit turns back where the next frame is far nearer to the last one that was
+   replaced than to the one in force. */
 static void PairKeepFrames(ContactPair *pair)
 {
   const NeighbourLists now = pair->lists, next = pair->next;
@@ -449,8 +454,9 @@ static void PairKeepFrames(ContactPair *pair)
     const PetscReal *frame  = &next->frame[normal];
     PetscReal       *before = &pair->frame_before[3 * q];
     const PetscBool  turns  = (PetscBool)(now->fit_n[q] && next->fit_n[q] && !FitHolds(now, next, alike, q));
-    const PetscBool  back =
-      (PetscBool)(turns && FrameCosine(dim, before, frame) > FrameCosine(dim, &now->frame[normal], frame));
+    const PetscReal  turn   = 1 - FrameCosine(dim, &now->frame[normal], frame);
+    const PetscBool  back   = (PetscBool)(turns && turn > CONTACT_FRAME_SAME &&
+                                       1 - FrameCosine(dim, before, frame) < CONTACT_FRAME_BACK * turn);
 
     for (int d = 0; d < 3; d++) {
       if (back && pair->turned_back[q]) pair->frame_kept[3 * q + d] = d < dim ? frame[d] : 0;
