@@ -458,9 +458,9 @@ static void PairKeepFrames(ContactPair *pair)
     const PetscBool  back   = (PetscBool)(turns && turn > CONTACT_FRAME_SAME &&
                                        1 - FrameCosine(dim, before, frame) < CONTACT_FRAME_BACK * turn);
 
-    for (int d = 0; d < 3; d++) {
-      if (back && pair->turned_back[q]) pair->frame_kept[3 * q + d] = d < dim ? frame[d] : 0;
-      before[d] = turns && d < dim ? now->frame[normal + d] : 0;
+    for (int d = 0; d < dim; d++) {
+      if (back && pair->turned_back[q]) pair->frame_kept[3 * q + d] = frame[d];
+      before[d] = turns ? now->frame[normal + d] : 0;
     }
     pair->turned_back[q] = (PetscBool)(pair->turned_back[q] || back);
   }

@@ -118,9 +118,12 @@ PetscErrorCode ContactNodalForces(const ContactPair *pair, const PetscReal *poin
     force[c] = point_force[pair->term_point[pair->term_ptr[c]]];
   if (!pair->formulation.surface) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc2(lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &nodal));
-  for (PetscInt i = 0, q = -1; i < lists->n_near && (q = lists->near[i]) >= 0; i++)
+  for (PetscInt i = 0; i < lists->n_near; i++) {
+    const PetscInt q = lists->near[i];
+
     for (PetscInt k = pair->slaves->ptr[q], node = lists->slave_ptr[q]; k < pair->slaves->ptr[q + 1]; k++, node++)
       values[lists->slave_node[node] * dim] += pair->slaves->hat[k] * point_force[q];
+  }
   PetscCall(NeighbourListsReduce(lists, values, nodal));
   for (PetscInt c = 0; c < pair->n_nodes; c++) force[c] = nodal[pair->node[c] * dim];
   PetscCall(PetscFree2(values, nodal));

@@ -798,10 +798,13 @@ PetscErrorCode FrictionNodalForces(const ContactPair *pair, const PetscReal *for
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &nodal));
-  for (PetscInt i = 0, q = -1; i < lists->n_near && (q = lists->near[i]) >= 0; i++)
+  for (PetscInt i = 0; i < lists->n_near; i++) {
+    const PetscInt q = lists->near[i];
+
     for (PetscInt k = pair->slaves->ptr[q], node = lists->slave_ptr[q]; k < pair->slaves->ptr[q + 1]; k++, node++)
       for (int d = 0; d < dim; d++)
         values[lists->slave_node[node] * dim + d] -= pair->slaves->hat[k] * force[3 * q + d];
+  }
   PetscCall(NeighbourListsReduce(lists, values, nodal));
   for (PetscInt c = 0; c < pair->n_nodes; c++)
     for (int d = 0; d < dim; d++) on_node[3 * c + d] = nodal[pair->node[c] * dim + d];

@@ -1,5 +1,6 @@
 /* Blocks of neighbouring faces, see faceblocks.h. */
 #include "search/faceblocks.h"
+#include "boundingbox.h"
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -39,23 +40,17 @@ static uint64_t Key(int dim, const PetscReal *x, const PetscReal *lower, PetscRe
 /* Orders the faces along the curve. */
 static PetscErrorCode OrderFaces(FaceBlocks blocks, const Facet *faces, const PetscReal *X)
 {
-  const int dim      = blocks->dim;
-  PetscReal lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0}, length = 0;
+  const int dim = blocks->dim;
+  PetscReal box[6], length = 0;
   Place    *places;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(blocks->n_faces, &places));
-  for (PetscInt f = 0; f < blocks->n_faces; f++) {
-    const PetscReal *x = &X[faces[f].nodes[0] * dim];
-
-    for (int d = 0; d < dim; d++) {
-      lower[d] = f ? PetscMin(lower[d], x[d]) : x[d];
-      upper[d] = f ? PetscMax(upper[d], x[d]) : x[d];
-    }
-  }
-  for (int d = 0; d < dim; d++) length = PetscMax(length, upper[d] - lower[d]);
+  SearchBoxEmpty(dim, box);
+  for (PetscInt f = 0; f < blocks->n_faces; f++) SearchBoxAdd(box, dim, &X[faces[f].nodes[0] * dim]);
+  for (int d = 0; d < dim; d++) length = PetscMax(length, box[3 + d] - box[d]);
   for (PetscInt f = 0; f < blocks->n_faces; f++)
-    places[f] = (Place){Key(dim, &X[faces[f].nodes[0] * dim], lower, length), f};
+    places[f] = (Place){Key(dim, &X[faces[f].nodes[0] * dim], box, length), f};
   if (blocks->n_faces) qsort(places, blocks->n_faces, sizeof(Place), ComparePlaces);
   for (PetscInt f = 0; f < blocks->n_faces; f++) blocks->face[f] = places[f].face;
   PetscCall(PetscFree(places));
@@ -150,18 +145,13 @@ void FaceBlocksPlace(FaceBlocks blocks, const PetscReal *X, const PetscReal *u)
   for (PetscInt b = 0; b < blocks->n; b++) {
     PetscReal *box = &blocks->box[6 * b];
 
-    for (int d = 0; d < 3; d++) {
-      box[d]     = d < dim ? PETSC_MAX_REAL : 0;
-      box[3 + d] = d < dim ? PETSC_MIN_REAL : 0;
-    }
+    SearchBoxEmpty(dim, box);
     for (PetscInt k = blocks->node_ptr[b]; k < blocks->node_ptr[b + 1]; k++) {
-      for (int d = 0; d < dim; d++) {
-        const PetscInt  i = blocks->node[k] * dim + d;
-        const PetscReal x = X[i] + (u ? u[i] : 0);
+      const PetscInt first = blocks->node[k] * dim;
+      PetscReal      x[3];
 
-        box[d]     = PetscMin(box[d], x);
-        box[3 + d] = PetscMax(box[3 + d], x);
-      }
+      for (int d = 0; d < dim; d++) x[d] = X[first + d] + (u ? u[first + d] : 0);
+      SearchBoxAdd(box, dim, x);
     }
   }
 }
@@ -214,11 +204,7 @@ PetscInt FaceBlocksNear(FaceBlocks blocks, const PetscReal box[6], PetscBool *ta
   PetscInt n = 0;
 
   for (PetscInt b = 0; b < blocks->n; b++) {
-    const PetscReal *own   = &blocks->box[6 * b];
-    PetscBool        meets = (PetscBool)!taken[b];
-
-    for (int d = 0; d < blocks->dim && meets; d++) meets = (PetscBool)(own[d] <= box[3 + d] && box[d] <= own[3 + d]);
-    if (!meets) continue;
+    if (taken[b] || !SearchBoxesMeet(&blocks->box[6 * b], box, blocks->dim, 0)) continue;
     taken[b] = PETSC_TRUE;
     for (PetscInt i = FaceBlocksFirst(b); i < FaceBlocksEnd(blocks, b); i++) faces[n++] = blocks->face[i];
   }

@@ -99,13 +99,13 @@ static void BoxInTool(ContactSearch s, ContactSurface tool, PetscReal t, PetscRe
     LoadsRigidMotion(s->loads, tool->body, t, X, x);
     for (int d = 0; d < 3; d++) turn[k][d] = (x[d] - origin[d]) / length;
   }
-  SearchBoxEmpty(out);
+  SearchBoxEmpty(s->mesh->dim, out);
   for (int corner = 0; corner < 8; corner++) {
     PetscReal X[3] = {0, 0, 0};
 
     for (int k = 0; k < 3; k++)
       for (int d = 0; d < s->mesh->dim; d++) X[k] += turn[k][d] * (box[corner >> d & 1 ? 3 + d : d] - origin[d]);
-    SearchBoxAdd(out, 3, X);
+    SearchBoxAdd(out, s->mesh->dim, X);
   }
   for (int i = 0; i < 6; i++) box[i] = out[i];
 }
@@ -139,6 +139,23 @@ static PetscErrorCode NearBlocks(ContactSearch s, ContactSurface surface, const 
   }
   PetscCall(PetscFree(taken));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Does a face, or an image of it where it is a master's, come within a distance of a box? x: positions of its nodes. */
+static PetscBool FaceMeets(ContactSearch s, ContactSurface surface, PetscInt f, const PetscReal *x,
+                           const PetscReal box[6], PetscReal distance)
+{
+  const PetscBool master = (PetscBool)(surface == s->master);
+  const int       dim    = s->mesh->dim;
+
+  for (int m = 0; m < (master ? s->n_images : 1); m++) {
+    PetscReal face[6];
+
+    if (master && s->images[m].left_out) continue;
+    SearchFaceBox(dim, ElementGet(surface->faces[f].type)->nodes, x, master ? &s->images[m] : NULL, face);
+    if (SearchBoxesMeet(face, box, dim, distance)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
 }
 
 /*@
@@ -175,12 +192,8 @@ PetscErrorCode SearchNearBox(ContactSearch s, ContactSurface surface, const Pets
   }
   PetscCall(NearBlocks(s, surface, u, t, box, distance, &count, &near));
   for (PetscInt i = 0; i < count; i++) {
-    const int nodes = ElementGet(surface->faces[near[i]].type)->nodes;
-
     SearchFacePositions(s, surface, near[i], u, t, x);
-    if (surface == s->master ? SearchSomeImageMeets(s, nodes, x, box, distance)
-                             : SearchFaceMeets(s->mesh->dim, nodes, x, box, distance))
-      near[(*n)++] = near[i];
+    if (FaceMeets(s, surface, near[i], x, box, distance)) near[(*n)++] = near[i];
   }
   *faces = near;
   PetscFunctionReturn(PETSC_SUCCESS);

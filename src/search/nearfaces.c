@@ -28,18 +28,12 @@ static void VisitFace(ContactSearch s, ContactSurface surface, PetscInt f, const
 {
   const int       dim = s->mesh->dim, nodes = ElementGet(surface->faces[f].type)->nodes;
   const PetscBool master = (PetscBool)(surface == s->master);
-  PetscReal       x[FACE_MAX_NODES * 3], y[3], box[6];
+  PetscReal       x[FACE_MAX_NODES * 3], box[6];
 
   SearchFacePositions(s, surface, f, u, t, x);
   for (int m = 0; m < (master ? s->n_images : 1); m++) {
     if (master && s->images[m].left_out) continue;
-    SearchBoxEmpty(box);
-    for (int a = 0; a < nodes; a++) {
-      for (int d = 0; d < dim; d++) y[d] = x[a * dim + d];
-      if (master) SurfaceReflect(&s->images[m], dim, &x[a * dim], y);
-      SearchBoxAdd(box, dim, y);
-    }
-    if (dim == 2) box[2] = box[5] = 0;
+    SearchFaceBox(dim, nodes, x, master ? &s->images[m] : NULL, box);
     visit(f, box, context);
   }
 }
@@ -95,7 +89,7 @@ static PetscErrorCode SideBox(ContactSearch s, const PetscReal *u, PetscReal t, 
                               PetscReal distance, NearSide *side)
 {
   PetscFunctionBeginUser;
-  SearchBoxEmpty(side->all);
+  SearchBoxEmpty(s->mesh->dim, side->all);
   if (side->surface->rigid || side->some)
     PetscCall(VisitNear(s, side, u, t, other->all, distance, AddBox, side->all));
   else

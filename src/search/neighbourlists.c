@@ -114,8 +114,8 @@ static PetscErrorCode LinkNodes(Mesh mesh, const ContactKeys *all, NeighbourList
 - lists - the lists with the choice of slave points; their nodes are set
 
   Note:
-  Contact nodes are the nodes of these points, the nodes of the listed faces, and the nodes of which live offsets are
-made.
+  Contact nodes are the nodes of these points, the nodes of the listed faces, and the nodes of which live offsets
+  are made.
 @*/
 PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, NeighbourLists lists)
 {

@@ -549,7 +549,7 @@ PetscBool OffsetsChoose(Offsets o)
 
   Note:
   Only held offsets are left out elsewhere: they are 0 there. What is first wanted in a step is not extrapolated over
-it. What is taken once stays.
+  it. What is taken once stays.
 @*/
 PetscErrorCode OffsetsWant(Offsets o, const PetscBool *wanted, PetscBool anew)
 {

@@ -189,7 +189,7 @@ static PetscErrorCode TestPoints(ContactSearch s, const PetscReal *u, PetscReal 
   PetscReal      box[6], x[3];
 
   PetscFunctionBeginUser;
-  SearchBoxEmpty(box);
+  SearchBoxEmpty(dim, box);
   for (PetscInt q = 0; q < s->slaves->n; q++) {
     if (among && !among[q]) continue;
     SlavePointsPosition(s->slaves, q, x);
@@ -550,7 +550,7 @@ static PetscErrorCode MarkFaces(SlavePoints points, const PetscBool *possible, P
 
   Output Parameter:
 . normals - normals[3*n] of the slave points, as SlavePointsNormals() gives them: of those that may have a partner, or
-of all where lists keep all faces
+            of all where lists keep all faces
 
   Note:
   The answer is in the search's partners. Boxes are seen farther than a search would by a skin, and normals count as

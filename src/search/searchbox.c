@@ -1,59 +1,5 @@
-/* Boxes and positions of faces. */
+/* Positions of faces, and boxes around faces and slave points. */
 #include "searchimpl.h"
-
-/*@
-  SearchBoxEmpty - makes a box without any point.
-
-  Not collective
-
-  Output Parameter:
-. box - lower then upper corner
-@*/
-void SearchBoxEmpty(PetscReal box[6])
-{
-  for (int d = 0; d < 3; d++) {
-    box[d]     = PETSC_MAX_REAL;
-    box[3 + d] = PETSC_MIN_REAL;
-  }
-}
-
-/*@
-  SearchBoxAdd - makes a box so large that it holds a point.
-
-  Not collective
-
-  Input Parameters:
-+ dim - 2 or 3
-- x   - x[dim], the point
-
-  Input/Output Parameter:
-. box - lower then upper corner
-@*/
-void SearchBoxAdd(PetscReal box[6], int dim, const PetscReal *x)
-{
-  for (int d = 0; d < dim; d++) {
-    box[d]     = PetscMin(box[d], x[d]);
-    box[3 + d] = PetscMax(box[3 + d], x[d]);
-  }
-}
-
-/*@
-  SearchBoxesMeet - tests whether two boxes are within a distance of each other.
-
-  Not collective
-
-  Input Parameters:
-+ a        - box, lower then upper corner
-. b        - another box
-. dim      - 2 or 3
-- distance - the distance (length)
-@*/
-PetscBool SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, PetscReal distance)
-{
-  for (int d = 0; d < dim; d++)
-    if (a[d] > b[3 + d] + distance || b[d] > a[3 + d] + distance) return PETSC_FALSE;
-  return PETSC_TRUE;
-}
 
 /*@
   SearchRigidPosition - computes the position of a node of the rigid tool at load parameter t.
@@ -138,7 +84,7 @@ void SearchSlaveBox(ContactSearch s, PetscReal box[6])
 {
   const int dim = s->mesh->dim;
 
-  SearchBoxEmpty(box);
+  SearchBoxEmpty(dim, box);
   for (PetscInt q = 0; q < s->slaves->n; q++) {
     PetscReal x[3];
 
@@ -169,7 +115,7 @@ void SearchMasterBox(ContactSearch s, const PetscReal *u, PetscReal t, const Pet
 {
   const int dim = s->mesh->dim;
 
-  SearchBoxEmpty(box);
+  SearchBoxEmpty(dim, box);
   for (PetscInt f = 0; f < s->master->n_faces; f++) {
     PetscReal x[FACE_MAX_NODES * 3];
 
@@ -180,52 +126,26 @@ void SearchMasterBox(ContactSearch s, const PetscReal *u, PetscReal t, const Pet
 }
 
 /*@
-  SearchFaceMeets - tests whether a face comes within a distance of a box.
+  SearchFaceBox - computes the box of a face or of a mirror image of it.
 
   Not collective
 
   Input Parameters:
-+ dim      - 2 or 3
-. n        - number of nodes of the face
-. x        - x[n*dim], their positions (length)
-. box      - lower then upper corner
-- distance - the distance (length)
++ dim   - 2 or 3
+. n     - number of nodes of the face
+. x     - x[n*dim], their positions (length)
+- image - the image; NULL: the face itself
+
+  Output Parameter:
+. box - lower then upper corner
 @*/
-PetscBool SearchFaceMeets(int dim, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance)
+void SearchFaceBox(int dim, int n, const PetscReal *x, const SurfaceImage *image, PetscReal box[6])
 {
-  PetscReal face[6];
+  PetscReal y[3];
 
-  SearchBoxEmpty(face);
-  for (int a = 0; a < n; a++) SearchBoxAdd(face, dim, &x[a * dim]);
-  return SearchBoxesMeet(face, box, dim, distance);
-}
-
-/*@
-  SearchSomeImageMeets - tests whether any mirror image of a face comes within a distance of a box.
-
-  Not collective
-
-  Input Parameters:
-+ s        - the search
-. n        - number of nodes of the face
-. x        - x[n*dim], their positions (length)
-. box      - lower then upper corner
-- distance - the distance (length)
-@*/
-PetscBool SearchSomeImageMeets(ContactSearch s, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance)
-{
-  const int dim = s->mesh->dim;
-
-  for (int m = 0; m < s->n_images; m++) {
-    PetscReal face[6], y[3];
-
-    if (s->images[m].left_out) continue;
-    SearchBoxEmpty(face);
-    for (int a = 0; a < n; a++) {
-      SurfaceReflect(&s->images[m], dim, &x[a * dim], y);
-      SearchBoxAdd(face, dim, y);
-    }
-    if (SearchBoxesMeet(face, box, dim, distance)) return PETSC_TRUE;
+  SearchBoxEmpty(dim, box);
+  for (int a = 0; a < n; a++) {
+    if (image) SurfaceReflect(image, dim, &x[a * dim], y);
+    SearchBoxAdd(box, dim, image ? y : &x[a * dim]);
   }
-  return PETSC_FALSE;
 }

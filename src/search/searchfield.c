@@ -94,8 +94,7 @@ static PetscErrorCode MarkNear(ContactSearch s, const PetscReal *u, PetscReal t,
 
       some[faces[i]] = PETSC_TRUE;
       SearchFacePositions(s, s->master, faces[i], u, t, x);
-      SearchBoxEmpty(box);
-      for (int a = 0; a < ElementGet(s->master->faces[faces[i]].type)->nodes; a++) SearchBoxAdd(box, dim, &x[a * dim]);
+      SearchFaceBox(dim, ElementGet(s->master->faces[faces[i]].type)->nodes, x, NULL, box);
       for (int d = 0; d < dim; d++) square += PetscSqr(box[3 + d] - box[d]);
       *extent = PetscMax(*extent, PetscSqrtReal(square));
     }

@@ -671,7 +671,7 @@ static PetscBool LosesWay(SolveResult result)
 }
 
 /* Finds the first solution of a load step to t from the accepted state once more, by way of softened penalties for all
-   contact. Not so with friction: what is softened slips, and such a solve fails, too. */
+   contact. */
 static PetscErrorCode ModelSolveSoftly(Model model, PetscReal t, SolveReport *report)
 {
   PetscFunctionBeginUser;
@@ -707,8 +707,7 @@ static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly
   PetscCall(ModelContactOverdone(model, &overdone));
   PetscCall(ModelRampPenalty(model, PETSC_FALSE, report));
   if (report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
-  if (overdone && !ContactHasFriction(model->contact) && LosesWay(report->result))
-    PetscCall(ModelSolveSoftly(model, t, report));
+  if (overdone && LosesWay(report->result)) PetscCall(ModelSolveSoftly(model, t, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,12 +15,12 @@ enum { JUMP_TIMES = 2 };
    attempt of this step jumped; 0: it did not. alike: attempts that jumped by as much as the one before them. */
 static PetscBool JumpStays(ModelWork *work, PetscReal distance, PetscReal before, PetscInt alike)
 {
+  const PetscInt now = before > 0 && distance >= JUMP_ALIKE * before ? alike + 1 : 0;
+
+  if (now >= JUMP_TIMES) return PETSC_TRUE;
   work->jumped      = distance;
-  work->jumps_alike = before > 0 && distance >= JUMP_ALIKE * before ? alike + 1 : 0;
-  if (work->jumps_alike < JUMP_TIMES) return PETSC_FALSE;
-  work->jumped      = 0;
-  work->jumps_alike = 0;
-  return PETSC_TRUE;
+  work->jumps_alike = now;
+  return PETSC_FALSE;
 }
 
 /*@

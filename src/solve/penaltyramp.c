@@ -75,8 +75,8 @@ static PetscErrorCode ModelSolveSoft(Model model, PetscReal most, SolveReport *r
 }
 
 /*@
-  ModelContactOverdone - says whether contact stores so much at the first iterate that solves with softened penalties
-may help, also where the prediction counted on that contact.
+  ModelContactOverdone - says whether contact without friction stores so much at the first iterate that solves with
+  softened penalties may help, also where the prediction counted on that contact.
 
   Collective
 
@@ -88,7 +88,8 @@ may help, also where the prediction counted on that contact.
 
   Note:
   Surfaces that slide far, or bend, end deep in each other although the linear step holds them together. Newton's method
-  mostly puts that right in one iteration. Where it does not, elements are nearly inverted on the way.
+  mostly puts that right in one iteration. Where it does not, elements are nearly inverted on the way. Not so with
+  friction: what is softened slips, and such a solve fails, too.
 @*/
 PetscErrorCode ModelContactOverdone(Model model, PetscBool *overdone)
 {
@@ -98,7 +99,7 @@ PetscErrorCode ModelContactOverdone(Model model, PetscBool *overdone)
 
   PetscFunctionBeginUser;
   *overdone = PETSC_FALSE;
-  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!model->contact || ContactHasFriction(model->contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemSetTrial(problem, model->x, model->t));
   PetscCall(ProblemEnergy(problem, problem->trial, model->t, ENERGY_ELASTIC, &elastic, &ok));
   PetscCall(ProblemEnergy(problem, problem->trial, model->t, ENERGY_CONTACT, &energy, &whole));

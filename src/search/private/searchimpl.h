@@ -7,6 +7,7 @@
    MasterFitsCreate() and FitSupportClimb() for fits of the surface itself. */
 #pragma once
 #include "base/boxtree.h"
+#include "boundingbox.h"
 #include "facerows.h"
 #include "smooth/facethull.h"
 #include "search/search.h"
@@ -153,13 +154,9 @@ PetscErrorCode ListBufferAddPoints(ListBuffer *, PetscInt first, PetscInt n, con
 /* searchbox.c */
 void      SearchSlaveBox(ContactSearch, PetscReal box[6]);
 void      SearchMasterBox(ContactSearch, const PetscReal *u, PetscReal t, const PetscBool *some, PetscReal box[6]);
-void      SearchBoxEmpty(PetscReal box[6]);
-void      SearchBoxAdd(PetscReal box[6], int dim, const PetscReal *x);
 void      SearchFacePositions(ContactSearch, ContactSurface, PetscInt f, const PetscReal *u, PetscReal t, PetscReal *x);
-PetscBool SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, PetscReal distance);
+void      SearchFaceBox(int dim, int n, const PetscReal *x, const SurfaceImage *, PetscReal box[6]);
 void      SearchRigidPosition(ContactSearch, PetscInt n, PetscReal t, PetscReal x[3]);
-PetscBool SearchFaceMeets(int dim, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance);
-PetscBool SearchSomeImageMeets(ContactSearch, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance);
 /* faceexchange.c */
 PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const PetscReal *u, const PetscReal *boxes,
                                    PetscReal distance, PetscInt *n, FaceRecord **);
