@@ -270,8 +270,9 @@ static void PrintDissipation(const EnergyFigures *energy, FILE *stream)
     fprintf(stream, "; no step dissipated less than nothing");
 }
 
-/* Prints the work from outside, the energies of bodies and of contact, and how far the work is from their sum. */
-static void PrintEnergy(const EnergyFigures *energy, PetscBool plastic, FILE *stream)
+/* Prints the work from outside, the energies of bodies and of contact, and how far the work is from their sum.
+   jumped: the bodies jumped to another equilibrium. */
+static void PrintEnergy(const EnergyFigures *energy, PetscBool plastic, PetscBool jumped, FILE *stream)
 {
   const OuterFigures outer = energy->outer;
   const double       sum = (double)EnergySum(energy), apart = (double)EnergyApart(energy);
@@ -283,7 +284,8 @@ static void PrintEnergy(const EnergyFigures *energy, PetscBool plastic, FILE *st
   if (energy->damping > 0) fprintf(stream, " + %.4g damping", (double)energy->damping);
   if (isnan(apart)) fprintf(stream, ", without that of overlaps resolved at once");
   if (sum > 0 && !isnan(apart))
-    fprintf(stream, ", %.2g %% apart by the trapezoidal rule over the steps", 100 * apart / sum);
+    fprintf(stream, ", %.2g %% apart by %sthe trapezoidal rule over the steps", 100 * apart / sum,
+            jumped ? "what was lost in jumps and " : "");
   PrintDissipation(energy, stream);
   if (plastic)
     fprintf(stream, "; largest plastic strain %.4g, growth in a step up to %.2g", (double)energy->strain,
@@ -380,7 +382,7 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
   ProbeErrorsPrint(figures->errors, stream);
   for (int i = 0; i < figures->n_fluids && figures->last; i++) PrintFluid(&figures->fluids[i], stream);
   if (figures->last && (SceneIsPlastic(figures->scene) || figures->certified))
-    PrintEnergy(&figures->last->energy, SceneIsPlastic(figures->scene), stream);
+    PrintEnergy(&figures->last->energy, SceneIsPlastic(figures->scene), way->jumps > 0, stream);
   PrintCertificate(figures, stream);
   PrintUnjudged(figures, stream);
   PrintGuards(figures, stream);

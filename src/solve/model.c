@@ -26,7 +26,7 @@ const char *const SolveResults[] = {
   "the bodies go too far in one step",
   "a routine of the user's (law: umat) failed",
   "the bodies came to no rest in pseudo-time",
-  "the tangent was indefinite on the way, and the first step is too long to say whether the bodies jump",
+  "the bodies go far for the load, and the step is too long to say whether they jump to another equilibrium",
   "not-a-number in the residual"};
 
 /* Makes all parts of a model for the supports of a phase. */
