@@ -131,15 +131,17 @@ static PetscReal WorstPenetration(Model model)
 
   Collective
 
-  Input Parameters:
-+ model - after ModelSolve() has found a solution, before ModelAccept()
-- value - of the quantity
+  Input Parameter:
+. model - after ModelSolve() has found a solution, before ModelAccept()
 
   Output Parameter:
-. error - its cells and spread are those of the strain energy, what penetration leaves is that of the worst pair,
-without a sign; all other parts are unknown. Free it with QuantityErrorReset()
+. error - its cells and spread are those of the strain energy, what penetration leaves is that of the worst pair, over
+the quantity and without a sign; all other parts are unknown. Free it with QuantityErrorReset()
+
+  Note:
+  QuantityErrorScale() gives it the quantity's value, which may be known only once the solution is accepted.
 @*/
-PetscErrorCode QuantityErrorShares(Model model, PetscReal value, QuantityError *error)
+PetscErrorCode QuantityErrorShares(Model model, QuantityError *error)
 {
   BodyError     bodies;
   BodyErrorSums sums;
@@ -153,9 +155,26 @@ PetscErrorCode QuantityErrorShares(Model model, PetscReal value, QuantityError *
   PetscCall(BodyErrorEvaluate(bodies, model->problem->trial, error->cells, &sums));
   PetscCall(BodyErrorDestroy(&bodies));
   error->spread                  = sums.spread;
-  error->part[ERROR_PENETRATION] = error->magnitude = PetscAbsReal(value) * WorstPenetration(model);
+  error->part[ERROR_PENETRATION] = error->magnitude = WorstPenetration(model);
   error->sum                                        = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  QuantityErrorScale - gives the parts of QuantityErrorShares() the unit of the quantity.
+
+  Not collective
+
+  Input Parameter:
+. value - of the quantity
+
+  Input/Output Parameter:
+. error - of QuantityErrorShares()
+@*/
+void QuantityErrorScale(PetscReal value, QuantityError *error)
+{
+  error->part[ERROR_PENETRATION] *= PetscAbsReal(value);
+  error->magnitude *= PetscAbsReal(value);
 }
 
 /*@

@@ -37,7 +37,8 @@ typedef struct {
 } QuantityError;
 
 PetscErrorCode QuantityErrorsEstimate(Model, int n, const Functional[], QuantityError[]);
-PetscErrorCode QuantityErrorShares(Model, PetscReal value, QuantityError *);
+PetscErrorCode QuantityErrorShares(Model, QuantityError *);
+void           QuantityErrorScale(PetscReal value, QuantityError *);
 PetscBool      ModelDependsOnPath(Model);
 void           QuantityErrorSetSteps(QuantityError *, PetscReal steps);
 PetscErrorCode QuantityErrorReset(QuantityError *);

@@ -9,6 +9,7 @@ struct _n_ProbeErrors {
   PetscReal     *value; /* of each probe */
   const char   **why;   /* why there is no estimate of it; NULL: there is one */
   QuantityError *error;
+  PetscBool      estimated; /* at a solution that is not accepted yet */
   PetscReal      history_s; /* CPU seconds of the run that gave what the load steps leave; NaN: there was none */
   PetscLogEvent  event;
 };
@@ -115,15 +116,41 @@ PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
   model = errors->model;
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
-  PetscCall(ProbesEvaluate(errors->probes, errors->value));
   PetscCall(PetscCalloc1(errors->scene->n_probes, &functional));
   PetscCall(Estimate(errors, functional));
-  if (wanted >= 0 && errors->why[wanted] && !PetscIsInfOrNanReal(errors->value[wanted])) {
+  if (wanted >= 0 && errors->why[wanted]) {
     PetscCall(QuantityErrorReset(&errors->error[wanted]));
-    PetscCall(QuantityErrorShares(model, errors->value[wanted], &errors->error[wanted]));
+    PetscCall(QuantityErrorShares(model, &errors->error[wanted]));
   }
   PetscCall(PetscFree(functional));
+  errors->estimated = PETSC_TRUE;
   PetscCall(PetscLogEventEnd(errors->event, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ProbeErrorsAccept - takes the values of the probes in the accepted state, which some probes have from there on alone,
+  such as the pressure that a seal holds.
+
+  Not collective
+
+  Input Parameters:
++ errors - after ProbeErrorsEstimate(); may be NULL
+- values - of all probes
+@*/
+PetscErrorCode ProbeErrorsAccept(ProbeErrors errors, const PetscReal *values)
+{
+  PetscFunctionBeginUser;
+  if (!errors || !errors->estimated) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArraycpy(errors->value, values, errors->scene->n_probes));
+  for (int i = 0; i < errors->scene->n_probes; i++) {
+    if (!errors->why[i] || !errors->error[i].shared) continue;
+    if (PetscIsInfOrNanReal(values[i]))
+      PetscCall(QuantityErrorReset(&errors->error[i]));
+    else
+      QuantityErrorScale(values[i], &errors->error[i]);
+  }
+  errors->estimated = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -278,6 +278,7 @@ PetscErrorCode ResultsStep(Results results, const StepRecord *step)
 
   PetscFunctionBeginUser;
   PetscCall(ProbesEvaluate(results->probes, results->values));
+  PetscCall(ProbeErrorsAccept(results->errors, results->values));
   TimingBegin(TIMING_OUTPUT);
   PetscCall(ResultsWatchContact(results));
   results->last    = *step;

@@ -1,6 +1,7 @@
 """A run reaches the accuracy that is asked for, on meshes of its own choice: by densities of the geometry, and by sizes of
 elements for a free one; on any number of ranks. The change from the mesh before counts where the estimate is less. A limit ends it with the best answer and status 5."""
 import csv
+import json
 import pathlib
 
 from harness import Check, arguments, run, SCENES
@@ -76,4 +77,8 @@ finished, meshes = wish(RUNS / "cook.yaml", "tip_uy", 0.01, "time", "accuracy.li
 check.holds("so does the time", len(meshes) == 1 and "accuracy.limit.time" in finished.text)
 check.holds("a probe that is not there is refused",
             "is no probe" in run(args, RUNS / "cook.yaml", "-to", "1", "-probe", "tip", out="none", must=1).text)
+# What a seal holds is known once the last step is accepted
+finished, meshes = wish(JOBS / "d_ring.yaml", "tight_to", 1, "seal", "accuracy.meshes=1", must=5)
+with open(finished.directory / "mesh-1" / "summary.json") as file:
+    check.near("the value is that of the last step", meshes[0]["value"], json.load(file)["probes"]["tight_to"], 1e-6)
 check.finish()

@@ -1,7 +1,8 @@
 /* The estimated errors of a run's probes: made once at its end, then printed, and written to summary.json.
 
    ProbeErrorsCreate() makes the object where the scene asks for it, else NULL, which all functions take.
-   ProbeErrorsEstimate() is called at the solution of the last step, before it is accepted. */
+   ProbeErrorsEstimate() is called at the solution of the last step, before it is accepted, and ProbeErrorsAccept() once
+   it is. */
 #pragma once
 #include <stdio.h>
 #include "errors/quantityerror.h"
@@ -14,5 +15,6 @@ PetscErrorCode       ProbeErrorsDestroy(ProbeErrors *);
 void                 ProbeErrorsSetHistory(ProbeErrors, const PetscReal *steps, PetscReal cpu_s);
 PetscReal            ProbeErrorsHistorySeconds(ProbeErrors);
 PetscErrorCode       ProbeErrorsEstimate(ProbeErrors);
+PetscErrorCode       ProbeErrorsAccept(ProbeErrors, const PetscReal *values);
 const QuantityError *ProbeErrorsGet(ProbeErrors, int probe, PetscReal *value, const char **why);
 void                 ProbeErrorsPrint(ProbeErrors, FILE *);
