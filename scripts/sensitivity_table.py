@@ -23,6 +23,7 @@ class Case:
         self.scene, self.edits, self.wanted = scene, edits, wanted
 
 
+STEPS = "stepping={control: fixed, initial: 0.1}"
 FIXED = "contact.0.penalty={initial: auto, scale: 50}"
 CASES = {
     "punch":
@@ -50,6 +51,13 @@ CASES = {
           "contact.0.formulation=surface_to_surface"),
          tip_uy=("contact.0.master.cylinder.radius=20", "bodies.0.material.E=200000"),
          cylinder_fy=("loads.0.pressure=200", )),
+    # The answer depends on the way: all runs take the same steps
+    "wedge_brake":
+    Case("tests/jobs/wedge_brake.yaml", (STEPS, ), brake=("contact.0.friction.mu=0.2", "loads.0.traction.0=10")),
+    "brake_band":
+    Case("tests/jobs/brake_band.yaml", (STEPS, ), torque=("contact.0.friction.mu=0.3", )),
+    "autofrettage":
+    Case("tests/jobs/autofrettage.yaml", (STEPS, ), grown=("bodies.0.material.yield=300", "bodies.0.material.E=200000")),
 }
 
 

@@ -62,12 +62,11 @@ static const Explanation Input[] = {
    "`sensitivity` needs a probe and the path of a number that the scene gives and that may change a little.",
    "Write PROBE:KEY, such as `force:bodies.0.material.E`, and give the key a number if it has its default."},
   {"B144",
-   {"as the answer depends on the way to it", "with augmented pressures, which stay", "multipliers of its elements",
-    "is not available where a fluid enters"},
-   "the scene has no sensitivities",
-   "The answer depends on the way to it (friction, yielding, locked bolts, supports that come and go), or on "
-   "multipliers or fluids, of which no derivative is known.",
-   "Take differences of two runs with `-set`, or leave the effect out."},
+   {"is not available in a run that is continued", "is not available where a fluid enters"},
+   "the scene, or a run that is continued, has no sensitivities",
+   "A fluid wets places one by one, and the answer jumps. Where the answer depends on the way to it, by friction, yielding "
+   "and the like, derivatives come from whole runs, which a run that is continued does not know.",
+   "Take differences of two runs with `-set`, or start the run anew."},
   {"B145",
    {"allowed for a sensitivity: parameters that"},
    "a parameter changes the connections of the mesh",

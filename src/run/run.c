@@ -129,7 +129,8 @@ static PetscErrorCode RunMonitor(LoadStepper stepper, const StepRecord *record, 
 
   PetscFunctionBeginUser;
   PetscCall(ResultsStep(run->results, record));
-  if (run->scene->output.error == SCENE_ERROR_HISTORY) PetscCall(HistoryErrorAddStep(run, record->t));
+  if (run->scene->output.error == SCENE_ERROR_HISTORY || run->scene->n_sensitivities)
+    PetscCall(AgainAddStep(run, record->t));
   PetscCall(InterruptionAsked(run->comm, &why));
   if (why || (every && record->step % every == 0)) {
     PetscCall(CheckpointWrite(run->checkpoint));
@@ -224,6 +225,7 @@ static PetscErrorCode RunSolve(Run *run, const RunInput *input, BurnishStatus *s
   PetscCall(RunCreateStepper(run, input));
   PetscCall(RunSolveSteps(run, &report));
   if (report.done) PetscCall(HistoryErrorFind(run, input, RunAgain));
+  if (report.done) PetscCall(SensitivitiesFindByRuns(run, input, RunAgain));
   if (!report.done && run->kept != report.steps) PetscCall(CheckpointWrite(run->checkpoint));
   *status = report.done ? BURNISH_DONE : report.stopped ? BURNISH_STOPPED : BURNISH_NOT_CONVERGED;
   if (*status == BURNISH_DONE) run->message[0] = '\0';

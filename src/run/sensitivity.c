@@ -10,6 +10,13 @@
 /* By this part of itself a number is changed. Differences of residuals have no error of an iteration, so that the part
    may be small. Contacts close and open over lengths of the penetration, which may be a millionth of the bodies. */
 #define SENSITIVITY_STEP 1e-7
+/* By this part of itself it is changed for whole runs. They have the errors of their iterations, some 1e-9 of the
+   answer. The curvature of the answer leaves the square of the part. */
+#define SENSITIVITY_RUN_STEP 1e-3
+/* Slopes of both sides that are so far apart, over their mean, are both said. */
+#define SENSITIVITY_KINK 0.05
+/* Changes of an answer, over it, that whole runs do not tell from the errors of their iterations */
+#define SENSITIVITY_NOISE 1e-6
 /* Twins whose mean residual is beyond this part of the forces, and beyond the second part of what the number changes,
    are in another state than the model. */
 #define SENSITIVITY_APART 1e-6
@@ -19,7 +26,7 @@
 #define SENSITIVITY_CORRECTED 1e-6
 enum { SENSITIVITY_CORRECTIONS = 20 };
 
-enum { SENSITIVITY_ROW = 1536 };
+enum { SENSITIVITY_ROW = 1536, SENSITIVITY_EDIT = 1024 };
 
 /* A model of the scene with another value of one number */
 typedef struct {
@@ -46,11 +53,19 @@ typedef struct {
   Vec             place;   /* free displacements at which contact lists are made (length) */
   PetscBool       settled; /* the solution with these lists is known */
   PetscReal      *derivative, *cpu_s;
-  const char    **why; /* it has no derivative */
+  PetscReal      *apart; /* distance of the slopes of both sides over their mean, with whole runs; else 0 */
+  const char    **why;   /* it has no derivative */
+  char           *edit;  /* of the scene of a run besides */
 } Sensitivities;
 
+/* By which part of itself a number is changed. */
+static double ChangeOf(const Run *run)
+{
+  return run->scene->sensitivities_by_runs ? SENSITIVITY_RUN_STEP : SENSITIVITY_STEP;
+}
+
 /*@
-  SensitivitiesCheck - refuses numbers that cannot be changed a little.
+  SensitivitiesCheck - refuses numbers that cannot be changed a little, and runs that do not know all of their way.
 
   Collective
 
@@ -60,13 +75,18 @@ typedef struct {
 PetscErrorCode SensitivitiesCheck(Run *run)
 {
   PetscFunctionBeginUser;
+  if (run->scene->n_sensitivities && run->scene->sensitivities_by_runs && run->input->restart)
+    PetscCall(RefuseInput(run->comm,
+                          "%s: is not available in a run that is continued, where the answer depends on the way to it; "
+                          "allowed: a run from the start",
+                          SceneWhere(run->scene, "sensitivity", NULL)));
   for (int i = 0; i < run->scene->n_sensitivities; i++) {
     const SceneSensitivity *s = &run->scene->sensitivities[i];
     Scene                   changed;
 
-    PetscCall(SceneReadChanged(run->scene, run->comm, s->key, s->value * (1 + SENSITIVITY_STEP), &changed));
+    PetscCall(SceneReadChanged(run->scene, run->comm, s->key, s->value * (1 + ChangeOf(run)), &changed));
     PetscCall(SceneDestroy(&changed));
-    PetscCall(SceneReadChanged(run->scene, run->comm, s->key, s->value * (1 - SENSITIVITY_STEP), &changed));
+    PetscCall(SceneReadChanged(run->scene, run->comm, s->key, s->value * (1 - ChangeOf(run)), &changed));
     PetscCall(SceneDestroy(&changed));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -122,8 +142,8 @@ static PetscErrorCode TwinDestroy(Twin *twin)
 }
 
 /*@
-  SensitivitiesCheckModel - refuses what the model shows to have no derivative: multipliers of elements, and parameters
-  that change the connections of the mesh.
+  SensitivitiesCheckModel - refuses parameters that change the connections of the mesh, and finds out whether
+multipliers of elements stay from one solve to the next.
 
   Collective
 
@@ -140,18 +160,14 @@ PetscErrorCode SensitivitiesCheckModel(Run *run, const RunInput *input)
   const Sensitivities all = {.run = run, .input = input};
 
   PetscFunctionBeginUser;
-  if (run->scene->n_sensitivities && ElasticityAugments(run->model->problem->elasticity))
-    PetscCall(RefuseInput(run->comm,
-                          "%s: a body keeps its volume by multipliers of its elements, which have no sensitivity; "
-                          "allowed: nu below 0.499, or elements of second order with pressures at nodes",
-                          SceneWhere(run->scene, "sensitivity", NULL)));
+  if (ElasticityAugments(run->model->problem->elasticity)) run->scene->sensitivities_by_runs = PETSC_TRUE;
   for (int i = 0; i < run->scene->n_sensitivities; i++) {
     const SceneSensitivity *s = &run->scene->sensitivities[i];
 
     for (int side = -1; side <= 1 && MovesMesh(s->key); side += 2) {
       Twin twin;
 
-      PetscCall(TwinCreate(&all, s->key, (PetscReal)s->value * (1 + side * SENSITIVITY_STEP), &twin));
+      PetscCall(TwinCreate(&all, s->key, (PetscReal)(s->value * (1 + side * ChangeOf(run))), &twin));
       PetscCall(TwinDestroy(&twin));
     }
   }
@@ -389,10 +405,15 @@ static void Print(const Sensitivities *all)
 
     if (all->why[i])
       printf("derivative of %s by %s: not known: %s\n", scene->probes[s->probe].name, s->key, all->why[i]);
-    else
-      printf("derivative of %s by %s: %.6g; 1 %% of it changes %s by %.3g %%\n", scene->probes[s->probe].name, s->key,
+    else {
+      printf("derivative of %s by %s: %.6g; 1 %% of it changes %s by %.3g %%", scene->probes[s->probe].name, s->key,
              (double)all->derivative[i], scene->probes[s->probe].name,
              (double)(all->derivative[i] * (PetscReal)s->value / value));
+      if (scene->sensitivities_by_runs) printf("; by whole runs, %.3g s of CPU", (double)all->cpu_s[i]);
+      if (all->apart[i] > SENSITIVITY_KINK)
+        printf("; the slopes on both sides are %.2g %% apart", 100 * (double)all->apart[i]);
+      printf("\n");
+    }
   }
 }
 
@@ -413,10 +434,40 @@ static PetscErrorCode Write(const Sensitivities *all)
     used +=
       (size_t)snprintf(text + used, size - used, "%s,%s,%.15g,%.15g,%.10g,%s,%.3f\n", scene->probes[s->probe].name,
                        s->key, (double)all->probe[s->probe].value, s->value, (double)all->derivative[i],
-                       all->probe[s->probe].y ? "adjoint" : "direct", (double)all->cpu_s[i]);
+                       scene->sensitivities_by_runs ? "runs"
+                       : all->probe[s->probe].y     ? "adjoint"
+                                                    : "direct",
+                       (double)all->cpu_s[i]);
   }
   PetscCall(TextFileReplace(all->run->directory, "sensitivity.csv", text));
   PetscCall(PetscFree(text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes room for the derivatives. */
+static PetscErrorCode SensitivitiesBegin(Sensitivities *all)
+{
+  const Scene scene = all->run->scene;
+  const int   n     = scene->n_sensitivities;
+
+  PetscFunctionBeginUser;
+  PetscCall(
+    PetscCalloc5(scene->n_probes, &all->probe, n, &all->derivative, n, &all->cpu_s, n, &all->apart, n, &all->why));
+  for (int i = 0; i < n; i++) all->probe[scene->sensitivities[i].probe].wanted = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Prints and writes the derivatives, and frees them. */
+static PetscErrorCode SensitivitiesEnd(Sensitivities *all)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(all->run->comm, &rank));
+  if (!rank && !all->input->quiet) Print(all);
+  if (!rank) PetscCall(Write(all));
+  for (int p = 0; p < all->run->scene->n_probes; p++) PetscCall(VecDestroy(&all->probe[p].y));
+  PetscCall(PetscFree5(all->probe, all->derivative, all->cpu_s, all->apart, all->why));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -434,25 +485,97 @@ static PetscErrorCode Write(const Sensitivities *all)
 @*/
 PetscErrorCode SensitivitiesFind(Run *run, const RunInput *input)
 {
-  const int     n = run->scene->n_sensitivities, probes = run->scene->n_probes;
   Sensitivities all = {.run = run, .input = input};
-  PetscMPIInt   rank;
 
   PetscFunctionBeginUser;
-  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Comm_rank(run->comm, &rank));
-  PetscCall(PetscCalloc4(probes, &all.probe, n, &all.derivative, n, &all.cpu_s, n, &all.why));
-  for (int i = 0; i < n; i++) all.probe[run->scene->sensitivities[i].probe].wanted = PETSC_TRUE;
+  if (!run->scene->n_sensitivities || run->scene->sensitivities_by_runs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SensitivitiesBegin(&all));
   PetscCall(VecDuplicate(run->model->x, &all.F));
   PetscCall(VecDuplicate(run->model->x, &all.place));
   PetscCall(ModelSettleLists(run->model, all.place, &all.settled));
   PetscCall(FindAdjoints(&all));
   PetscCall(FindAll(&all));
-  if (!rank && !input->quiet) Print(&all);
-  if (!rank) PetscCall(Write(&all));
   PetscCall(VecDestroy(&all.F));
   PetscCall(VecDestroy(&all.place));
-  for (int p = 0; p < probes; p++) PetscCall(VecDestroy(&all.probe[p].y));
-  PetscCall(PetscFree4(all.probe, all.derivative, all.cpu_s, all.why));
+  PetscCall(SensitivitiesEnd(&all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The probes of a run with another value of a number. key: NULL changes nothing. */
+static PetscErrorCode RunChanged(const Sensitivities *all, RunAgainFn solve, const char *key, double value,
+                                 PetscReal values[], PetscReal *cpu_s, PetscBool *known)
+{
+  const Again again = {solve, "changed", 1, key ? all->edit : NULL};
+
+  PetscFunctionBeginUser;
+  if (key) PetscCall(PetscSNPrintf(all->edit, SENSITIVITY_EDIT, "%s=%.17g", key, value));
+  PetscCall(AgainSolve(all->run, all->input, &again, values, cpu_s, known));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The derivatives of all wanted probes by the number of a sensitivity, from two whole runs. value[0], value[1]: room
+   for their probes; value[2]: those of such a run with the number as it is. */
+static PetscErrorCode DifferentiateRuns(Sensitivities *all, RunAgainFn solve, int i, PetscReal *const value[3])
+{
+  const Scene             scene = all->run->scene;
+  const SceneSensitivity *s     = &scene->sensitivities[i];
+  const PetscReal         h     = (PetscReal)(SENSITIVITY_RUN_STEP * fabs(s->value));
+  PetscReal               cpu_s[2];
+  PetscBool               known[2];
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++)
+    PetscCall(RunChanged(all, solve, s->key, s->value + (k ? -(double)h : (double)h), value[k], &cpu_s[k], &known[k]));
+  for (int j = i; j < scene->n_sensitivities; j++) {
+    const int       p       = scene->sensitivities[j].probe;
+    const PetscReal between = value[0][p] - value[1][p], bend = value[0][p] + value[1][p] - 2 * value[2][p];
+
+    if (strcmp(scene->sensitivities[j].key, s->key)) continue;
+    all->why[j]        = known[0] && known[1] ? NULL : "a run with a number that is a little different does not end";
+    all->derivative[j] = all->why[j] ? NAN : between / (2 * h);
+    if (PetscAbsReal(between) > SENSITIVITY_NOISE * PetscAbsReal(all->probe[p].value))
+      all->apart[j] = PetscAbsReal(2 * bend / between);
+    all->cpu_s[j] = cpu_s[0] + cpu_s[1];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SensitivitiesFindByRuns - finds the derivatives that the scene asks for where its answer depends on the way to it.
+
+  Collective
+
+  Input Parameters:
++ run   - at its end, before its results are finished
+. input - what the user asks for
+- solve - solves a scene besides, and gives its probes
+@*/
+PetscErrorCode SensitivitiesFindByRuns(Run *run, const RunInput *input, RunAgainFn solve)
+{
+  const Scene      scene = run->scene;
+  char             edit[SENSITIVITY_EDIT];
+  Sensitivities    all = {.run = run, .input = input, .edit = edit};
+  const PetscReal *values;
+  PetscReal       *value[3], cpu_s;
+  PetscBool        known;
+
+  PetscFunctionBeginUser;
+  if (!scene->n_sensitivities || !scene->sensitivities_by_runs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SensitivitiesBegin(&all));
+  PetscCall(PetscCalloc3(scene->n_probes, &value[0], scene->n_probes, &value[1], scene->n_probes, &value[2]));
+  PetscCall(ResultsGetProbes(run->results, &values));
+  for (int p = 0; p < scene->n_probes; p++) all.probe[p].value = value[2][p] = values[p];
+  PetscCall(RunChanged(&all, solve, NULL, 0, value[2], &cpu_s, &known));
+  for (int i = 0; i < scene->n_sensitivities; i++) {
+    int first = 0;
+
+    while (strcmp(scene->sensitivities[first].key, scene->sensitivities[i].key)) first++;
+    if (first == i) PetscCall(DifferentiateRuns(&all, solve, i, value));
+  }
+  for (int i = 0; i < scene->n_sensitivities; i++) { /* the run that serves all numbers counts for the first one */
+    if (!strcmp(scene->sensitivities[0].key, scene->sensitivities[i].key)) all.cpu_s[i] += cpu_s;
+  }
+  PetscCall(PetscFree3(value[0], value[1], value[2]));
+  PetscCall(SensitivitiesEnd(&all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

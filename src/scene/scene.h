@@ -299,6 +299,7 @@ typedef struct {
   SceneAccuracy     accuracy;
   int               n_sensitivities;
   SceneSensitivity *sensitivities;
+  PetscBool         sensitivities_by_runs; /* the answer depends on the way to it */
   struct {
     double penetration; /* largest depth to which faces may cross, in sizes of the smaller face */
   } certificate;

@@ -73,36 +73,16 @@ static PetscErrorCode ReadEntry(Scene scene, const char *entry)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Refuses a scene whose answer depends on the way to it. */
-static PetscErrorCode CheckPath(Scene scene)
+/* Does the answer of a scene depend on the way to it, or on what stays from one solve to the next? */
+static PetscBool DependsOnPath(Scene scene)
 {
-  PetscFunctionBeginUser;
-  if (SceneIsPlastic(scene) || SceneHasRoutine(scene))
-    PetscCall(Refuse(scene, NULL,
-                     "is not available where a body yields or has a law of its own, as the answer depends on the "
-                     "way to it; allowed: elastic laws"));
-  for (int c = 0; c < scene->n_contacts; c++) {
-    if (scene->contacts[c].friction)
-      PetscCall(Refuse(scene, NULL,
-                       "is not available with friction, as the answer depends on the way to it; allowed: pairs "
-                       "without friction"));
-    if (scene->contacts[c].augment)
-      PetscCall(Refuse(scene, NULL,
-                       "is not available with augmented pressures, which stay from one solve to the next; "
-                       "allowed: penalties"));
-  }
-  for (int b = 0; b < scene->n_bodies; b++)
-    if (scene->bodies[b].bolt && scene->bodies[b].locked < 1)
-      PetscCall(Refuse(scene, NULL,
-                       "is not available where a bolt is locked at a length that comes from an earlier force, as the "
-                       "answer depends on the way to it; allowed: bolts that keep their force"));
-  if (SceneSupportsChange(scene))
-    PetscCall(Refuse(scene, NULL,
-                     "is not available where supports come and go, as the answer depends on the way to it; allowed: "
-                     "supports that hold all the time"));
-  if (SceneHasFluid(scene))
-    PetscCall(Refuse(scene, NULL, "is not available where a fluid enters between surfaces; allowed: other loads"));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscBool depends = (PetscBool)(SceneIsPlastic(scene) || SceneHasRoutine(scene) || SceneSupportsChange(scene));
+
+  for (int c = 0; c < scene->n_contacts; c++)
+    depends = (PetscBool)(depends || scene->contacts[c].friction || scene->contacts[c].augment);
+  for (int b = 0; b < scene->n_bodies; b++) /* a locked length comes from an earlier force */
+    depends = (PetscBool)(depends || (scene->bodies[b].bolt && scene->bodies[b].locked < 1));
+  return depends;
 }
 
 /*@
@@ -125,7 +105,11 @@ PetscErrorCode SceneReadSensitivities(Scene scene)
   if (!list) PetscFunctionReturn(PETSC_SUCCESS);
   for (int i = 0; i < list->n; i++) n += strlen(list->child[i]->text) + 1;
   PetscCall(PetscCalloc1(n, &scene->sensitivities)); /* an entry has no more keys than characters */
-  PetscCall(CheckPath(scene));
+  if (SceneHasFluid(scene))
+    PetscCall(Refuse(scene, NULL,
+                     "is not available where a fluid enters between surfaces, as the places that it wets change one by "
+                     "one; allowed: other loads"));
+  scene->sensitivities_by_runs = DependsOnPath(scene);
   for (int i = 0; i < list->n; i++) PetscCall(ReadEntry(scene, list->child[i]->text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -50,7 +50,7 @@ INPUT = {
     "B132": (BAR, (), ["cyclic={surfaces: [left, right], axis: z}"]),
     "B137": (SQUARE, (), ["mesh.file={}/twice.geo"]),
     "B143": (STACK, (), ["sensitivity=[\"force:contact.0.name\"]"]),
-    "B144": (STACK, (), ["sensitivity=[\"force:loads.0.uy\"]", "contact.0.friction={mu: 0.1}"]),
+    "B144": (SCENES / "uplift.yaml", (), ["sensitivity=[\"seal:loads.0.pressure\"]"]),
     "B145": (STACK, (), ["sensitivity=[\"force:mesh.parameters.n_lower\"]", "mesh.parameters.n_lower=6"]),
     "B123": (STACK, (), ["geometry=plane_stress", "bodies.0.formulation=fbar"]),
 }

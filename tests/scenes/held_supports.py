@@ -205,7 +205,6 @@ def words():
          "\"0.1*t\", during: hold}")
     says("springs in the same entry", r"stands beside a displacement with `during`.*\[B131\]",
          "supports.0={surface: low, uy: 0, spring: [1, 0], during: pull}")
-    says("sensitivities", r"where supports come and go.*\[B144\]", "sensitivity=[\"low:loads.0.force.1\"]")
     says("a volume that is enclosed in some steps", r"in some steps only.*\[B130\]", "mesh.order=2", "supports.0.ux=0",
          "bodies.0={volume: bar, material: {law: linear, mu: 1000, nu: 0.5}, formulation: mixed}",
          "supports.4={surface: right, ux: 0}")

@@ -7,10 +7,6 @@
    two steps, and the difference counts twice. Source: Hairer, Norsett and Wanner, Solving Ordinary Differential
    Equations 1 (Springer, 1993), II.4. */
 #pragma once
-#include "run.h"
+#include "again.h"
 
-/* Solves a scene with the probes of a run, and gives them. known: it came to its end. */
-typedef PetscErrorCode (*RunAgainFn)(const Run *, const RunInput *, PetscReal *values, PetscBool *known);
-
-PetscErrorCode HistoryErrorAddStep(Run *, PetscReal t);
 PetscErrorCode HistoryErrorFind(Run *, const RunInput *, RunAgainFn);

@@ -40,7 +40,7 @@ typedef struct {
   LoadStepper     stepper;
   PetscBool       refines; /* the scene asks for an accuracy: this run is on one of several meshes */
   PetscInt        n_ends, ends_room;
-  PetscReal      *ends;          /* load parameters at which steps ended, with output.error: history */
+  PetscReal      *ends;          /* load parameters at which steps ended, for runs besides (again.h) */
   PetscInt        kept;          /* step of the last checkpoint, -1: none */
   int             n_options;     /* PETSc options of the scene that are in PETSc's database */
   char          **options;       /* their names, with dash */

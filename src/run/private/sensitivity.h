@@ -11,12 +11,19 @@
    the model (solve/twin.h). A parameter of the mesh moves its nodes: gmsh makes the twin's mesh, which must have the
    same nodes and cells.
 
+   Where the answer depends on the way to it, by friction, yielding, multipliers, locked bolts or supports that come and
+   go, dJ/dp is the difference of two whole runs at p+h and p-h that take the steps of the run at hand
+   (again.h). Where it is not smooth, as at a node that sticks for one and slips for the other, the slopes on both sides
+   differ, and that is said.
+
    Factors by which the run has made penalties stiffer are held. SensitivitiesCheck() and SensitivitiesCheckModel()
    refuse what cannot be done before the run begins, SensitivitiesFind() writes sensitivity.csv before the last solution
-   is accepted. Source: Choi and Kim, Structural Sensitivity Analysis and Optimization 1 and 2 (Springer, 2005). */
+   is accepted, SensitivitiesFindByRuns() at the end of the run. Source: Choi and Kim, Structural Sensitivity Analysis
+   and Optimization 1 and 2 (Springer, 2005). */
 #pragma once
-#include "run.h"
+#include "again.h"
 
 PetscErrorCode SensitivitiesCheck(Run *);
 PetscErrorCode SensitivitiesCheckModel(Run *, const RunInput *);
 PetscErrorCode SensitivitiesFind(Run *, const RunInput *);
+PetscErrorCode SensitivitiesFindByRuns(Run *, const RunInput *, RunAgainFn);
