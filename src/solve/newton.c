@@ -22,8 +22,8 @@
 #define NEWTON_CRAWL  0.05
 #define NEWTON_CRAWLS 4
 /* Where a viscous restraint may help, a solve ends after so many iterations in a row whose tangents are indefinite.
-   Newton's method then wanders between equilibria that lie below the one that is lost, and each of them is as good to it
-   as the one to which the bodies would move. Where it comes to one at once, it has taken fewer. */
+   Newton's method then wanders between equilibria that lie below the one that is lost, and each of them is as good to
+   it as the one to which the bodies would move. Where it comes to one at once, it has taken fewer. */
 #define NEWTON_UNSTABLE 6
 /* Newton's method is limited by its iterations, not by this number of evaluations in the line search. */
 #define NEWTON_MAX_FUNCTIONS 1000000
