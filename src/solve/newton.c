@@ -224,7 +224,7 @@ static PetscErrorCode ModelStopUnstable(Model model, SNESConvergedReason *reason
   PetscFunctionBeginUser;
   if (!model->scene->stepping.damped || model->mesh->saddle || !ProblemConservative(model->problem))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ReusedFactorNegatives(LinearSolverKept(work->solver), &negatives));
+  PetscCall(LinearSolverNegatives(work->solver, &negatives));
   if (negatives >= 0) work->indefinite = negatives ? work->indefinite + 1 : 0;
   if (work->indefinite < NEWTON_UNSTABLE) PetscFunctionReturn(PETSC_SUCCESS);
   work->unstable = PETSC_TRUE;
