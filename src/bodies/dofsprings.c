@@ -145,6 +145,28 @@ PetscErrorCode DofSpringsMean(DofSprings s, Vec diagonal, PetscReal *scale)
 }
 
 /*@
+  DofSpringsMoving - computes the energy of springs of scale 1 where all dofs are stretched alike.
+
+  Collective
+
+  Input Parameters:
++ s      - the springs
+- motion - the stretch (length)
+
+  Output Parameter:
+. energy - half the sum of the weights times the squared stretch
+@*/
+PetscErrorCode DofSpringsMoving(DofSprings s, PetscReal motion, PetscReal *energy)
+{
+  PetscScalar weight;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecSum(s->weight, &weight));
+  *energy = PetscRealPart(weight) * PetscSqr(motion) / 2;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   DofSpringsStretch - computes x less the anchor.
 
   Collective

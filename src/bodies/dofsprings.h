@@ -15,6 +15,7 @@ PetscErrorCode DofSpringsReturn(DofSprings, Vec x);
 void           DofSpringsScale(DofSprings, PetscReal scale);
 PetscBool      DofSpringsChanged(DofSprings);
 PetscErrorCode DofSpringsMean(DofSprings, Vec diagonal, PetscReal *scale);
+PetscErrorCode DofSpringsMoving(DofSprings, PetscReal motion, PetscReal *energy);
 PetscErrorCode DofSpringsStretch(DofSprings, Vec x, Vec *stretch);
 PetscErrorCode DofSpringsForces(DofSprings, Vec x, Vec *force);
 PetscErrorCode DofSpringsResidual(DofSprings, Vec x, Vec F);

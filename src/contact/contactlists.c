@@ -196,13 +196,15 @@ static PetscReal FrameCosine(int dim, const PetscReal *a, const PetscReal *b)
   return cosine;
 }
 
-/* Lets the search choose rungs and frames of all fits. *changed: it did not choose some of them. */
-static PetscErrorCode PairFreeFits(ContactPair *pair, PetscBool *changed)
+/* Lets the search choose rungs and frames of all fits, and factors be what the next lists ask for. Nothing is to be
+   done where nothing has been damped since the last time. *changed: the search did not choose some of the fits. */
+static PetscErrorCode PairFree(ContactPair *pair, PetscBool *changed)
 {
   const PetscInt n = pair->slaves->n;
 
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
+  if (pair->undamped) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt q = 0; q < n; q++) *changed = (PetscBool)(*changed || pair->first_rung[q]);
   for (PetscInt i = 0; i < 3 * n; i++) *changed = (PetscBool)(*changed || pair->frame_kept[i] != 0);
   PetscCall(PetscArrayzero(pair->first_rung, n));
@@ -210,6 +212,12 @@ static PetscErrorCode PairFreeFits(ContactPair *pair, PetscBool *changed)
   PetscCall(PetscArrayzero(pair->frame_before, 3 * n));
   PetscCall(PetscArrayzero(pair->frame_kept, 3 * n));
   PetscCall(PetscArrayzero(pair->turned_back, n));
+  PetscCall(PetscArrayzero(pair->factor_change, n));
+  for (PetscInt q = 0; q < n; q++) {
+    pair->factor_low[q]  = -1;
+    pair->factor_high[q] = 2;
+  }
+  pair->undamped = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -349,16 +357,11 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     if (pair->slave_offsets) PetscCall(PetscLogEventBegin(contact->event_offset, 0, 0, 0, 0));
     PetscCall(PairTakeOffsets(pair, u, t, needed, PETSC_TRUE));
     if (pair->slave_offsets) PetscCall(PetscLogEventEnd(contact->event_offset, 0, 0, 0, 0));
-    PetscCall(PairFreeFits(pair, &changed));
+    PetscCall(PairFree(pair, &changed));
     PetscCall(PairListsServe(pair, u, t, needed, changed, &serve));
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
     if (pair->next || pair->stays) PetscCall(PairTakeNext(pair));
     PetscCall(PairExtrapolateOffsets(pair, u, t, t_next));
-    PetscCall(PetscArrayzero(pair->factor_change, pair->lists->n_slaves));
-    for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
-      pair->factor_low[q]  = -1;
-      pair->factor_high[q] = 2;
-    }
     if (pair->friction) PetscCall(ContactPairProject(contact, pair, u, t));
     if (pair->friction) PetscCall(FrictionBegin(pair, t, t_next));
     pair->lost    = (ContactLost){0, NAN, 0, -1};
@@ -470,6 +473,7 @@ static void PairKeepFrames(ContactPair *pair)
 static void PairDamp(ContactPair *pair)
 {
   if (pair->stays) return; /* nothing has a partner */
+  pair->undamped = PETSC_FALSE;
   PairDampFactors(pair);
   PairKeepRungs(pair);
   PairKeepFrames(pair);

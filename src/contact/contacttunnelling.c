@@ -73,7 +73,6 @@ static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q,
   Facet                facet;
   Foot                 foot;
 
-  if (!pair->master || lists->nearest[q] < 0) return PETSC_FALSE; /* most points */
   offset = ContactTermOffset(pair, c, t);
   if (!(pair->point_gap[q] - offset >= 0)) return PETSC_FALSE;
   facet = lists->facet[lists->facet_ptr[q] + lists->nearest[q]];
@@ -104,11 +103,14 @@ static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q,
 @*/
 void ContactNoteTunnelled(ContactPair *pair, PetscReal t)
 {
-  for (PetscInt c = 0; c < pair->n_sides; c++) {
+  const PetscInt *nearest = pair->lists->nearest; /* of most points none */
+
+  for (PetscInt c = 0; c < pair->n_sides && pair->master; c++) {
     for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
       ContactLost lost;
 
-      if (PointTunnelled(pair, c, pair->term_point[k], t, &lost)) KeepDeepest(pair, &lost);
+      if (nearest[pair->term_point[k]] >= 0 && PointTunnelled(pair, c, pair->term_point[k], t, &lost))
+        KeepDeepest(pair, &lost);
     }
   }
 }

@@ -570,6 +570,26 @@ PetscBool FactorIsSymmetric(Factor f)
 }
 
 /*@
+  FactorNegatives - returns the number of negative eigenvalues of the matrix that was factored, with what its border
+  stands for.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. f - the factor
+
+  Note:
+  Returns -1 where there is no factor, or none of a symmetric matrix.
+
+  Source: Sylvester's law of inertia. Each vector of a border adds one negative eigenvalue of its own.
+@*/
+PetscInt FactorNegatives(Factor f)
+{
+  if (!f->exists || !f->symmetric) return -1;
+  return PetscMax(0, f->mumps.INFOG(12) - (FactorHasBorder(f) ? BorderedFactorCount(f->bordering) : 0));
+}
+
+/*@
   FactorGetCost - gets what the factor takes, by the last analysis.
 
   Not collective, the same on all ranks

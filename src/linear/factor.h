@@ -35,4 +35,5 @@ PetscErrorCode FactorSolve(Factor, Vec b, Vec x);
 PetscErrorCode FactorSolveTransposed(Factor, Vec b, Vec x);
 PetscErrorCode FactorSolveColumns(Factor, Mat B, Mat X);
 PetscBool      FactorIsSymmetric(Factor);
+PetscInt       FactorNegatives(Factor);
 void           FactorGetCost(Factor, FactorCost *);

@@ -425,6 +425,32 @@ PetscErrorCode LinearSolverSetPrediction(LinearSolver solver, PetscBool predicti
 }
 
 /*@
+  LinearSolverNegatives - gets the number of negative eigenvalues of the operator that was solved with last.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. solver - the linear solver
+
+  Output Parameter:
+. negatives - their number; -1 where it is not known: the solver is iterative, the operator is not symmetric, or the
+              factor is that of an older one
+@*/
+PetscErrorCode LinearSolverNegatives(LinearSolver solver, PetscInt *negatives)
+{
+  Factor factor;
+
+  PetscFunctionBeginUser;
+  if (solver->kept) {
+    PetscCall(ReusedFactorNegatives(solver->kept, negatives));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(DirectSolverFactor(solver->ksp, &factor));
+  *negatives = factor ? FactorNegatives(factor) : -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   LinearSolverKept - gets the factor that may serve more than one operator.
 
   Not collective

@@ -28,4 +28,5 @@ PetscErrorCode LinearSolverDirect(LinearSolver, PetscBool *direct);
 PetscErrorCode LinearSolverColumns(LinearSolver, Mat B, Mat X, PetscBool *able);
 PetscErrorCode LinearSolverSetStart(LinearSolver, PetscReal residual);
 PetscErrorCode LinearSolverSetPrediction(LinearSolver, PetscBool);
+PetscErrorCode LinearSolverNegatives(LinearSolver, PetscInt *negatives);
 ReusedFactor   LinearSolverKept(LinearSolver);

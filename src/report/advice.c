@@ -455,6 +455,7 @@ static const ChangeKind tries[][ADVICE_CHANGES] = {
   [SOLVE_ROUTINE]     = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK},
   [SOLVE_RESTLESS]    = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK},
   [SOLVE_JUMP]        = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK},
+  [SOLVE_UNSTABLE]    = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK},
   [SOLVE_NAN]         = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK}};
 
 /* What is tried where surfaces cross and no term presses: no penalty and no step acts there. */

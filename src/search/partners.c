@@ -223,10 +223,6 @@ static PetscReal LargestChange(PetscInt n, int dim, const PetscReal *a, const Pe
   return PetscSqrtReal(most);
 }
 
-/* Entries of a face's lever: change of a unit normal for each length by which nodes part, for the square of that
-   length, and change of a point for the length. */
-enum { LEVER_NORMAL, LEVER_SQUARE, LEVER_POINT, LEVERS };
-
 /* Adds a point of a face to its lever. N and dN are the shape functions there, with dN[a * stride + k], x the nodes'
    positions. Tangents change by no more than the sum of their derivatives' amounts times the length, and the unit
    vector of a product by no more than twice its change over its amount. */
@@ -260,12 +256,20 @@ static void LeverAdd(int dim, const Element *e, const double *N, const double *d
   if (e->dim == 2) lever[LEVER_SQUARE] = PetscMax(lever[LEVER_SQUARE], 2 * sum[0] * sum[1] / area);
 }
 
-/* Finds the levers of all faces at the state of the last test. */
+/* Takes a face's lever into the largest of all faces. */
+static void LeverMost(const PetscReal *lever, PetscReal *most)
+{
+  for (int k = 0; k < LEVERS; k++) most[k] = PetscMax(most[k], lever[k]);
+}
+
+/* Finds the levers of all faces at the state of the last test, and the largest ones. */
 static void FindLevers(ContactSearch s, const PetscReal *u, PetscReal t)
 {
   const SlavePoints points = s->slaves;
   const int         dim    = s->mesh->dim;
-  PetscReal        *lever  = s->partners.lever, x[FACE_MAX_NODES * 3];
+  PetscReal        *lever = s->partners.lever, *most = s->partners.most_lever, x[FACE_MAX_NODES * 3];
+
+  for (int k = 0; k < LEVERS; k++) most[k] = 0;
 
   for (PetscInt f = 0; f < points->n_faces; f++, lever += LEVERS) {
     const ElementType type = points->faces[f].type;
@@ -274,6 +278,7 @@ static void FindLevers(ContactSearch s, const PetscReal *u, PetscReal t)
     SlavePointsFacePositions(points, f, x);
     for (int k = 0; k < LEVERS; k++) lever[k] = 0;
     for (int q = 0; q < rule->n; q++) LeverAdd(dim, ElementGet(type), rule->N[q], &rule->dN[q][0][0], 2, x, lever);
+    LeverMost(lever, most);
   }
   for (PetscInt f = 0; f < s->master->n_faces; f++, lever += LEVERS) {
     const Element *e     = ElementGet(s->master->faces[f].type);
@@ -284,6 +289,7 @@ static void FindLevers(ContactSearch s, const PetscReal *u, PetscReal t)
     SearchFacePositions(s, s->master, f, u, t, x);
     for (int k = 0; k < LEVERS; k++) lever[k] = 0;
     LeverAdd(dim, e, N, dN, e->dim, x, lever);
+    LeverMost(lever, most);
   }
 }
 
@@ -311,19 +317,25 @@ static void FaceChange(int dim, int nodes, const int *node, const PetscReal *now
   *turned = PetscMax(*turned, part > 0 ? (lever[LEVER_NORMAL] + lever[LEVER_SQUARE] * part) * part : 0);
 }
 
-/* Largest offset of a slave point (length). */
-static PetscReal LargestOffset(ContactSearch s)
+/* Bounds of what BoundChanges() finds, from the largest motions of nodes and the largest levers of faces: two nodes of
+   a face part by twice the largest motion at most. Nodes of other surfaces count as well, and rough bounds are enough
+   where hardly anything moves. */
+static PetscErrorCode BoundRoughly(ContactSearch s, const PetscReal *u, PetscReal *moved, PetscReal *turned)
 {
-  const int dim  = s->mesh->dim;
-  PetscReal most = 0;
+  enum { POINT, NODE, OFFSET, NORMAL, CHANGES };
+  const int        dim   = s->mesh->dim;
+  const Partners  *at    = &s->partners;
+  const PetscReal *lever = at->most_lever, parting = 2 * PetscSqrtReal(dim), more = 1 + parting * lever[LEVER_POINT],
+                  point = LargestChange(s->slaves->n_nodes, dim, s->slaves->u, at->slave_u),
+                  node = LargestChange(s->mesh->n_nodes, dim, u, at->u), part = parting * PetscMax(point, node);
+  PetscReal all[CHANGES] = {more * point, more * node, s->slaves->most_offset,
+                            part > 0 ? (lever[LEVER_NORMAL] + lever[LEVER_SQUARE] * part) * part : 0};
 
-  for (PetscInt q = 0; q < s->slaves->n; q++) {
-    PetscReal square = 0;
-
-    for (int d = 0; d < dim; d++) square += PetscSqr(s->slaves->offset[q * dim + d]);
-    most = PetscMax(most, square);
-  }
-  return PetscSqrtReal(most);
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, CHANGES, MPIU_REAL, MPIU_MAX, s->mesh->comm));
+  *moved  = all[POINT] + all[NODE] + all[OFFSET];
+  *turned = all[NORMAL];
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* By how much positions of points and of the master's nodes have changed at most since the last test, with the offsets,
@@ -343,7 +355,7 @@ static PetscErrorCode BoundChanges(ContactSearch s, const PetscReal *u, PetscRea
   for (PetscInt f = 0; f < s->master->n_faces; f++, lever += LEVERS)
     FaceChange(s->mesh->dim, ElementGet(s->master->faces[f].type)->nodes, s->master->faces[f].nodes, u, at->u, lever,
                &all[NODE], &all[NORMAL]);
-  all[OFFSET] = LargestOffset(s);
+  all[OFFSET] = s->slaves->most_offset;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, CHANGES, MPIU_REAL, MPIU_MAX, s->mesh->comm));
   *moved  = all[POINT] + all[NODE] + all[OFFSET];
   *turned = all[NORMAL];
@@ -381,7 +393,7 @@ static PetscErrorCode Changes(ContactSearch s, const PetscReal *u, const PetscRe
   PetscFunctionBeginUser;
   all[POINT]  = LargestChange(s->slaves->n, dim, x, at->x);
   all[NODE]   = MasterMotion(s, u);
-  all[OFFSET] = LargestOffset(s);
+  all[OFFSET] = s->slaves->most_offset;
   all[NORMAL] = LargestChange(s->slaves->n, 3, normal, at->normal);
   all[FACE]   = LargestChange(s->master->n_faces, 3, face_normal, at->face_normal);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, CHANGES, MPIU_REAL, MPIU_MAX, s->mesh->comm));
@@ -462,6 +474,12 @@ PetscErrorCode SearchPartnersLearn(ContactSearch s, NeighbourLists lists, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is what has changed since the last test too little for another answer? */
+static PetscBool IsLittle(const Partners *at, PetscReal motion, PetscReal moved, PetscReal turned)
+{
+  return (PetscBool)(PetscMax(0, motion - at->motion) + moved <= PARTNERS_SKIN * at->thin && turned <= PARTNERS_TURN);
+}
+
 /* Does the last test still hold, as far as the motion of nodes alone tells? */
 static PetscErrorCode StillHolds(ContactSearch s, const PetscReal *u, PetscReal motion, PetscBool *holds)
 {
@@ -471,8 +489,11 @@ static PetscErrorCode StillHolds(ContactSearch s, const PetscReal *u, PetscReal 
   PetscFunctionBeginUser;
   *holds = PETSC_FALSE;
   if (!s->slaves->face_sf || at->thin == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BoundRoughly(s, u, &moved, &turned));
+  *holds = IsLittle(at, motion, moved, turned);
+  if (*holds) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BoundChanges(s, u, &moved, &turned));
-  *holds = (PetscBool)(PetscMax(0, motion - at->motion) + moved <= PARTNERS_SKIN * at->thin && turned <= PARTNERS_TURN);
+  *holds = IsLittle(at, motion, moved, turned);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -510,7 +531,7 @@ static PetscErrorCode TestAnew(ContactSearch s, const PetscReal *u, PetscReal t,
   if (first) PetscCall(ThinnestPart(s, &at->thin));
   if (first) PetscCall(MakeRoom(s));
   if (!first) PetscCall(Changes(s, u, x, normal, face_normal, &moved, &turned));
-  if (first || PetscMax(0, motion - at->motion) + moved > PARTNERS_SKIN * at->thin || turned > PARTNERS_TURN) {
+  if (first || !IsLittle(at, motion, moved, turned)) {
     PetscCall(PetscArraycpy(at->x, x, n * dim));
     PetscCall(PetscArraycpy(at->normal, normal, 3 * n));
     PetscCall(PetscArraycpy(at->face_normal, face_normal, 3 * faces));

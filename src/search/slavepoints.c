@@ -532,6 +532,23 @@ static PetscErrorCode TouchedFaces(SlavePoints points, const PetscBool *touched,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Largest offset of the points of some faces (length). */
+static PetscReal LargestOffset(SlavePoints points, PetscInt n, const PetscInt *faces)
+{
+  const int dim  = points->mesh->dim;
+  PetscReal most = 0;
+
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt q = points->first[faces[i]]; q < points->first[faces[i] + 1]; q++) {
+      PetscReal square = 0;
+
+      for (int d = 0; d < dim; d++) square += PetscSqr(points->offset[q * dim + d]);
+      most = PetscMax(most, square);
+    }
+  }
+  return PetscSqrtReal(most);
+}
+
 /*@
   SlavePointsSetOffsets - takes the offsets of this rank's own faces to the points on all ranks.
 
@@ -558,6 +575,7 @@ PetscErrorCode SlavePointsSetOffsets(SlavePoints points, const PetscReal *offset
   for (PetscInt i = 0; i < n; i++)
     PetscCall(PetscArraycpy(&points->offset[points->first[faces[i]] * dim], &arrived[faces[i] * FACE_RULE_POINTS * dim],
                             (points->first[faces[i] + 1] - points->first[faces[i]]) * dim));
+  points->most_offset = LargestOffset(points, n, faces);
   PetscCall(PetscFree(arrived));
   PetscCall(PetscSFDestroy(&some));
   PetscCall(PetscFree(faces));

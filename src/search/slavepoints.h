@@ -23,6 +23,7 @@ typedef struct {
   PetscReal     *S, *hat, *weight; /* shape and hat functions at these nodes; area weight of each point */
   PetscReal     *size, *height;    /* of the slave's faces at each point, and of the elements below them (length) */
   PetscReal     *offset;           /* n*dim, along the normal at the time when it was taken (length) */
+  PetscReal      most_offset;      /* the largest one on this rank (length) */
   /* Where friction needs them: the nodes around each point with two slopes each, so that sum slope x are tangents of
      the slave's surface at the point. NULL: not asked for. */
   PetscInt  *lever_ptr, *lever_node;

@@ -1,9 +1,14 @@
 /* A solve in pseudo-time steps with a viscous restraint, for load steps that Newton's method fails at. */
 #include "modelimpl.h"
 
-/* The first pseudo-time step has a restraint of this part of the mean stiffness of the elements. That is stiff against
-   any motion of many elements together, which is what becomes unstable, and soft against that of one element. */
+/* The first pseudo-time step has a restraint of this part of the mean stiffness of the elements at most. That is stiff
+   against any motion of many elements together, which is what becomes unstable, and soft against that of one element.
+ */
 #define DAMPED_FIRST 1e-2
+/* Nor does that restraint take more than this part of what the bodies store, if they go on moving as fast for the load
+   as before: thin walls are far softer than their elements, and would be crushed against a restraint that is stiff for
+   these. It is the part above which the run warns of damping. */
+#define DAMPED_SHARE 1e-2
 /* A pseudo-time step that takes few iterations is followed by one that is longer by this factor, a failed one is
    repeated shorter by it. */
 #define DAMPED_FACTOR 10
@@ -17,7 +22,7 @@
 /* A load step takes at most this many pseudo-time steps, and so many of them may fail. A jump takes 10 to 30, half of
    them for the search of a length that is right for it. */
 #define DAMPED_MAX_STEPS    60
-#define DAMPED_MAX_FAILURES 15
+#define DAMPED_MAX_FAILURES 30
 
 /* Where a solve in pseudo-time steps stands. */
 typedef struct {
@@ -83,6 +88,24 @@ static PetscErrorCode GoBack(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Chooses the restraint of the first pseudo-time step. No node is expected to move farther than the one that moved the
+   farthest in the last load step, for the same load. */
+static PetscErrorCode ChooseFirst(Model model, Relaxation *r)
+{
+  const Problem   problem = model->problem;
+  const PetscReal motion  = model->work->rate * (model->t - model->work->accepted_t);
+  PetscReal       stored, moving;
+  PetscBool       ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(DofSpringsMean(problem->damping, problem->diagonal, &r->mean));
+  r->scale = DAMPED_FIRST * r->mean;
+  PetscCall(ProblemEnergy(problem, model->work->accepted_u, model->work->accepted_t, ENERGY_ELASTIC, &stored, &ok));
+  PetscCall(DofSpringsMoving(problem->damping, motion, &moving));
+  if (ok && stored > 0 && moving > 0) r->scale = PetscMin(r->scale, DAMPED_SHARE * stored / moving);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Makes a pseudo-time step. The first one starts with the load step, and again after a failure. */
 static PetscErrorCode Step(Model model, ModelStage start, ModelStage solve, Relaxation *r, SolveReport *report)
 {
@@ -96,7 +119,7 @@ static PetscErrorCode Step(Model model, ModelStage start, ModelStage solve, Rela
   if (report->result != SOLVE_CONVERGED) {
     r->failures++;
     r->scale *= r->factor;
-    r->factor = PetscMax(DAMPED_LEAST_FACTOR, PetscSqrtReal(r->factor));
+    if (r->steps) r->factor = PetscMax(DAMPED_LEAST_FACTOR, PetscSqrtReal(r->factor));
     PetscCall(PetscInfo(model->snes, "pseudo-time step failed: %s\n", SolveResults[report->result]));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -166,8 +189,7 @@ PetscErrorCode ModelSolveDamped(Model model, ModelStage start, ModelStage solve,
 
   PetscFunctionBeginUser;
   if (!problem->damping) PetscCall(DampingCreate(model->mesh, model->scene, model->x, &problem->damping));
-  PetscCall(DofSpringsMean(problem->damping, problem->diagonal, &r.mean));
-  r.scale = DAMPED_FIRST * r.mean;
+  PetscCall(ChooseFirst(model, &r));
   while (!rests && r.steps < DAMPED_MAX_STEPS && r.failures < DAMPED_MAX_FAILURES) {
     if (report->result != SOLVE_CONVERGED) PetscCall(GoBack(model, report));
     PetscCall(Step(model, start, solve, &r, report));

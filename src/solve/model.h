@@ -36,6 +36,7 @@ typedef enum {
   SOLVE_ROUTINE,
   SOLVE_RESTLESS,
   SOLVE_JUMP,
+  SOLVE_UNSTABLE,
   SOLVE_NAN
 } SolveResult;
 extern const char *const SolveResults[]; /* in words, for messages */

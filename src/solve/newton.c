@@ -21,6 +21,10 @@
    there is friction, a tool that little holds may turn by small parts of steps. */
 #define NEWTON_CRAWL  0.05
 #define NEWTON_CRAWLS 4
+/* Where a viscous restraint may help, a solve ends after so many iterations in a row whose tangents are indefinite.
+   Newton's method then wanders between equilibria that lie below the one that is lost, and each of them is as good to
+   it as the one to which the bodies would move. Where it comes to one at once, it has taken fewer. */
+#define NEWTON_UNSTABLE 6
 /* Newton's method is limited by its iterations, not by this number of evaluations in the line search. */
 #define NEWTON_MAX_FUNCTIONS 1000000
 
@@ -210,6 +214,24 @@ static PetscErrorCode ModelStopCrawl(Model model, SNESConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Ends a solve that wanders where equilibrium is not stable, if the scene lets a restraint help then. Nodes with
+   pressures have negative eigenvalues of their own. */
+static PetscErrorCode ModelStopUnstable(Model model, SNESConvergedReason *reason)
+{
+  ModelWork *work = model->work;
+  PetscInt   negatives;
+
+  PetscFunctionBeginUser;
+  if (!model->scene->stepping.damped || model->mesh->saddle || !ProblemConservative(model->problem))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LinearSolverNegatives(work->solver, &negatives));
+  if (negatives >= 0) work->indefinite = negatives ? work->indefinite + 1 : 0;
+  if (work->indefinite < NEWTON_UNSTABLE) PetscFunctionReturn(PETSC_SUCCESS);
+  work->unstable = PETSC_TRUE;
+  *reason        = SNES_DIVERGED_LINE_SEARCH;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The convergence test of SNES. A solve has converged when its residual is small against the forces that balance in it,
    or is round-off only. It is never measured against its own first value. Where penalties follow the penetrations, the
    penetrations must have settled too. */
@@ -256,6 +278,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
     PetscCall(ModelLeaveLists(model, reason));
   if (model->contact && !*reason) PetscCall(ModelBreakCycle(model, fnorm, reason));
   if (it > 0 && !*reason) PetscCall(ModelStopCrawl(model, reason));
+  if (it > 0 && !*reason) PetscCall(ModelStopUnstable(model, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -421,6 +444,8 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   if (model->contact) PetscCall(ContactCycleStart(model->work->watch));
   model->work->turned           = 0;
   model->work->crawls           = 0;
+  model->work->indefinite       = 0;
+  model->work->unstable         = PETSC_FALSE;
   model->work->stalled          = PETSC_FALSE;
   model->work->relaxed.waits    = PETSC_FALSE;
   model->work->relaxed.turns    = PETSC_FALSE;
@@ -439,6 +464,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   report->turned += model->work->turned;
   report->result = ResultFromReason(reason);
   if (model->work->cycling) report->result = SOLVE_CYCLE;
+  if (model->work->unstable) report->result = SOLVE_UNSTABLE;
   if (report->result == SOLVE_LINE_SEARCH && model->work->balanced) report->result = SOLVE_CONVERGED;
   if (report->result == SOLVE_LINEAR ||
       (report->result != SOLVE_CONVERGED && its > 0 && LinearCheckLost(model->linear)))

@@ -479,6 +479,7 @@ static PetscBool MayBeUnstable(SolveResult result)
   case SOLVE_LISTS:
   case SOLVE_CYCLE:
   case SOLVE_LOST:
+  case SOLVE_UNSTABLE:
   case SOLVE_NAN: return PETSC_TRUE;
   default: return PETSC_FALSE;
   }

@@ -217,6 +217,9 @@ JOBS = [
     Job("serpentine_spring", "serpentine spring closed until its arms touch", [
         Answer("force", 68.07, 0.34, "limit"),
     ], steps=8),
+    Job("washers_in_series", "spring washers in series pressed nearly flat", [
+        Answer("force", 750.6, 0.36, "limit"),
+    ], steps=8, pairs=3, levels=(2.25, 3.375, 5.0625)),
     # Friction
     Job("band_over_pins", "rubber band drawn over two pins", [
         Answer("pull", 5.052, 0.05, "limit"),

@@ -116,6 +116,7 @@ typedef struct {
      its fit keeps, 0 for none; its frame has turned back once. */
   PetscReal         *frame_before, *frame_kept;
   PetscBool         *turned_back;
+  PetscBool          undamped;  /* none of these has been set since the step began */
   PetscBool          fresh;     /* the lists in force were made where they are, with the offsets in force */
   PetscBool          projected; /* the slave points were projected with these lists at their last update */
   int               *seed;      /* of each slave point: facet of the last projection */

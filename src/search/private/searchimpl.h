@@ -20,6 +20,10 @@
    degrees. */
 #define SEARCH_OPPOSED_NOT 0.05
 
+/* Entries of a face's lever: change of a unit normal for each length by which nodes part, for the square of that
+   length, and change of a point for the length. */
+enum { LEVER_NORMAL, LEVER_SQUARE, LEVER_POINT, LEVERS };
+
 /* Which slave points may have a partner, and the state of the test that says so (partners.c). */
 typedef struct {
   PetscBool *possible, any;            /* of each slave point, NULL before the first test; of any one on any rank */
@@ -30,6 +34,7 @@ typedef struct {
   /* Displacements of the slave points' nodes (length); how far points and normals of a face move at most for each
      length by which its nodes part, of the slave's faces and then of the master's. NULL: points are nodes. */
   PetscReal *slave_u, *lever;
+  PetscReal  most_lever[LEVERS]; /* the largest of all levers on this rank */
 } Partners;
 
 struct _n_ContactSearch {
@@ -152,11 +157,11 @@ PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, PetscBool 
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
 PetscErrorCode ListBufferAddPoints(ListBuffer *, PetscInt first, PetscInt n, const PetscInt *points);
 /* searchbox.c */
-void      SearchSlaveBox(ContactSearch, PetscReal box[6]);
-void      SearchMasterBox(ContactSearch, const PetscReal *u, PetscReal t, const PetscBool *some, PetscReal box[6]);
-void      SearchFacePositions(ContactSearch, ContactSurface, PetscInt f, const PetscReal *u, PetscReal t, PetscReal *x);
-void      SearchFaceBox(int dim, int n, const PetscReal *x, const SurfaceImage *, PetscReal box[6]);
-void      SearchRigidPosition(ContactSearch, PetscInt n, PetscReal t, PetscReal x[3]);
+void SearchSlaveBox(ContactSearch, PetscReal box[6]);
+void SearchMasterBox(ContactSearch, const PetscReal *u, PetscReal t, const PetscBool *some, PetscReal box[6]);
+void SearchFacePositions(ContactSearch, ContactSurface, PetscInt f, const PetscReal *u, PetscReal t, PetscReal *x);
+void SearchFaceBox(int dim, int n, const PetscReal *x, const SurfaceImage *, PetscReal box[6]);
+void SearchRigidPosition(ContactSearch, PetscInt n, PetscReal t, PetscReal x[3]);
 /* faceexchange.c */
 PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const PetscReal *u, const PetscReal *boxes,
                                    PetscReal distance, PetscInt *n, FaceRecord **);

@@ -141,6 +141,8 @@ typedef struct _n_ModelWork {
   PetscInt    cuts[CUT_CAUSES];   /* iterations that the line search shortened, by their cause */
   PetscInt    turned;             /* iterations whose step led uphill and was turned round */
   PetscInt    crawls;             /* steps in a row of which the line search left next to nothing */
+  PetscInt    indefinite;         /* iterations in a row whose tangents were indefinite */
+  PetscBool   unstable;           /* the solve ended because they remained so */
 } ModelWork;
 
 /* tangent.c */
