@@ -127,15 +127,12 @@ PetscErrorCode ActiveSetAddColumns(ActiveSet p, PetscInt m, const PetscInt *whic
 }
 
 /* After sets with friction that have repeated themselves: relaxes the terms, and follows the sets from where that leads
-   to. It begins with the step as it is: where the sets have wandered to depends on rounding, and the answers of a shell
-   that is twisted on a block did on the number of ranks. *converged as ActiveSetSolve() says. */
+   to. *converged as ActiveSetSolve() says. */
 static PetscErrorCode Relax(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool *converged)
 {
   PetscBool settled = PETSC_FALSE, regular, changed;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(p->excess, p->m));
-  (void)ActiveSetFollow(p);
   for (PetscInt round = 0; round < ACTIVE_SET_RELAX_ROUNDS && !*m && !*converged; round++) {
     PetscCall(ActiveSetRelax(p, ACTIVE_SET_RELAX_SWEEPS, &settled));
     ActiveSetLookAtSlips(p);
