@@ -8,6 +8,9 @@
    largest traction that any term can bear. Newton's method takes such differences in its stride, and columns for all
    terms whose direction of slip turns a little would cost more than they save. */
 #define ACTIVE_SET_FRICTION 0.01
+/* And by this part of the largest pressure: without a coefficient, as before friction sets in, rounding would decide
+   whether tractions still change. Newton's method is content with more. */
+#define ACTIVE_SET_TRIFLE 1e-9
 
 /* Residual and tangent give a term a pressure that is linear in its travel. The difference between this pressure and
    that of the law is start + rate * travel. Both numbers are zero where residual and tangent treat the term as the law
@@ -57,12 +60,13 @@ PetscReal ActiveSetExcess(ActiveSet p, PetscInt component, PetscReal by[ACTIVE_S
 /* Largest traction that is no matter to friction. */
 PetscReal ActiveSetNegligible(ActiveSet p)
 {
-  PetscReal most = 0;
+  PetscReal most = 0, largest = 0;
 
   for (PetscInt i = 0; i < p->n && p->parts > 1; i++) {
     const PetscReal pressure = -p->terms[i].penalty * (p->terms[i].opening + p->end[i]);
 
     if (p->pressed[i]) most = PetscMax(most, FrictionBound(&p->terms[i].friction.law, pressure));
+    largest = PetscMax(largest, pressure);
   }
-  return ACTIVE_SET_FRICTION * most;
+  return PetscMax(ACTIVE_SET_FRICTION * most, ACTIVE_SET_TRIFLE * largest);
 }

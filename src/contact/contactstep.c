@@ -11,8 +11,9 @@ struct _n_ContactStep {
   PetscReal     *reach; /* of each pair */
   PetscInt       n, mine, parts;
   PetscMPIInt    rank, *count, *first; /* terms of each rank */
-  ActiveSetTerm *terms;                /* n */
-  PetscInt      *pair, *term;          /* of mine */
+  PetscInt      *order, *place; /* rank after rank: number of the term of all that comes there; of each of mine */
+  ActiveSetTerm *terms;         /* n */
+  PetscInt      *pair, *term;   /* of mine */
   PetscReal     *area;
   PetscInt      *ptr, *node;  /* gap's first variation, over contact nodes of the pair */
   PetscReal     *N;           /* dim for each of these */
@@ -138,8 +139,8 @@ static PetscErrorCode AddPair(ContactStep step, int p, const PetscReal *u, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gathers `size` bytes of each of my terms into their places among those of all ranks. */
-static PetscErrorCode Gather(ContactStep step, size_t size, const void *mine, void *all)
+/* Gathers `size` bytes of each of my terms, rank after rank. */
+static PetscErrorCode GatherRanks(ContactStep step, size_t size, const void *mine, void *all)
 {
   MPI_Comm     comm = step->contact->mesh->comm;
   MPI_Datatype block;
@@ -149,6 +150,53 @@ static PetscErrorCode Gather(ContactStep step, size_t size, const void *mine, vo
   PetscCallMPI(MPI_Type_commit(&block));
   PetscCallMPI(MPI_Allgatherv(mine, step->count[step->rank], block, all, step->count, step->first, block, comm));
   PetscCallMPI(MPI_Type_free(&block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gathers `size` bytes of each of my terms into their places among those of all ranks. */
+static PetscErrorCode Gather(ContactStep step, size_t size, const void *mine, void *all)
+{
+  char *ranks;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(step->n * size, &ranks));
+  PetscCall(GatherRanks(step, size, mine, ranks));
+  for (PetscInt i = 0; i < step->n; i++)
+    PetscCall(PetscMemcpy((char *)all + step->order[i] * size, &ranks[i * size], size));
+  PetscCall(PetscFree(ranks));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What orders terms alike on any ranks. */
+typedef struct {
+  PetscInt pair, id, at; /* number of the term in its pair; place where terms stand rank after rank */
+} TermKey;
+
+static int CompareKeys(const void *a, const void *b)
+{
+  const TermKey *left = a, *right = b;
+
+  if (left->pair != right->pair) return left->pair < right->pair ? -1 : 1;
+  return left->id < right->id ? -1 : left->id > right->id;
+}
+
+/* Orders the terms of all ranks by their pairs and their numbers in them. The active set goes through them one after
+   the other, and where it may end at more than one set the order decides: it must not be that of the ranks. */
+static PetscErrorCode OrderTerms(ContactStep step)
+{
+  TermKey *mine, *all;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(step->mine, &mine, step->n, &all));
+  PetscCall(PetscMalloc2(step->n, &step->order, step->mine, &step->place));
+  for (PetscInt i = 0; i < step->mine; i++)
+    mine[i] = (TermKey){step->pair[i], ContactTermId(&step->contact->pairs[step->pair[i]], step->term[i]), 0};
+  PetscCall(GatherRanks(step, sizeof(TermKey), mine, all));
+  for (PetscInt i = 0; i < step->n; i++) all[i].at = i;
+  if (step->n) qsort(all, (size_t)step->n, sizeof(TermKey), CompareKeys);
+  for (PetscInt i = 0; i < step->n; i++) step->order[all[i].at] = i;
+  for (PetscInt i = 0; i < step->mine; i++) step->place[i] = step->order[step->first[step->rank] + i];
+  PetscCall(PetscFree2(mine, all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -167,6 +215,7 @@ static PetscErrorCode GatherTerms(ContactStep step)
   step->first[0] = 0;
   for (PetscMPIInt r = 0; r < size; r++) step->first[r + 1] = step->first[r] + step->count[r];
   step->n = step->first[size];
+  PetscCall(OrderTerms(step));
   PetscCall(PetscMalloc1(step->n, &step->terms));
   PetscCall(Gather(step, sizeof(*own), own, step->terms));
   PetscCall(PetscFree(own));
@@ -236,6 +285,7 @@ PetscErrorCode ContactStepDestroy(ContactStep *step)
   for (PetscInt i = 0; s->slide && i < s->mine; i++) PetscCall(FrictionSlideFree(&s->slide[i]));
   PetscCall(PetscFree(s->slide));
   PetscCall(PetscFree2(s->count, s->first));
+  PetscCall(PetscFree2(s->order, s->place));
   PetscCall(PetscFree(s->node));
   PetscCall(PetscFree(s->N));
   PetscCall(PetscFree(*step));
@@ -461,17 +511,23 @@ static PetscErrorCode AddTraction(ContactStep step, PetscInt i, PetscInt a, Pets
 @*/
 PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, const PetscInt *which, Mat *B)
 {
+  PetscInt *own;
+
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(step->n, &own));
+  for (PetscInt i = 0; i < step->n; i++) own[i] = -1;
+  for (PetscInt i = 0; i < step->mine; i++) own[step->place[i]] = i;
   PetscCall(MatCreateDense(step->contact->mesh->comm, rows, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, B));
   for (PetscInt j = 0; j < m; j++) {
-    const PetscInt i = which[j] % step->n - step->first[step->rank], part = which[j] / step->n;
+    const PetscInt i = own[which[j] % step->n], part = which[j] / step->n;
 
-    if (i < 0 || i >= step->mine) continue;
+    if (i < 0) continue;
     if (part)
       PetscCall(AddTraction(step, i, part - 1, j, *B));
     else
       PetscCall(AddPressure(step, i, j, *B));
   }
+  PetscCall(PetscFree(own));
   PetscCall(MatAssemblyBegin(*B, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*B, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -499,8 +555,8 @@ PetscErrorCode ContactStepMarkPredicted(ContactStep step, const PetscBool *press
   for (PetscInt i = 0; i < step->mine; i++) {
     const ContactPair *pair = &step->contact->pairs[step->pair[i]];
 
-    pair->expected[step->term[i]] = pressed[step->first[step->rank] + i];
-    if (pair->holding) pair->predicted[step->term[i]] = pressed[step->first[step->rank] + i];
+    pair->expected[step->term[i]] = pressed[step->place[i]];
+    if (pair->holding) pair->predicted[step->term[i]] = pressed[step->place[i]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

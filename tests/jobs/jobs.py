@@ -275,6 +275,12 @@ JOBS = [
     Job("wedge_brake", "shoe between a slope and a rail that moves", [
         Answer("brake", 149.776, 0.05, "closed form"),
     ], steps=10, pairs=2),
+    Job("taper_pin", "taper pin driven in and pulled", [
+        Answer("pull", 5142.6, 0.1, "limit"),
+    ], steps=10),
+    Job("disc_brake", "pad on a brake disc that turns, in space", [
+        Answer("torque", -61994, 0.1, "closed form"),
+    ], steps=10),
     Job("gasket_bead", "beads of a gasket between rough flanges", [
         Answer("force", 2.5112, 0.02, "limit"),
     ], steps=12, pairs=2),
