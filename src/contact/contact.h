@@ -176,6 +176,7 @@ PetscErrorCode ContactMultiplyTransposed(Contact, int pair, const PetscReal *x);
 PetscErrorCode ContactMultiplyEnd(Contact, PetscReal *y);
 /* Linear steps and predictions */
 PetscErrorCode ContactHoldActiveSet(Contact, PetscBool holding, PetscBool touching);
+PetscErrorCode ContactHoldSolved(Contact);
 PetscErrorCode ContactHoldExpected(Contact, PetscBool *any);
 PetscErrorCode ContactMarkPredicted(Contact);
 PetscErrorCode ContactPredictionMissed(Contact, PetscBool *missed);

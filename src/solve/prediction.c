@@ -403,7 +403,7 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
     PetscCall(ContactSpringsRelax(problem->springs, model->x));
     problem->tied = (PetscBool)(problem->tied || tied);
   }
-  PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, PETSC_FALSE));
+  PetscCall(ContactHoldSolved(model->contact));
   PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
   PetscCall(ModelStepLinear(model, model->problem->trial, NULL, model->t, report));
