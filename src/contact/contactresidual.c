@@ -226,23 +226,24 @@ PetscErrorCode ContactHoldActiveSet(Contact contact, PetscBool holding, PetscBoo
 
   Not collective
 
-  Input Parameter:
-. contact - the contact, whose last ContactResidual() was at the solution; ContactHoldActiveSet() ends the step
+  Input Parameters:
++ contact - the contact, whose last ContactResidual() was at the solution; ContactHoldActiveSet() ends the step
+- again   - the step is begun once more from the same solution; there may have been residuals since
 
   Note:
   The pressures of the solution are in balance with the stresses of the bodies and with fluids, and they turn with the
   surface. Fresh lists and offsets change gaps by more than a stiff penalty lets them close, and their pressures are
   those of no equilibrium. Nor are those of the accepted state where the load has grown since.
 @*/
-PetscErrorCode ContactHoldSolved(Contact contact)
+PetscErrorCode ContactHoldSolved(Contact contact, PetscBool again)
 {
   PetscFunctionBeginUser;
-  PetscCall(ContactHoldActiveSet(contact, PETSC_TRUE, PETSC_FALSE));
+  if (!again) PetscCall(ContactHoldActiveSet(contact, PETSC_TRUE, PETSC_FALSE));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
-    pair->solved = PETSC_TRUE;
-    for (PetscInt c = 0; c < pair->n; c++) {
+    pair->holding = pair->solved = PETSC_TRUE;
+    for (PetscInt c = 0; c < pair->n && !again; c++) {
       const LawState state = ContactTermState(pair, c, pair->t, ContactTermMost(pair, c));
       LawValue       value = {0, 0, 0};
 
