@@ -14,7 +14,7 @@ static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscR
   if (pair->solved) return pair->balanced[c];
   if (pair->touching || accepted->status[c] != CONTACT_CLOSED) return 0;
   before = ContactTermStateIn(pair, c, accepted, t, PETSC_MAX_REAL);
-  return accepted->multiplier[c] + before.penalty * (before.offset - accepted->gap[c]);
+  return PetscMax(0, before.multiplier + before.penalty * (before.offset - accepted->gap[c]));
 }
 
 /* Finds the stiffness of the terms, 0 where they take no part, and the forces of slave points that turn with the
