@@ -233,7 +233,9 @@ PetscErrorCode ContactHoldActiveSet(Contact contact, PetscBool holding, PetscBoo
   Note:
   The pressures of the solution are in balance with the stresses of the bodies and with fluids, and they turn with the
   surface. Fresh lists and offsets change gaps by more than a stiff penalty lets them close, and their pressures are
-  those of no equilibrium. Nor are those of the accepted state where the load has grown since.
+  those of no equilibrium. Nor are those of the accepted state where the load has grown since. With friction they are
+  those of the accepted state all the same, as for the tractions: a rivet that is formed takes five times as many steps
+  with the others.
 @*/
 PetscErrorCode ContactHoldSolved(Contact contact, PetscBool again)
 {
@@ -242,7 +244,8 @@ PetscErrorCode ContactHoldSolved(Contact contact, PetscBool again)
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
-    pair->holding = pair->solved = PETSC_TRUE;
+    pair->holding = PETSC_TRUE;
+    pair->solved  = pair->friction ? PETSC_FALSE : PETSC_TRUE;
     for (PetscInt c = 0; c < pair->n && !again; c++) {
       const LawState state = ContactTermState(pair, c, pair->t, ContactTermMost(pair, c));
       LawValue       value = {0, 0, 0};
