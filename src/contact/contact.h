@@ -153,6 +153,7 @@ PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
                                 PetscReal lag, PetscBool *hold);
+PetscErrorCode ContactTakeOffsetsPart(Contact, const PetscReal *u, PetscReal t, PetscReal part, PetscBool *any);
 void           ContactForgetLost(Contact);
 void           ContactWatchOuter(Contact, PetscReal *outer);
 PetscErrorCode ContactLocateLost(Contact, PetscBool *lost, char *text, size_t size);
@@ -176,6 +177,7 @@ PetscErrorCode ContactMultiplyTransposed(Contact, int pair, const PetscReal *x);
 PetscErrorCode ContactMultiplyEnd(Contact, PetscReal *y);
 /* Linear steps and predictions */
 PetscErrorCode ContactHoldActiveSet(Contact, PetscBool holding, PetscBool touching);
+PetscErrorCode ContactHoldSolved(Contact, PetscBool again);
 PetscErrorCode ContactHoldExpected(Contact, PetscBool *any);
 PetscErrorCode ContactMarkPredicted(Contact);
 PetscErrorCode ContactPredictionMissed(Contact, PetscBool *missed);

@@ -680,6 +680,41 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
 }
 
 /*@
+  ContactTakeOffsetsPart - goes back to a part of the change of the offsets that ContactListsHold() has made, and makes
+  lists with those.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact, after ContactListsHold() said that lists do not hold
+. u       - local displacements of the solution, u[n_nodes*dim] (length), ghosts included
+. t       - its load parameter
+- part    - of the change, from 0 to 1
+
+  Output Parameter:
+. any - there are offsets that change; else nothing was done
+@*/
+PetscErrorCode ContactTakeOffsetsPart(Contact contact, const PetscReal *u, PetscReal t, PetscReal part, PetscBool *any)
+{
+  PetscFunctionBeginUser;
+  *any = PETSC_FALSE;
+  PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    if (!pair->formulation.lags) continue;
+    *any = PETSC_TRUE;
+    if (pair->slave_offsets) OffsetsTakePart(pair->slave_offsets, part);
+    if (pair->master_offsets) OffsetsTakePart(pair->master_offsets, part);
+    PetscCall(PairSearch(pair, u, t, pair->motion));
+    if (!pair->stays) PetscCall(PetscArraycpy(pair->next_factor, pair->factor, pair->next->n_slaves)); /* damped */
+    PetscCall(PairTakeNext(pair));
+  }
+  PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactListsArchive - saves or loads the lists that are ready for the next step, by the motion that they were made
   for.
 

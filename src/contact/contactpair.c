@@ -423,6 +423,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   SearchSetFrames(pair->search, pair->frame_kept);
   PetscCall(
     PetscCalloc4(pair->n, &pair->held, pair->n, &pair->predicted, pair->n, &pair->expected, pair->n, &pair->arrived));
+  PetscCall(PetscCalloc1(pair->n, &pair->balanced));
   if (friction) PetscCall(FrictionCreate(pair));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
   if (contact->augment) PetscCall(PairCreateMixing(pair));
@@ -471,6 +472,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(AndersonDestroy(&pair->mixing));
   PetscCall(PetscFree(pair->weight));
   PetscCall(PetscFree4(pair->held, pair->predicted, pair->expected, pair->arrived));
+  PetscCall(PetscFree(pair->balanced));
   PetscCall(FrictionDestroy(&pair->friction));
   PetscCall(PetscFree(pair->carried));
   PetscCall(PetscFree(pair->marks));

@@ -212,9 +212,47 @@ PetscErrorCode ContactHoldActiveSet(Contact contact, PetscBool holding, PetscBoo
     ContactPair *pair = &contact->pairs[p];
 
     pair->holding  = holding;
+    pair->solved   = PETSC_FALSE;
     pair->touching = touching;
     for (PetscInt c = 0; c < pair->n && holding; c++)
       pair->held[c] = (PetscBool)(pair->now.status[c] == CONTACT_CLOSED);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactHoldSolved - begins a linear step from a solution whose lists have just been replaced: what is in contact there
+  stays so.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact, whose last ContactResidual() was at the solution; ContactHoldActiveSet() ends the step
+- again   - the step is begun once more from the same solution; there may have been residuals since
+
+  Note:
+  The pressures of the solution are in balance with the stresses of the bodies and with fluids, and they turn with the
+  surface. Fresh lists and offsets change gaps by more than a stiff penalty lets them close, and their pressures are
+  those of no equilibrium. Nor are those of the accepted state where the load has grown since. With friction they are
+  those of the accepted state all the same, as for the tractions: a rivet that is formed takes five times as many steps
+  with the others.
+@*/
+PetscErrorCode ContactHoldSolved(Contact contact, PetscBool again)
+{
+  PetscFunctionBeginUser;
+  if (!again) PetscCall(ContactHoldActiveSet(contact, PETSC_TRUE, PETSC_FALSE));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    pair->holding = PETSC_TRUE;
+    pair->solved  = pair->friction ? PETSC_FALSE : PETSC_TRUE;
+    for (PetscInt c = 0; c < pair->n && !again; c++) {
+      const LawState state = ContactTermState(pair, c, pair->t, ContactTermMost(pair, c));
+      LawValue       value = {0, 0, 0};
+
+      if (pair->held[c]) pair->law->evaluate(pair->now.gap[c], &state, &value);
+      pair->balanced[c] = value.pressure;
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,17 +2,19 @@
 #include "contactimpl.h"
 
 /* Pressure whose turning with the surface counts in a tangent. In a linear step this is the pressure of the accepted
-   state, not what pulls a term to its place. The state before any load is in no equilibrium: its overlaps pull, and
-   their pressure grows with the penalty until the tangent is indefinite. It therefore counts for nothing there. */
+   state, or of the solution at which the step begins, not what pulls a term to its place. The state before any load is
+   in no equilibrium: its overlaps pull, and their pressure grows with the penalty until the tangent is indefinite. It
+   therefore counts for nothing there. */
 static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
 {
   const ContactState *accepted = &pair->accepted;
   LawState            before;
 
   if (!pair->holding) return value->pressure;
+  if (pair->solved) return pair->balanced[c];
   if (pair->touching || accepted->status[c] != CONTACT_CLOSED) return 0;
   before = ContactTermStateIn(pair, c, accepted, t, PETSC_MAX_REAL);
-  return accepted->multiplier[c] + before.penalty * (before.offset - accepted->gap[c]);
+  return PetscMax(0, before.multiplier + before.penalty * (before.offset - accepted->gap[c]));
 }
 
 /* Finds the stiffness of the terms, 0 where they take no part, and the forces of slave points that turn with the

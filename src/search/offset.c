@@ -706,6 +706,27 @@ PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
 }
 
 /*@
+  OffsetsTakePart - goes back to a part of the last change of the offsets, after OffsetsDamp().
+
+  Not collective
+
+  Input Parameters:
++ o    - the offsets
+- part - of what is left of the change, from 0 to 1
+@*/
+void OffsetsTakePart(Offsets o, PetscReal part)
+{
+  if (!Follow(o) || !o->replaced) return;
+  for (PetscInt f = 0, i, end; (end = NextTouched(o, &f, &i)) > i;) {
+    for (; i < end; i++) {
+      const PetscReal before = o->asked[i] - o->change[i];
+
+      o->used[i] = o->held[i] = before + part * (o->held[i] - before);
+    }
+  }
+}
+
+/*@
   OffsetsGet - returns the present offsets: vectors along the normals of the time when they were taken (length).
 
   Not collective

@@ -10,9 +10,9 @@
 
    OffsetsCreate() makes offsets of 0, and OffsetsWant() leaves out faces that no search will see. OffsetsChoose() says
    whether that is of any use. OffsetsExtrapolate() is called at the beginning of a step and OffsetsTake() when lists
-   are made anew, and OffsetsDamp() where these replace those of the solve. OffsetsGet(),
-   OffsetsTouched() and OffsetsMaps() give the result to the search, and OffsetsArchive() writes or reads the state of
-   the extrapolation. */
+   are made anew, and OffsetsDamp() where these replace those of the solve; OffsetsTakePart() takes back some of that.
+   OffsetsGet(), OffsetsTouched() and OffsetsMaps() give the result to the search, and OffsetsArchive() writes or reads
+   the state of the extrapolation. */
 #pragma once
 #include "files/archive.h"
 #include "search/facemap.h"
@@ -33,6 +33,7 @@ PetscErrorCode   OffsetsWant(Offsets, const PetscBool *wanted, PetscBool anew);
 PetscErrorCode   OffsetsExtrapolate(Offsets, const PetscReal *u, PetscReal t, PetscReal t_next);
 PetscErrorCode   OffsetsTake(Offsets, const PetscReal *u, PetscReal t);
 PetscErrorCode   OffsetsDamp(Offsets, PetscBool *changed);
+void             OffsetsTakePart(Offsets, PetscReal part);
 PetscErrorCode   OffsetsArchive(Offsets, Archive, const char *name);
 const PetscReal *OffsetsGet(Offsets);
 const PetscBool *OffsetsTouched(Offsets);

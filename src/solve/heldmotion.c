@@ -268,6 +268,10 @@ static PetscErrorCode Friction(Model model, PetscReal *sum)
 
   Output Parameter:
 . holds - it may stay as it is
+
+  Note:
+  On softened penalties it stays. They hold a body where the full ones do not, and what is found there is only a first
+  iterate.
 @*/
 PetscErrorCode ModelJudgeHeld(Model model, PetscReal force, PetscBool *holds)
 {
@@ -275,6 +279,8 @@ PetscErrorCode ModelJudgeHeld(Model model, PetscReal force, PetscBool *holds)
   PetscReal   sum;
 
   PetscFunctionBeginUser;
+  *holds = PETSC_TRUE;
+  if (model->work->soft) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Friction(model, &sum));
   held->friction = sum > 0 ? PetscAbsReal(force) / sum : PETSC_INFINITY;
   *holds         = (PetscBool)(held->friction <= HELD_FRICTION);

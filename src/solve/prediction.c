@@ -7,6 +7,9 @@
 /* Penalties of softened contact during a prediction in pieces, in automatic penalties. It must turn the bodies back; it
    need not hold them exactly. penaltyramp.c has the same bound. */
 #define PREDICTION_SOFT 0.1
+/* Where the step after new lists goes too far, this part of the last change of the offsets is left, so many times. */
+#define PREDICTION_OFFSETS 0.5
+enum { PREDICTION_LESS = 3 };
 /* Most repetitions of a run's first step to where a body touches. Each squares the opening, over the radius. */
 #define PREDICTION_TOUCHES 3
 
@@ -346,14 +349,15 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 }
 
 /* Goes back to free displacements x if the linear step from there turns cells too far and ends farther from balance
-   than it began: bodies roll in it, and no part of it is to be trusted. */
-static PetscErrorCode ModelTakeBack(Model model, Vec x)
+   than it began: bodies roll in it, and no part of it is to be trusted. *back: that was done. */
+static PetscErrorCode ModelTakeBack(Model model, Vec x, PetscBool *back)
 {
   const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
   PetscReal      turn, here, there, *u, *v;
   PetscBool      ok, inside;
 
   PetscFunctionBeginUser;
+  *back = PETSC_FALSE;
   PetscCall(PetscMalloc2(n, &u, n, &v));
   PetscCall(ProblemDisplacements(model->problem, x, model->t, u));
   PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
@@ -361,14 +365,31 @@ static PetscErrorCode ModelTakeBack(Model model, Vec x)
   if (turn > MODEL_FARTHEST) {
     PetscCall(ModelResidualAt(model, model->x, &inside, &there));
     PetscCall(ModelResidualAt(model, x, &ok, &here));
-    if (ok && (!inside || here < there)) {
-      PetscCall(PetscInfo(model->snes, "new lists: the first step goes too far and is left out\n"));
-      PetscCall(VecCopy(x, model->x));
-      PetscCall(ModelStepFromSolved(model, u));
-      model->problem->inverted = -1;
-    }
+    *back = (PetscBool)(ok && (!inside || here < there));
+  }
+  if (*back) {
+    PetscCall(PetscInfo(model->snes, "new lists: the first step turns cells by %g\n", (double)turn));
+    PetscCall(VecCopy(x, model->x));
+    PetscCall(ModelStepFromSolved(model, u));
+    model->problem->inverted = -1;
   }
   PetscCall(PetscFree2(u, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes the linear step from the solution at which lists have been replaced, in which contact is held. again: it is
+   made once more from the same solution. */
+static PetscErrorCode ModelStepHeld(Model model, PetscBool again, SolveReport *report)
+{
+  const Problem problem = model->problem;
+  PetscBool     ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactHoldSolved(model->contact, again));
+  PetscCall(ModelTangent(model, problem->trial, NULL, model->t));
+  PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
+  PetscCall(ModelStepLinear(model, problem->trial, NULL, model->t, report));
+  PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -383,32 +404,34 @@ static PetscErrorCode ModelTakeBack(Model model, Vec x)
 
   Note:
   New lists and their offsets move the surfaces by more than a stiff penalty lets them overlap. Nodes that this would
-  open would release the bodies, which would then fly apart. What fewer nodes do not hold any more is tied.
+  open would release the bodies, which would then fly apart. What fewer nodes do not hold any more is tied. Where
+  rubber that may roll answers by too long a step, the offsets take a part of their change, and the next solutions
+  bring the rest.
 @*/
 PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
 {
   const Problem   problem = model->problem;
   const PetscBool rolls   = ModelMayRoll(model);
-  PetscBool       ok, tied;
-  Vec             x = NULL;
+  PetscBool       back, tied;
+  Vec             x;
 
   PetscFunctionBeginUser;
-  if (rolls) {
-    PetscCall(VecDuplicate(model->x, &x));
-    PetscCall(VecCopy(model->x, x));
-  }
+  PetscCall(VecDuplicate(model->x, &x));
+  PetscCall(VecCopy(model->x, x));
   if (problem->bodies) {
     PetscCall(FreeBodiesTie(problem->bodies, problem->trial, model->t, model->t, PETSC_FALSE, PETSC_FALSE,
                             problem->springs, &tied));
     PetscCall(ContactSpringsRelax(problem->springs, model->x));
     problem->tied = (PetscBool)(problem->tied || tied);
   }
-  PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, PETSC_FALSE));
-  PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
-  PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
-  PetscCall(ModelStepLinear(model, model->problem->trial, NULL, model->t, report));
-  PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
-  if (rolls && report->result == SOLVE_CONVERGED) PetscCall(ModelTakeBack(model, x));
+  PetscCall(ModelStepHeld(model, PETSC_FALSE, report));
+  for (int k = 0; k <= PREDICTION_LESS && rolls && report->result == SOLVE_CONVERGED; k++) {
+    PetscCall(ModelTakeBack(model, x, &back));
+    if (back && k < PREDICTION_LESS)
+      PetscCall(ContactTakeOffsetsPart(model->contact, problem->trial, model->t, PREDICTION_OFFSETS, &back));
+    if (!back || k == PREDICTION_LESS) break;
+    PetscCall(ModelStepHeld(model, PETSC_TRUE, report));
+  }
   PetscCall(VecDestroy(&x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

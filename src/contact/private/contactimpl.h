@@ -92,7 +92,9 @@ typedef struct {
   PetscReal  most;                  /* largest penalty that counts (force per length and area), ContactSoften() */
   PetscReal  predicted_most;        /* that of terms which the prediction counted on */
   PetscBool  holding, touching;     /* a linear step: closed terms stay so, and what touches is closed */
+  PetscBool  solved;                /* it begins at a solution, whose lists may have been replaced since */
   PetscBool *held, *predicted;      /* terms closed where the linear step began; those the prediction counted on */
+  PetscReal *balanced;              /* pressures of the terms at the solution where it began, if solved */
   PetscBool *expected, *arrived;    /* terms that press at the end of the last linear step; of the one before */
 
   PetscReal   *carried; /* pressure of each term that a fluid carries in the contact's place; NULL: no fluid */
