@@ -10,7 +10,8 @@
    is not the cause. After so many of them the jump stays. */
 #define JUMP_ALIKE 0.9
 
-/* Energy that a step gives away, as a part of the work over it, from which it may have jumped. */
+/* Energy that a step gives away, as a part of the larger work over it, with the forces of either end, from which it may
+   have jumped. Where bodies turn, both are large and cancel. */
 #define JUMP_RELEASED 0.1
 
 enum { JUMP_TIMES = 2 };
@@ -51,7 +52,8 @@ static PetscErrorCode ModelReleased(Model model, PetscBool *released)
   PetscCall(PetscFree(f));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 5, MPIU_REAL, MPI_SUM, mesh->comm));
   mean      = (sum[2] + sum[3]) / 2;
-  *released = (PetscBool)(sum[4] == 0 && mean - (sum[1] - sum[0]) > JUMP_RELEASED * PetscAbsReal(mean));
+  *released = (PetscBool)(sum[4] == 0 && mean - (sum[1] - sum[0]) >
+                                           JUMP_RELEASED * PetscMax(PetscAbsReal(sum[2]), PetscAbsReal(sum[3])));
   PetscCall(PetscInfo(model->snes, "stored %g, work with the forces of the start %g, of the end %g\n",
                       (double)(sum[1] - sum[0]), (double)sum[2], (double)sum[3]));
   PetscFunctionReturn(PETSC_SUCCESS);
