@@ -16,13 +16,15 @@
 
 enum { JUMP_TIMES = 2 };
 
-/* Says whether a jump by a distance stays, although a shorter step might not jump. before: distance by which the last
-   attempt of this step jumped; 0: it did not. alike: attempts that jumped by as much as the one before them. */
-static PetscBool JumpStays(ModelWork *work, PetscReal distance, PetscReal before, PetscInt alike)
+/* Says whether a jump by a distance stays, although a shorter step might not jump, or because there is none that is
+   allowed. before: distance by which the last attempt of this step jumped; 0: it did not. alike: attempts that jumped
+   by as much as the one before them. */
+static PetscBool JumpStays(Model model, PetscReal distance, PetscReal before, PetscInt alike)
 {
-  const PetscInt now = before > 0 && distance >= JUMP_ALIKE * before ? alike + 1 : 0;
+  ModelWork     *work = model->work;
+  const PetscInt now  = before > 0 && distance >= JUMP_ALIKE * before ? alike + 1 : 0;
 
-  if (now >= JUMP_TIMES) return PETSC_TRUE;
+  if (now >= JUMP_TIMES || model->t - work->accepted_t < 2 * model->scene->stepping.dt_min) return PETSC_TRUE;
   work->jumped      = distance;
   work->jumps_alike = now;
   return PETSC_FALSE;
@@ -127,7 +129,7 @@ PetscErrorCode ModelFindJump(Model model, SolveReport *report)
     PetscCall(ModelReleased(model, &released));
     if (!released) PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if ((work->strayed || released) && !report->damped && !JumpStays(work, distance, before, alike)) {
+  if ((work->strayed || released) && !report->damped && !JumpStays(model, distance, before, alike)) {
     model->problem->inverted = -1;
     report->result           = SOLVE_JUMP;
     PetscFunctionReturn(PETSC_SUCCESS);
