@@ -111,7 +111,8 @@ def hardening():
             "probes=[{name: force, reaction: y_min, component: y}]", "stepping={control: fixed, initial: 0.25}"
         ])
         forces.append(finished.summary()["probes"]["force"])
-    check.near("yield curve of a file", forces[1], forces[0], 0)
+    # Factors on several ranks are summed as messages come in
+    check.near("yield curve of a file", forces[1], forces[0], 1e-12 * abs(forces[0]))
 
 
 REFUSED = {  # text -> what the map says besides the file -> what the message matches
