@@ -65,7 +65,7 @@ static double ChangeOf(const Run *run)
 }
 
 /*@
-  SensitivitiesCheck - refuses numbers that cannot be changed a little, and runs that do not know all of their way.
+  SensitivitiesCheck - refuses numbers that cannot be changed a little.
 
   Collective
 
@@ -75,11 +75,6 @@ static double ChangeOf(const Run *run)
 PetscErrorCode SensitivitiesCheck(Run *run)
 {
   PetscFunctionBeginUser;
-  if (run->scene->n_sensitivities && run->scene->sensitivities_by_runs && run->input->restart)
-    PetscCall(RefuseInput(run->comm,
-                          "%s: is not available in a run that is continued, where the answer depends on the way to it; "
-                          "allowed: a run from the start",
-                          SceneWhere(run->scene, "sensitivity", NULL)));
   for (int i = 0; i < run->scene->n_sensitivities; i++) {
     const SceneSensitivity *s = &run->scene->sensitivities[i];
     Scene                   changed;
@@ -540,6 +535,27 @@ static PetscErrorCode DifferentiateRuns(Sensitivities *all, RunAgainFn solve, in
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The derivatives by all numbers. value: as for DifferentiateRuns(). */
+static PetscErrorCode FindAllByRuns(Sensitivities *all, RunAgainFn solve, PetscReal *const value[3])
+{
+  const Scene scene = all->run->scene;
+  PetscReal   cpu_s;
+  PetscBool   known;
+
+  PetscFunctionBeginUser;
+  PetscCall(RunChanged(all, solve, NULL, 0, value[2], &cpu_s, &known));
+  for (int i = 0; i < scene->n_sensitivities; i++) {
+    int first = 0;
+
+    while (strcmp(scene->sensitivities[first].key, scene->sensitivities[i].key)) first++;
+    if (first == i) PetscCall(DifferentiateRuns(all, solve, i, value));
+  }
+  for (int i = 0; i < scene->n_sensitivities; i++) { /* the run that serves all numbers counts for the first one */
+    if (!strcmp(scene->sensitivities[0].key, scene->sensitivities[i].key)) all->cpu_s[i] += cpu_s;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SensitivitiesFindByRuns - finds the derivatives that the scene asks for where its answer depends on the way to it.
 
@@ -549,6 +565,9 @@ static PetscErrorCode DifferentiateRuns(Sensitivities *all, RunAgainFn solve, in
 + run   - at its end, before its results are finished
 . input - what the user asks for
 - solve - solves a scene besides, and gives its probes
+
+  Note:
+  A run that was continued has none: it does not know all of its steps.
 @*/
 PetscErrorCode SensitivitiesFindByRuns(Run *run, const RunInput *input, RunAgainFn solve)
 {
@@ -556,8 +575,7 @@ PetscErrorCode SensitivitiesFindByRuns(Run *run, const RunInput *input, RunAgain
   char             edit[SENSITIVITY_EDIT];
   Sensitivities    all = {.run = run, .input = input, .edit = edit};
   const PetscReal *values;
-  PetscReal       *value[3], cpu_s;
-  PetscBool        known;
+  PetscReal       *value[3];
 
   PetscFunctionBeginUser;
   if (!scene->n_sensitivities || !scene->sensitivities_by_runs) PetscFunctionReturn(PETSC_SUCCESS);
@@ -565,16 +583,11 @@ PetscErrorCode SensitivitiesFindByRuns(Run *run, const RunInput *input, RunAgain
   PetscCall(PetscCalloc3(scene->n_probes, &value[0], scene->n_probes, &value[1], scene->n_probes, &value[2]));
   PetscCall(ResultsGetProbes(run->results, &values));
   for (int p = 0; p < scene->n_probes; p++) all.probe[p].value = value[2][p] = values[p];
-  PetscCall(RunChanged(&all, solve, NULL, 0, value[2], &cpu_s, &known));
   for (int i = 0; i < scene->n_sensitivities; i++) {
-    int first = 0;
-
-    while (strcmp(scene->sensitivities[first].key, scene->sensitivities[i].key)) first++;
-    if (first == i) PetscCall(DifferentiateRuns(&all, solve, i, value));
+    all.derivative[i] = NAN;
+    all.why[i]        = "a run that was continued does not know where all its steps ended";
   }
-  for (int i = 0; i < scene->n_sensitivities; i++) { /* the run that serves all numbers counts for the first one */
-    if (!strcmp(scene->sensitivities[0].key, scene->sensitivities[i].key)) all.cpu_s[i] += cpu_s;
-  }
+  if (!input->restart) PetscCall(FindAllByRuns(&all, solve, value));
   PetscCall(PetscFree3(value[0], value[1], value[2]));
   PetscCall(SensitivitiesEnd(&all));
   PetscFunctionReturn(PETSC_SUCCESS);
