@@ -75,8 +75,8 @@ PetscErrorCode AgainSolve(Run *run, const RunInput *input, const Again *again, P
   PetscCall(PetscMalloc1(input->n_set + AGAIN_EDITS + 2, &with.set));
   PetscCall(PetscArraycpy(with.set, input->set, input->n_set));
   for (int k = 0; k < AGAIN_EDITS; k++)
-    if (k < AGAIN_PLAIN || (k == AGAIN_PLAIN ? run->model->contact && ContactHasFriction(run->model->contact)
-                                             : ProblemIsPlastic(run->model->problem)))
+    if (k < AGAIN_PLAIN ||
+        (k == AGAIN_PLAIN ? ContactHasFriction(run->model->contact) : ProblemIsPlastic(run->model->problem)))
       with.set[with.n_set++] = (char *)edits[k];
   with.set[with.n_set++] = ends;
   if (again->edit) with.set[with.n_set++] = (char *)again->edit;

@@ -55,13 +55,20 @@ typedef struct {
   PetscReal      *derivative, *cpu_s;
   PetscReal      *apart; /* distance of the slopes of both sides over their mean, with whole runs; else 0 */
   const char    **why;   /* it has no derivative */
-  char           *edit;  /* of the scene of a run besides */
 } Sensitivities;
+
+/* Does the answer depend on the way to it, or on multipliers of elements, which stay from one solve to the next? The
+   model tells of these once there is one. */
+static PetscBool ByRuns(const Run *run)
+{
+  return (PetscBool)(run->scene->sensitivities_by_runs ||
+                     (run->model && ElasticityAugments(run->model->problem->elasticity)));
+}
 
 /* By which part of itself a number is changed. */
 static double ChangeOf(const Run *run)
 {
-  return run->scene->sensitivities_by_runs ? SENSITIVITY_RUN_STEP : SENSITIVITY_STEP;
+  return ByRuns(run) ? SENSITIVITY_RUN_STEP : SENSITIVITY_STEP;
 }
 
 /*@
@@ -137,8 +144,7 @@ static PetscErrorCode TwinDestroy(Twin *twin)
 }
 
 /*@
-  SensitivitiesCheckModel - refuses parameters that change the connections of the mesh, and finds out whether
-multipliers of elements stay from one solve to the next.
+  SensitivitiesCheckModel - refuses parameters that change the connections of the mesh.
 
   Collective
 
@@ -155,7 +161,6 @@ PetscErrorCode SensitivitiesCheckModel(Run *run, const RunInput *input)
   const Sensitivities all = {.run = run, .input = input};
 
   PetscFunctionBeginUser;
-  if (ElasticityAugments(run->model->problem->elasticity)) run->scene->sensitivities_by_runs = PETSC_TRUE;
   for (int i = 0; i < run->scene->n_sensitivities; i++) {
     const SceneSensitivity *s = &run->scene->sensitivities[i];
 
@@ -359,6 +364,15 @@ static PetscErrorCode FindAdjoints(Sensitivities *all)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is a sensitivity the first one in the list by its number? The number is dealt with once. */
+static PetscBool IsFirst(Scene scene, int i)
+{
+  int first = 0;
+
+  while (strcmp(scene->sensitivities[first].key, scene->sensitivities[i].key)) first++;
+  return (PetscBool)(first == i);
+}
+
 /* Finds all derivatives: for each number once. */
 static PetscErrorCode FindAll(Sensitivities *all)
 {
@@ -369,12 +383,10 @@ static PetscErrorCode FindAll(Sensitivities *all)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(scene->n_probes, &derivative));
   for (int i = 0; i < scene->n_sensitivities; i++) {
-    const SceneSensitivity *s     = &scene->sensitivities[i];
-    const char             *why   = NULL;
-    int                     first = 0;
+    const SceneSensitivity *s   = &scene->sensitivities[i];
+    const char             *why = NULL;
 
-    while (strcmp(scene->sensitivities[first].key, s->key)) first++;
-    if (first < i) continue;
+    if (!IsFirst(scene, i)) continue;
     PetscCall(ResultsGetUsage(all->run->results, &begin));
     PetscCall(Differentiate(all, s, derivative, &why));
     PetscCall(ResultsGetUsage(all->run->results, &end));
@@ -404,7 +416,7 @@ static void Print(const Sensitivities *all)
       printf("derivative of %s by %s: %.6g; 1 %% of it changes %s by %.3g %%", scene->probes[s->probe].name, s->key,
              (double)all->derivative[i], scene->probes[s->probe].name,
              (double)(all->derivative[i] * (PetscReal)s->value / value));
-      if (scene->sensitivities_by_runs) printf("; by whole runs, %.3g s of CPU", (double)all->cpu_s[i]);
+      if (ByRuns(all->run)) printf("; by whole runs, %.3g s of CPU", (double)all->cpu_s[i]);
       if (all->apart[i] > SENSITIVITY_KINK)
         printf("; the slopes on both sides are %.2g %% apart", 100 * (double)all->apart[i]);
       printf("\n");
@@ -429,9 +441,9 @@ static PetscErrorCode Write(const Sensitivities *all)
     used +=
       (size_t)snprintf(text + used, size - used, "%s,%s,%.15g,%.15g,%.10g,%s,%.3f\n", scene->probes[s->probe].name,
                        s->key, (double)all->probe[s->probe].value, s->value, (double)all->derivative[i],
-                       scene->sensitivities_by_runs ? "runs"
-                       : all->probe[s->probe].y     ? "adjoint"
-                                                    : "direct",
+                       ByRuns(all->run)         ? "runs"
+                       : all->probe[s->probe].y ? "adjoint"
+                                                : "direct",
                        (double)all->cpu_s[i]);
   }
   PetscCall(TextFileReplace(all->run->directory, "sensitivity.csv", text));
@@ -483,7 +495,7 @@ PetscErrorCode SensitivitiesFind(Run *run, const RunInput *input)
   Sensitivities all = {.run = run, .input = input};
 
   PetscFunctionBeginUser;
-  if (!run->scene->n_sensitivities || run->scene->sensitivities_by_runs) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!run->scene->n_sensitivities || ByRuns(run)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SensitivitiesBegin(&all));
   PetscCall(VecDuplicate(run->model->x, &all.F));
   PetscCall(VecDuplicate(run->model->x, &all.place));
@@ -500,10 +512,11 @@ PetscErrorCode SensitivitiesFind(Run *run, const RunInput *input)
 static PetscErrorCode RunChanged(const Sensitivities *all, RunAgainFn solve, const char *key, double value,
                                  PetscReal values[], PetscReal *cpu_s, PetscBool *known)
 {
-  const Again again = {solve, "changed", 1, key ? all->edit : NULL};
+  char        edit[SENSITIVITY_EDIT];
+  const Again again = {solve, "changed", 1, key ? edit : NULL};
 
   PetscFunctionBeginUser;
-  if (key) PetscCall(PetscSNPrintf(all->edit, SENSITIVITY_EDIT, "%s=%.17g", key, value));
+  if (key) PetscCall(PetscSNPrintf(edit, sizeof(edit), "%s=%.17g", key, value));
   PetscCall(AgainSolve(all->run, all->input, &again, values, cpu_s, known));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -544,12 +557,8 @@ static PetscErrorCode FindAllByRuns(Sensitivities *all, RunAgainFn solve, PetscR
 
   PetscFunctionBeginUser;
   PetscCall(RunChanged(all, solve, NULL, 0, value[2], &cpu_s, &known));
-  for (int i = 0; i < scene->n_sensitivities; i++) {
-    int first = 0;
-
-    while (strcmp(scene->sensitivities[first].key, scene->sensitivities[i].key)) first++;
-    if (first == i) PetscCall(DifferentiateRuns(all, solve, i, value));
-  }
+  for (int i = 0; i < scene->n_sensitivities; i++)
+    if (IsFirst(scene, i)) PetscCall(DifferentiateRuns(all, solve, i, value));
   for (int i = 0; i < scene->n_sensitivities; i++) { /* the run that serves all numbers counts for the first one */
     if (!strcmp(scene->sensitivities[0].key, scene->sensitivities[i].key)) all->cpu_s[i] += cpu_s;
   }
@@ -572,13 +581,12 @@ static PetscErrorCode FindAllByRuns(Sensitivities *all, RunAgainFn solve, PetscR
 PetscErrorCode SensitivitiesFindByRuns(Run *run, const RunInput *input, RunAgainFn solve)
 {
   const Scene      scene = run->scene;
-  char             edit[SENSITIVITY_EDIT];
-  Sensitivities    all = {.run = run, .input = input, .edit = edit};
+  Sensitivities    all   = {.run = run, .input = input};
   const PetscReal *values;
   PetscReal       *value[3];
 
   PetscFunctionBeginUser;
-  if (!scene->n_sensitivities || !scene->sensitivities_by_runs) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!scene->n_sensitivities || !ByRuns(run)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SensitivitiesBegin(&all));
   PetscCall(PetscCalloc3(scene->n_probes, &value[0], scene->n_probes, &value[1], scene->n_probes, &value[2]));
   PetscCall(ResultsGetProbes(run->results, &values));

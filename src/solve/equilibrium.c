@@ -294,12 +294,11 @@ static PetscErrorCode ModelRests(Model model, PetscBool *rests)
  */
 static PetscErrorCode ModelLag(Model model, PetscInt times, PetscReal *lag)
 {
-  const PetscBool friction = ContactHasFriction(model->contact);
-  PetscBool       rests;
+  PetscBool rests;
 
   PetscFunctionBeginUser;
   PetscCall(ModelRests(model, &rests));
-  *lag = friction ? EQUILIBRIUM_LAG_SLIDING : 1;
+  *lag = ContactHasFriction(model->contact) ? EQUILIBRIUM_LAG_SLIDING : 1;
   if (SceneBreaks(model->scene, model->t)) *lag = EQUILIBRIUM_LAG_AT_BREAK;
   if (model->t >= 1) *lag = EQUILIBRIUM_LAG_AT_END;
   if (rests) *lag = EQUILIBRIUM_LAG_AT_REST;

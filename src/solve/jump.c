@@ -9,12 +9,11 @@
 /* Attempts of a step, each shorter than the one before, that jump by at least this part of what that did: their length
    is not the cause. After so many of them the jump stays. */
 #define JUMP_ALIKE 0.9
+enum { JUMP_TIMES = 2 };
 
 /* Energy that a step gives away, as a part of the larger work over it, with the forces of either end, from which it may
    have jumped. Where bodies turn, both are large and cancel. */
 #define JUMP_RELEASED 0.1
-
-enum { JUMP_TIMES = 2 };
 
 /* Says whether a jump by a distance stays, although a shorter step might not jump, or because there is none that is
    allowed. before: distance by which the last attempt of this step jumped; 0: it did not. alike: attempts that jumped

@@ -413,11 +413,13 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
   const Problem   problem = model->problem;
   const PetscBool rolls   = ModelMayRoll(model);
   PetscBool       back, tied;
-  Vec             x;
+  Vec             x = NULL;
 
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(model->x, &x));
-  PetscCall(VecCopy(model->x, x));
+  if (rolls) {
+    PetscCall(VecDuplicate(model->x, &x));
+    PetscCall(VecCopy(model->x, x));
+  }
   if (problem->bodies) {
     PetscCall(FreeBodiesTie(problem->bodies, problem->trial, model->t, model->t, PETSC_FALSE, PETSC_FALSE,
                             problem->springs, &tied));
@@ -425,11 +427,11 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
     problem->tied = (PetscBool)(problem->tied || tied);
   }
   PetscCall(ModelStepHeld(model, PETSC_FALSE, report));
-  for (int k = 0; k <= PREDICTION_LESS && rolls && report->result == SOLVE_CONVERGED; k++) {
+  for (int k = 0; rolls && report->result == SOLVE_CONVERGED; k++) {
     PetscCall(ModelTakeBack(model, x, &back));
-    if (back && k < PREDICTION_LESS)
-      PetscCall(ContactTakeOffsetsPart(model->contact, problem->trial, model->t, PREDICTION_OFFSETS, &back));
     if (!back || k == PREDICTION_LESS) break;
+    PetscCall(ContactTakeOffsetsPart(model->contact, problem->trial, model->t, PREDICTION_OFFSETS, &back));
+    if (!back) break;
     PetscCall(ModelStepHeld(model, PETSC_TRUE, report));
   }
   PetscCall(VecDestroy(&x));
