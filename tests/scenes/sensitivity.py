@@ -39,6 +39,8 @@ compare(RUNS / "o_ring.yaml", "force", "bodies.2.rigid.motion.0.uy", -0.706, "di
 # Where the answer depends on the way to it, two whole runs with the same steps take the place of the end's equations
 compare(STACK, "force", "bodies.0.material.E", 1000, "runs", "contact.0.friction={mu: 0.05}", "loads.0.ux=0.1")
 compare(SCENES / "bolt.yaml", "tension", "bodies.0.material.E", 1000, "runs")
+held = rows(SCENES / "held_bar.yaml", "held", "low", "loads.0.force.1")
+check.holds("supports that come and go", held["way"] == "runs" and math.isfinite(float(held["derivative"])), str(held))
 brake = run(args, JOBS / "wedge_brake.yaml", out="brake", overrides=['sensitivity=["brake:contact.0.friction.mu"]'])
 tan, press = math.tan(math.radians(20)), 10 * (5 + 20 * math.tan(math.radians(20)))
 with open(brake.directory / "sensitivity.csv", newline="") as file:

@@ -99,20 +99,25 @@ def restart():
     check.near("its last force", last["force"], -0.75 * 6 * 3, 1e-8)
 
 
+def hardened(table, ranks):
+    """The force of a block that yields by a curve."""
+    finished = run(args, SCENES / "patch.yaml", out="hardening", ranks=ranks, overrides=[
+        "kinematics=small", f"bodies.0.material={{law: von_mises, E: 1000, nu: 0.3, hardening: {{table: {table}}}}}",
+        "supports=[{surface: y_min, ux: 0, uy: 0, uz: 0}]", "loads=[{surface: y_max, uy: 0.05}]",
+        "probes=[{name: force, reaction: y_min, component: y}]", "stepping={control: fixed, initial: 0.25}"
+    ])
+    return finished.summary()["probes"]["force"]
+
+
 def hardening():
-    """A yield curve from a file gives the stress of the same curve in the scene."""
+    """A yield curve from a file gives the stress of the same curve in the scene: to the last bit on one rank. On several
+    the direct solver sums what comes in first, and two runs of one scene differ by rounding."""
     (folder / "yield.csv").write_text("strain,stress\n0,10\n0.01,12\n0.1,20\n")
-    forces = []
-    for table in ("[[0, 10], [0.01, 12], [0.1, 20]]", f"{{csv: {folder}/yield.csv}}"):
-        finished = run(args, SCENES / "patch.yaml", out="hardening", overrides=[
-            "kinematics=small",
-            f"bodies.0.material={{law: von_mises, E: 1000, nu: 0.3, hardening: {{table: {table}}}}}",
-            "supports=[{surface: y_min, ux: 0, uy: 0, uz: 0}]", "loads=[{surface: y_max, uy: 0.05}]",
-            "probes=[{name: force, reaction: y_min, component: y}]", "stepping={control: fixed, initial: 0.25}"
-        ])
-        forces.append(finished.summary()["probes"]["force"])
-    # Factors on several ranks are summed as messages come in
-    check.near("yield curve of a file", forces[1], forces[0], 1e-12 * abs(forces[0]))
+    here, file = "[[0, 10], [0.01, 12], [0.1, 20]]", f"{{csv: {folder}/yield.csv}}"
+    alone = hardened(here, 1)
+    check.near("yield curve of a file", hardened(file, 1), alone, 0)
+    if args.ranks > 1:
+        check.near(f"the same on {args.ranks} ranks", hardened(file, args.ranks), alone, 1e-12 * abs(alone))
 
 
 REFUSED = {  # text -> what the map says besides the file -> what the message matches
