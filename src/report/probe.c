@@ -266,12 +266,30 @@ static PetscBool ProbeKeeps(const Probe *probe, const PetscReal *slave)
   return (probe->scene->edge_filter == 2) == near ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Sums the forces that move or hold a tool: those of all pairs whose master it is, with the other sign. */
+static PetscErrorCode ToolReaction(Probes probes, const Probe *probe, PetscReal force[3])
+{
+  PetscReal part[3];
+
+  PetscFunctionBeginUser;
+  force[0] = force[1] = force[2] = 0;
+  for (int p = 0; p < probes->scene->n_contacts; p++) {
+    if (!SceneContactHasMaster(&probes->scene->contacts[p], probe->scene->target)) continue;
+    PetscCall(ContactMasterForce(probes->model->contact, p, part));
+    for (int d = 0; d < 3; d++) force[d] -= part[d];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode EvaluateReaction(Probes probes, Probe *probe, PetscReal *value)
 {
   PetscReal force[3];
 
   PetscFunctionBeginUser;
-  PetscCall(ProblemReaction(probes->model->problem, probe->group, force));
+  if (probe->tool)
+    PetscCall(ToolReaction(probes, probe, force));
+  else
+    PetscCall(ProblemReaction(probes->model->problem, probe->group, force));
   *value = force[probe->scene->component];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -606,6 +624,8 @@ static PetscErrorCode ProbesPrepare(Probes probes, Probe *probe)
   if (type->names == NAMES_SURFACE) {
     PetscCall(MeshGetGroup(mesh, probes->scene, scene->path, type->key, scene->target, mesh->dim, &surface));
     probe->group = surface;
+    probe->tool =
+      (PetscBool)(scene->kind == PROBE_REACTION && MeshFindBody(probes->scene, scene->target, PETSC_TRUE) >= 0);
   } else if (type->names == NAMES_PAIR) {
     probe->pair =
       ContactFindPair(probes->model->contact, scene->target); /* the scene has made sure that there is one */

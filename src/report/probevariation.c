@@ -2,13 +2,17 @@
 #include "report/probevariation.h"
 #include "probeimpl.h"
 
-/* A reaction is the residual at the prescribed dofs. */
+/* A reaction is the residual at the prescribed dofs; that of a tool is none of these. */
 static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional *f, const char **why)
 {
   const Problem problem = probes->model->problem;
   const Mesh    mesh    = problem->mesh;
 
   PetscFunctionBeginUser;
+  if (probe->tool) {
+    *why = "reactions of rigid tools are not varied; ask for contact_force";
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (LoadsSpringForce(problem->loads)) {
     *why = "springs under a surface bear a part of the reactions";
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -320,6 +320,7 @@ void           SceneBodySkin(const SceneBody *, char *name, size_t size);
 PetscBool      SceneIsPlastic(Scene);
 PetscBool      SceneHasRoutine(Scene);
 PetscBool      SceneHasFluid(Scene);
+PetscBool      SceneContactHasMaster(const SceneContact *, const char *surface);
 PetscBool      SceneBreaks(Scene, PetscReal t);
 const char    *SceneStepAt(Scene, PetscReal t);
 int            SceneStepFrom(Scene, PetscReal t);

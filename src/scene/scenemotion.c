@@ -222,9 +222,9 @@ PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *motion)
     snprintf(path, sizeof path, "%s.motion.%d", tool, i);
     for (int k = 0; k < MOTION_COMPONENTS; k++) {
       if (!SceneHas(scene, path, Components[k])) continue;
-      if (scene->geometry == GEOMETRY_AXISYMMETRIC && k != 1)
+      if (scene->geometry == GEOMETRY_AXISYMMETRIC && k > 1)
         PetscCall(
-          SceneRefuse(scene, path, Components[k], "would break the symmetry about the axis; allowed: uy", NULL));
+          SceneRefuse(scene, path, Components[k], "would break the symmetry about the axis; allowed: ux, uy", NULL));
       PetscCall(SceneReadComponent(scene, path, k, &motion->components[motion->n++]));
     }
     if (motion->n == before)

@@ -97,6 +97,20 @@ static PetscErrorCode SceneRefuseProbeTarget(Scene scene, SceneProbe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Refuses the reaction of a tool that is the master of no pair. */
+static PetscErrorCode SceneRefuseProbeReaction(Scene scene, SceneProbe *probe)
+{
+  PetscFunctionBeginUser;
+  if (!SceneFindBody(scene, probe->target, 1)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int i = 0; i < scene->n_contacts; i++)
+    if (SceneContactHasMaster(&scene->contacts[i], probe->target)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SceneRefuse(scene, probe->path, "reaction",
+                        "is a rigid tool that is the master of no contact pair; allowed: a surface of a deformable "
+                        "body, or a tool that is a master",
+                        probe->target));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Refuses a probe of a bolt whose target is none. */
 static PetscErrorCode SceneRefuseProbeBolt(Scene scene, SceneProbe *probe)
 {
@@ -271,7 +285,9 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
       PetscCall(SceneRefuseProbeFluid(scene, probe));
     else if (probe->kind == PROBE_BOLT_FORCE || probe->kind == PROBE_BOLT_SHORTENING)
       PetscCall(SceneRefuseProbeBolt(scene, probe));
-    else if (probe->kind != PROBE_REACTION)
+    else if (probe->kind == PROBE_REACTION)
+      PetscCall(SceneRefuseProbeReaction(scene, probe));
+    else
       PetscCall(SceneRefuseProbeTarget(scene, probe));
     if (probe->kind >= PROBE_FRICTION_FORCE && probe->kind < PROBE_FLUID_FRONT)
       PetscCall(SceneRefuseProbeFriction(scene, probe));

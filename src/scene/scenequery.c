@@ -1,5 +1,6 @@
 /* What others ask of a scene that has been read, see scene.h. */
 #include "scene/scene.h"
+#include <string.h>
 
 /*@
   SceneIsPlastic - tells whether some body has a plastic law.
@@ -44,6 +45,20 @@ PetscBool SceneHasFluid(Scene scene)
   for (int l = 0; l < scene->n_loads; l++)
     if (scene->loads[l].open) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+/*@
+  SceneContactHasMaster - tells whether a surface is the master of a pair.
+
+  Not collective, the same on all ranks
+
+  Input Parameters:
++ contact - the pair
+- surface - name of a surface or of a rigid tool
+@*/
+PetscBool SceneContactHasMaster(const SceneContact *contact, const char *surface)
+{
+  return contact->master && !strcmp(contact->master, surface) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 static PetscBool MotionBreaks(const Motion *motion, PetscReal t)

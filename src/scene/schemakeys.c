@@ -16,7 +16,8 @@
            "and takes no history"}, \
   {tool ".motion.*", MAP, .help = "displacement components, rotation components or both"}, \
   {tool ".motion.*.ux|uy", REAL | FORMULA, .unit = "length", \
-   .help = "displacement component, multiplied by the history"}, \
+   .help = "displacement component, multiplied by the history; axisymmetric, ux moves every part of the tool away " \
+           "from the axis, as the jaws of a chuck do"}, \
   {tool ".motion.*.uz", REAL | FORMULA, SOLID, .unit = "length", \
    .help = "displacement component, multiplied by the history"}, \
   {tool ".motion.*.rx|ry", REAL | FORMULA, SOLID, .unit = "degrees", \
@@ -397,7 +398,8 @@ const SchemaKey SchemaKeys[] = {
   {"probes.*", MAP, .help = "a probe of exactly one kind"},
   {"probes.*.name", NAME, REQUIRED, .help = "name of its column in steps.csv"},
   {"probes.*.reaction", TEXT,
-   .help = "force on this surface through supports and imposed displacements; needs component"},
+   .help = "force on this surface through supports and imposed displacements, or the force that moves or holds this "
+           "rigid tool, which is the opposite of the forces of all contact on it; needs component"},
   {"probes.*.contact_force", TEXT, .help = "force of this contact pair on its master; needs component"},
   {"probes.*.tool_motion", TEXT, .unit = "length",
    .help = "displacement of the point of the rigid tool that is this pair's master; needs component"},

@@ -7,6 +7,7 @@
 typedef struct {
   const SceneProbe *scene;
   const MeshGroup  *group; /* reaction; slave surface of the pair */
+  PetscBool         tool;  /* the reaction is that of a rigid tool */
   int               pair;
   PetscInt          id[2];      /* node_id of the points */
   PetscInt          node[2];    /* the local node on its owner, -1 elsewhere */
