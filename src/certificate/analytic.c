@@ -7,11 +7,6 @@
    face between nodes. */
 #define TOOL_SAGITTA 0.25
 
-static double Dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Position from a tool's centre, or at right angles from its axis, at one of the states. */
 static void FromTool(const AnalyticTool *tool, const Place x, int state, Place r)
 {

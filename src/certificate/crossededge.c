@@ -3,18 +3,6 @@
 #include <string.h>
 #include <math.h>
 
-static double Dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double Distance(const double a[3], const double b[3])
-{
-  const double r[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-
-  return sqrt(Dot(r, r));
-}
-
 /* Finds the places where an edge stands through pieces at the end, in their order. */
 static void FindCuts(Look *look, const Edge *edge)
 {
@@ -114,8 +102,7 @@ static double DepthBehind(const Piece *piece, int e, const Place at)
     other += piece->across[e][d] * r;
     t[d] = piece->x[1][(e + 1) % 3][d] - piece->x[1][e][d];
   }
-  for (int d = 0; d < 3; d++)
-    out[d] = t[(d + 1) % 3] * piece->normal[1][(d + 2) % 3] - t[(d + 2) % 3] * piece->normal[1][(d + 1) % 3];
+  Cross(t, piece->normal[1], out);
   return Dot(piece->across[e], out) > 0 ? fmin(one, other) : fmax(one, other);
 }
 

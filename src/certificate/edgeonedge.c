@@ -6,21 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-static double Dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void Minus(const double a[3], const double b[3], double c[3])
-{
-  for (int d = 0; d < 3; d++) c[d] = a[d] - b[d];
-}
-
-static void Between(const double a[3], const double b[3], double s, double c[3])
-{
-  for (int d = 0; d < 3; d++) c[d] = (1 - s) * a[d] + s * b[d];
-}
-
 /* The ends of an edge of a piece at one of the states. */
 static void EndsOf(const Piece *piece, int edge, int state, Place ends[2])
 {

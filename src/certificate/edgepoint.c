@@ -2,11 +2,6 @@
 #include "stand.h"
 #include <math.h>
 
-static void Between(const double a[3], const double b[3], double s, double c[3])
-{
-  for (int d = 0; d < 3; d++) c[d] = (1 - s) * a[d] + s * b[d];
-}
-
 /*@
   EdgePoint - makes a point of a place on an edge, for its depth. Of the two faces around it the worse one counts.
 

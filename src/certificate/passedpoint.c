@@ -2,23 +2,6 @@
 #include "stand.h"
 #include <math.h>
 
-static double Dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double Distance(const double a[3], const double b[3])
-{
-  const double r[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-
-  return sqrt(Dot(r, r));
-}
-
-static void Between(const double a[3], const double b[3], double s, double c[3])
-{
-  for (int d = 0; d < 3; d++) c[d] = (1 - s) * a[d] + s * b[d];
-}
-
 /* How far a point is behind the plane of a piece at a time of the step. */
 static double BehindAt(int dim, const Piece *piece, const Point *point, double s)
 {
@@ -104,9 +87,9 @@ static void JudgePassage(const Look *look, const Point *point, const Event *in, 
 /* Judges a point that has gone behind a piece and is not found behind any surface at the end. */
 static void JudgeGone(const Look *look, const Point *point, const Event *in, const Stand *end, Finding *worst)
 {
-  const double depth = BehindAt(look->dim, in->piece, point, 1);
+  const double depth   = BehindAt(look->dim, in->piece, point, 1);
   const double allowed = AllowedDepth(look, point, in->piece) + ExplainedDepth(look, point, in->piece, depth);
-  double foot[3];
+  double       foot[3];
 
   if (!(depth > allowed) || (end->piece && end->front)) return;
   (void)PieceClosest(look->dim, (const Place *)in->piece->x[1], point->x[1], foot);

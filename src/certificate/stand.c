@@ -4,18 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double Dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double Distance(const double a[3], const double b[3])
-{
-  const double r[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-
-  return sqrt(Dot(r, r));
-}
-
 /*@
   LookBegin - prepares the search of pieces.
 

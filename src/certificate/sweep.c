@@ -1,32 +1,11 @@
 /* Crossings of points, edges and pieces of faces along straight motions, see sweep.h. */
 #include "certificate/sweep.h"
+#include "base/vectors.h"
 #include <math.h>
 #include <string.h>
 
 /* Halvings of an interval with one root of a polynomial: to the last bit. */
 enum { SWEEP_HALVINGS = 60 };
-
-static double Dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void Cross(const double a[3], const double b[3], double c[3])
-{
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static void Minus(const double a[3], const double b[3], double c[3])
-{
-  for (int d = 0; d < 3; d++) c[d] = a[d] - b[d];
-}
-
-static void Between(const double a[3], const double b[3], double s, double c[3])
-{
-  for (int d = 0; d < 3; d++) c[d] = (1 - s) * a[d] + s * b[d];
-}
 
 /*@
   PieceDivide - divides a face into pieces with the same orientation.

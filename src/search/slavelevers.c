@@ -4,6 +4,7 @@
    A quadrature point has the derivatives of the shape functions of its face. A node has the mean of the surface
    gradients of the shape functions of all faces around it, in the reference configuration, along two directions normal
    to the mean normal. */
+#include "base/vectors.h"
 #include "slavelevers.h"
 
 /* Shape functions at one place of a face: their gradients in its plane, the area per reference area and the normal. */
@@ -44,16 +45,6 @@ PetscErrorCode SlaveLeversOnFaces(SlavePoints points)
           points->lever_slope[2 * k + a] = rule->dN[q - points->first[f]][k - points->ptr[q]][a];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static void Cross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
-{
-  for (int d = 0; d < 3; d++) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
-}
-
-static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* The gradients at node `at` of a face. With the tangents T_a and the normal m = T_1 x T_2 they are

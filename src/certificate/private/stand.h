@@ -6,6 +6,7 @@
    EdgePassage() one that has crossed a body in the step. Each keeps the worst of what was found. */
 #pragma once
 #include "base/boxtree.h"
+#include "base/vectors.h"
 #include "pieces.h"
 
 /* Two pieces share a closest point where their distances differ by less than this, in parts of the size. */
