@@ -257,6 +257,9 @@ PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, Petsc
   Input/Output Parameter:
 . own - own[n_points] of all fit points: the parts that belong to fit points one by one are added here, for
         ContactOwnToNodes(); not used where the master is not fitted
+
+  Note:
+  With friction the derivatives of the point's own N are kept too.
 @*/
 PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal factor,
                                 double (*own)[FIT_DERIVATIVES_OWN])
@@ -282,6 +285,7 @@ PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal f
                         own[lists->list_point[lists->list_ptr[q] + work->result.points[i]]]);
   } else
     FitDerivativesAddDense(&work->sum, factor, work->result.n, work->result.M, &fit);
+  if (pair->friction) PetscCall(FrictionTurnsKeep(pair, q, &fit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

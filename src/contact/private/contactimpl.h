@@ -313,8 +313,14 @@ PetscErrorCode FrictionTermForces(const ContactPair *, PetscInt term, const Pets
 PetscErrorCode FrictionStepTerm(const ContactPair *, PetscInt term, PetscReal t, ActiveSetFriction *,
                                 PetscReal tangent[2][3]);
 /* frictiontangent.c */
+PetscErrorCode FrictionTurnsKeep(const ContactPair *, PetscInt q, const FitDerivatives *);
 PetscErrorCode FrictionTermNodes(const ContactPair *, PetscInt term);
+PetscErrorCode FrictionFaceNodes(const ContactPair *, PetscInt face, PetscInt n, const PetscInt points[]);
+PetscErrorCode FrictionTangentBegin(const ContactPair *);
+PetscErrorCode FrictionTermPrepare(const ContactPair *, PetscInt term);
 PetscErrorCode FrictionTermBlock(const ContactPair *, BlockMatrix, int list, PetscInt term, PetscReal t, PetscInt n,
+                                 const PetscInt nodes[]);
+PetscErrorCode FrictionFaceBlock(const ContactPair *, BlockMatrix, int list, PetscInt face, PetscInt n,
                                  const PetscInt nodes[]);
 PetscErrorCode FrictionTermAlong(const ContactPair *, PetscInt term, const FrictionTraction *, const PetscReal *motion,
                                  PetscReal change[3]);
