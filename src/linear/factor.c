@@ -52,7 +52,7 @@ static PetscErrorCode FactorBegin(Factor f)
   PetscCheck(mumps->INFOG(1) >= 0, f->comm, PETSC_ERR_LIB, "MUMPS does not start: INFOG(1) = %d, INFOG(2) = %d",
              (int)mumps->INFOG(1), (int)mumps->INFOG(2));
   for (int i = 1; i <= 4; i++) mumps->ICNTL(i) = 0; /* MUMPS prints nothing */
-  mumps->ICNTL(6) = 0;                              /* large entries are on the diagonal already */
+  mumps->ICNTL(6)  = 0;                             /* large entries are on the diagonal already */
   mumps->ICNTL(8)  = FACTOR_SCALING;
   mumps->ICNTL(14) = FACTOR_WORKSPACE;
   PetscCall(MumpsOptionsRead(mumps->icntl, mumps->cntl));
