@@ -158,6 +158,18 @@ static PetscErrorCode AddSecond(Contact contact, const ContactPair *pair, int p,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the second variation of a loaded slave point to the sum. With friction the derivatives of its own N are kept,
+   too. */
+static PetscErrorCode AddPoint(const ContactPair *pair, PetscInt q, double (*own)[FIT_DERIVATIVES_OWN])
+{
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactSecondAdd(pair, q, -pair->point_force[q], own, &found));
+  if (found && pair->friction) PetscCall(FrictionTurnsKeep(pair, q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds the block A psi'' Nbar Nbar^T of a term. It stands alone where the term shares its points; else it comes with
    -p M of its one point. */
 static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscInt n,
@@ -175,7 +187,7 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
   else {
     PetscCall(ContactSecondBegin(pair, n, 1));
     FitDerivativesAddOuter(&pair->work->sum, 1, v);
-    if (pair->point_force[q] != 0) PetscCall(ContactSecondAdd(pair, q, -pair->point_force[q], own));
+    if (pair->point_force[q] != 0) PetscCall(AddPoint(pair, q, own));
     PetscCall(AddSecond(contact, pair, p, 1, &q, n, nodes));
   }
   PetscCall(PetscFree(v));
@@ -192,8 +204,7 @@ static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p,
 
   PetscFunctionBeginUser;
   PetscCall(ContactSecondBegin(pair, n, loaded));
-  for (PetscInt k = 0; k < loaded; k++)
-    PetscCall(ContactSecondAdd(pair, points[k], -pair->point_force[points[k]], own));
+  for (PetscInt k = 0; k < loaded; k++) PetscCall(AddPoint(pair, points[k], own));
   PetscCall(AddSecond(contact, pair, p, loaded, points, n, nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

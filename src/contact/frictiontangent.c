@@ -50,35 +50,36 @@ static PetscErrorCode OwnRow(const ContactPair *pair, int c, PetscReal *row)
 }
 
 /*@
-  FrictionTurnsKeep - keeps the derivatives of the own N of a slave point that was evaluated last with its second
-  variation. Nothing is done where the block at hand has not all of the point's nodes, or where they are kept already.
+  FrictionTurnsKeep - keeps the derivatives of the own N of a slave point whose second variation was added last. Nothing
+  is done where the block at hand has not all of the point's nodes, or where they are kept already.
 
   Not collective
 
   Input Parameters:
-+ pair - the pair, after ContactWorkBlockBegin()
-. q    - the slave point; its first variation is kept
-- map  - from its points to the block's nodes
++ pair - the pair, after ContactSecondAdd() that found the point
+- q    - the slave point; its first variation is kept
 
   Note:
   The result's N is overwritten.
 @*/
-PetscErrorCode FrictionTurnsKeep(const ContactPair *pair, PetscInt q, const FitDerivatives *map)
+PetscErrorCode FrictionTurnsKeep(const ContactPair *pair, PetscInt q)
 {
-  const int       dim    = pair->mesh->dim;
-  SmootherResult *result = &pair->work->result;
-  const PetscInt  n = ContactVariationsOwn(pair, q), *number = &pair->variations->number[pair->variations->first[q]];
-  PetscReal      *nodal, *to;
+  const int            dim    = pair->mesh->dim;
+  const ContactMap    *made   = &pair->work->map;
+  const FitDerivatives map    = {pair->work->sum.n_nodes, made->ptr, made->node, made->S, made->sign};
+  SmootherResult      *result = &pair->work->result;
+  const PetscInt n = ContactVariationsOwn(pair, q), *number = &pair->variations->number[pair->variations->first[q]];
+  PetscReal     *nodal, *to;
 
   PetscFunctionBeginUser;
   if (pair->friction->first[q] >= 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < n; i++)
     if (pair->work->slot[number[i]] < 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TurnsRoom(pair, q, &to));
-  PetscCall(PetscMalloc1(map->n_nodes * dim, &nodal));
+  PetscCall(PetscMalloc1(map.n_nodes * dim, &nodal));
   for (int c = 0; c < dim; c++) {
     PetscCall(OwnRow(pair, c, result->N));
-    FitDerivativesFirst(dim, result->n, result->N, map, nodal);
+    FitDerivativesFirst(dim, result->n, result->N, &map, nodal);
     for (PetscInt i = 0; i < n; i++)
       for (int d = 0; d < dim; d++) to[(i * dim + c) * dim + d] = nodal[pair->work->slot[number[i]] * dim + d];
   }
