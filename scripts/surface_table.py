@@ -16,6 +16,7 @@ from launch import ROOT, command, environment, fill_row, read_records, read_summ
 
 SCENES = {  # scene in runs, with what is set besides
     "pipe 24x10": ("pipe_pinch.yaml", []),
+    "pipe 24x10, friction 0.2": ("pipe_pinch.yaml", ["contact.0.friction={mu: 0.2}"]),
     "plate on a meshed cylinder": ("plate_cylinder_meshed.yaml", [
         "mesh.order=1", "loads.0.pressure=2", "contact.0.penalty.adjust=false",
         "mesh.parameters={h_contact: 0.25, h_far: 3, n_thick: 4, n_width: 8, cylinder: 1, facet: 2, n_cylinder_z: 6}"

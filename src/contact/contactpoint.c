@@ -257,21 +257,23 @@ PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, Petsc
   Input/Output Parameter:
 . own - own[n_points] of all fit points: the parts that belong to fit points one by one are added here, for
         ContactOwnToNodes(); not used where the master is not fitted
+
+  Output Parameter:
+. found - PETSC_FALSE where no master is near
 @*/
 PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal factor,
-                                double (*own)[FIT_DERIVATIVES_OWN])
+                                double (*own)[FIT_DERIVATIVES_OWN], PetscBool *found)
 {
   ContactWork   *work  = pair->work;
   NeighbourLists lists = pair->lists;
   ContactMap    *map   = &work->map;
-  PetscBool      found;
   FitDerivatives fit;
 
   PetscFunctionBeginUser;
   if (pair->fit.fitted) TimingBegin(TIMING_FIT);
-  PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
+  PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, found));
   if (pair->fit.fitted) TimingEnd(TIMING_FIT);
-  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactWorkReserveMap(work, lists->n_nodes, 1 + work->result.n, MapEntries(pair, lists, q)));
   MapFill(pair, lists, q);
   fit = (FitDerivatives){work->sum.n_nodes, map->ptr, map->node, map->S, map->sign};

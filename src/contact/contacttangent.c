@@ -77,17 +77,31 @@ static PetscInt FacePoints(const ContactPair *pair, PetscInt face, PetscInt poin
   return n;
 }
 
+/* Names the block of a face's loaded points and, with friction, of those that terms take. */
+static PetscErrorCode NameFace(Contact contact, const ContactPair *pair, int p, PetscInt face)
+{
+  PetscInt       points[FACE_RULE_POINTS];
+  const PetscInt n = FacePoints(pair, face, points);
+
+  PetscFunctionBeginUser;
+  if (pair->friction) {
+    PetscCall(FrictionFaceNodes(pair, face, n, points));
+    PetscCall(NameListed(contact, pair, p));
+  } else
+    PetscCall(NameBlock(contact, pair, p, n, points));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Names the blocks of a pair: one for each active term and, where terms share their points, one for each loaded face.
  */
 static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
 {
-  PetscInt points[FACE_RULE_POINTS];
-
   PetscFunctionBeginUser;
+  if (pair->friction) PetscCall(FrictionTangentBegin(pair));
   for (PetscInt c = 0; c < pair->n; c++)
     if (pair->stiffness[c] > 0) PetscCall(NameTerm(contact, pair, p, c));
   for (PetscInt face = 0; pair->formulation.surface && face < pair->slaves->n_faces; face++)
-    PetscCall(NameBlock(contact, pair, p, FacePoints(pair, face, points), points));
+    PetscCall(NameFace(contact, pair, p, face));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -144,6 +158,18 @@ static PetscErrorCode AddSecond(Contact contact, const ContactPair *pair, int p,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the second variation of a loaded slave point to the sum. With friction the derivatives of its own N are kept,
+   too. */
+static PetscErrorCode AddPoint(const ContactPair *pair, PetscInt q, double (*own)[FIT_DERIVATIVES_OWN])
+{
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactSecondAdd(pair, q, -pair->point_force[q], own, &found));
+  if (found && pair->friction) PetscCall(FrictionTurnsKeep(pair, q));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds the block A psi'' Nbar Nbar^T of a term. It stands alone where the term shares its points; else it comes with
    -p M of its one point. */
 static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscInt n,
@@ -161,7 +187,7 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
   else {
     PetscCall(ContactSecondBegin(pair, n, 1));
     FitDerivativesAddOuter(&pair->work->sum, 1, v);
-    if (pair->point_force[q] != 0) PetscCall(ContactSecondAdd(pair, q, -pair->point_force[q], own));
+    if (pair->point_force[q] != 0) PetscCall(AddPoint(pair, q, own));
     PetscCall(AddSecond(contact, pair, p, 1, &q, n, nodes));
   }
   PetscCall(PetscFree(v));
@@ -178,8 +204,7 @@ static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p,
 
   PetscFunctionBeginUser;
   PetscCall(ContactSecondBegin(pair, n, loaded));
-  for (PetscInt k = 0; k < loaded; k++)
-    PetscCall(ContactSecondAdd(pair, points[k], -pair->point_force[points[k]], own));
+  for (PetscInt k = 0; k < loaded; k++) PetscCall(AddPoint(pair, points[k], own));
   PetscCall(AddSecond(contact, pair, p, loaded, points, n, nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -212,12 +237,36 @@ static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the blocks of a pair in the order in which PairName() named them, from block number *block on. */
-static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, PetscReal t, PetscInt *block)
+/* Adds the blocks of friction of a pair, whose first named block is `block`. Those of terms come before those of
+   faces, which need the forces of all terms. */
+static PetscErrorCode FrictionBlocks(Contact contact, ContactPair *pair, int p, PetscReal t, PetscInt block)
 {
   const PetscInt  faces = pair->formulation.surface ? pair->slaves->n_faces : 0;
   const PetscInt *nodes;
   PetscInt        n;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < pair->n + faces; k++) {
+    if (k < pair->n && pair->stiffness[k] <= 0) continue;
+    BlockMatrixGetNodes(contact->blocks, block++, &n, &nodes);
+    if (!n) continue;
+    if (k < pair->n) PetscCall(FrictionTermPrepare(pair, k));
+    PetscCall(ContactWorkBlockBegin(pair->work, pair->lists->n_nodes, n, nodes));
+    if (k < pair->n)
+      PetscCall(FrictionTermBlock(pair, contact->blocks, p, k, t, n, nodes));
+    else
+      PetscCall(FrictionFaceBlock(pair, contact->blocks, p, k - pair->n, n, nodes));
+    ContactWorkBlockEnd(pair->work, n, nodes);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the blocks of a pair in the order in which PairName() named them, from block number *block on. */
+static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, PetscReal t, PetscInt *block)
+{
+  const PetscInt faces = pair->formulation.surface ? pair->slaves->n_faces : 0;
+  const PetscInt first = *block, *nodes;
+  PetscInt       n;
   double(*own)[FIT_DERIVATIVES_OWN] = NULL;
 
   PetscFunctionBeginUser;
@@ -227,7 +276,6 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, Pets
     BlockMatrixGetNodes(contact->blocks, (*block)++, &n, &nodes);
     if (!n) continue;
     PetscCall(ContactWorkBlockBegin(pair->work, pair->lists->n_nodes, n, nodes));
-    if (k < pair->n && pair->friction) PetscCall(FrictionTermBlock(pair, contact->blocks, p, k, t, n, nodes));
     if (k < pair->n)
       PetscCall(TermBlock(contact, pair, p, k, n, nodes, own));
     else
@@ -235,6 +283,7 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, Pets
     ContactWorkBlockEnd(pair->work, n, nodes);
   }
   if (pair->fit.fitted) PetscCall(OwnBlocks(contact, pair, p, own));
+  if (pair->friction) PetscCall(FrictionBlocks(contact, pair, p, t, first));
   PetscCall(PetscFree(own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

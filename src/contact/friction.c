@@ -35,6 +35,7 @@ PetscErrorCode FrictionCreate(ContactPair *pair)
   PetscCall(PetscCalloc7(n, &f->anchored, 2 * n, &f->kept, 2 * n, &f->heading, n, &f->began, n, &f->pressed, n,
                          &f->axis, n, &f->guide));
   PetscCall(PetscCalloc1(2 * n, &f->grip));
+  PetscCall(PetscCalloc2(q, &f->taken, 3 * q, &f->held));
   PetscCall(PetscCalloc5(3 * n, &f->nodal, n, &f->elastic, 3 * n, &f->traction, n, &f->status, n, &f->footless));
   for (PetscInt i = 0; i < q; i++) f->face[i] = f->facet[i] = f->at[i] = f->first[i] = -1;
   SearchKeepFaces(pair->search);
@@ -55,6 +56,7 @@ PetscErrorCode FrictionDestroy(Friction *friction)
   PetscCall(PetscFree(f->grip));
   PetscCall(PetscFree5(f->nodal, f->elastic, f->traction, f->status, f->footless));
   PetscCall(PetscFree(f->turns));
+  PetscCall(PetscFree2(f->taken, f->held));
   PetscCall(PetscFree(*friction));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

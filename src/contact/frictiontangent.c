@@ -16,43 +16,104 @@ typedef struct {
   PetscReal         *turns;    /* dim rows: derivative of the own N of the slave point at hand */
 } TermBlock;
 
-/* Derivatives of the own N of slave point q over the nodes of its first variation: dim*dim for each, kept until the
-   next projection. */
+/* Room for the derivatives of the own N of slave point q over the nodes of its first variation: dim*dim for each, kept
+   until the next projection. */
+static PetscErrorCode TurnsRoom(const ContactPair *pair, PetscInt q, PetscReal **turns)
+{
+  Friction       f = pair->friction;
+  const PetscInt n = ContactVariationsOwn(pair, q) * PetscSqr(pair->mesh->dim);
+
+  PetscFunctionBeginUser;
+  if (f->turns_used + n > f->turns_room) {
+    f->turns_room = 2 * (f->turns_used + n);
+    PetscCall(PetscRealloc(f->turns_room * sizeof(PetscReal), &f->turns));
+  }
+  *turns      = &f->turns[f->turns_used];
+  f->first[q] = f->turns_used;
+  f->turns_used += n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The derivative of component c of the own N that was evaluated last, over slave point and points. It overwrites the
+   result's N where M is in factors. */
+static PetscErrorCode OwnRow(const ContactPair *pair, int c, PetscReal *row)
+{
+  SmootherResult *result = &pair->work->result;
+  const int       dim    = pair->mesh->dim;
+
+  PetscFunctionBeginUser;
+  if (result->factored)
+    FitDerivativesSlave(&result->factors, c, row);
+  else
+    PetscCall(PetscArraycpy(row, &result->M[c * (1 + result->n) * dim], (1 + result->n) * dim));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionTurnsKeep - keeps the derivatives of the own N of a slave point whose second variation was added last. Nothing
+  is done where the block at hand has not all of the point's nodes, or where they are kept already.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair, after ContactSecondAdd() that found the point
+- q    - the slave point; its first variation is kept
+
+  Note:
+  The result's N is overwritten.
+@*/
+PetscErrorCode FrictionTurnsKeep(const ContactPair *pair, PetscInt q)
+{
+  const int            dim    = pair->mesh->dim;
+  const ContactMap    *made   = &pair->work->map;
+  const FitDerivatives map    = {pair->work->sum.n_nodes, made->ptr, made->node, made->S, made->sign};
+  SmootherResult      *result = &pair->work->result;
+  const PetscInt n = ContactVariationsOwn(pair, q), *number = &pair->variations->number[pair->variations->first[q]];
+  PetscReal     *nodal, *to;
+
+  PetscFunctionBeginUser;
+  if (pair->friction->first[q] >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < n; i++)
+    if (pair->work->slot[number[i]] < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TurnsRoom(pair, q, &to));
+  PetscCall(PetscMalloc1(map.n_nodes * dim, &nodal));
+  for (int c = 0; c < dim; c++) {
+    PetscCall(OwnRow(pair, c, result->N));
+    FitDerivativesFirst(dim, result->n, result->N, &map, nodal);
+    for (PetscInt i = 0; i < n; i++)
+      for (int d = 0; d < dim; d++) to[(i * dim + c) * dim + d] = nodal[pair->work->slot[number[i]] * dim + d];
+  }
+  PetscCall(PetscFree(nodal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Derivatives of the own N of slave point q, see TurnsRoom(). They are found where they are not kept yet, and then no
+   list of nodes or block may be at hand. */
 static PetscErrorCode PointTurns(const ContactPair *pair, PetscInt q, const PetscReal **turns)
 {
   const int      dim  = pair->mesh->dim;
   ContactWork   *work = pair->work;
   Friction       f    = pair->friction;
   const PetscInt n    = ContactVariationsOwn(pair, q);
-  PetscReal     *row, *to;
+  PetscReal     *to;
   PetscBool      found;
 
   PetscFunctionBeginUser;
   *turns = f->first[q] >= 0 ? &f->turns[f->first[q]] : NULL;
   if (*turns) PetscFunctionReturn(PETSC_SUCCESS);
-  if (f->turns_used + n * dim * dim > f->turns_room) {
-    f->turns_room = 2 * (f->turns_used + n * dim * dim);
-    PetscCall(PetscRealloc(f->turns_room * sizeof(PetscReal), &f->turns));
-  }
   if (pair->fit.fitted) TimingBegin(TIMING_FIT);
   PetscCall(
     ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
   if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a slave point has a first variation and no second one");
-  to  = &f->turns[f->turns_used];
-  row = work->result.N;
+  PetscCall(TurnsRoom(pair, q, &to));
   for (int c = 0; c < dim; c++) {
-    if (work->result.factored)
-      FitDerivativesSlave(&work->result.factors, c, row);
-    else
-      PetscCall(PetscArraycpy(row, &work->result.M[c * (1 + work->result.n) * dim], (1 + work->result.n) * dim));
+    PetscCall(OwnRow(pair, c, work->result.N));
     PetscCall(ContactPointToNodes(pair, pair->lists, q));
     PetscCheck(work->count == n, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the variations of a slave point have other nodes");
     for (PetscInt i = 0; i < n; i++)
       for (int d = 0; d < dim; d++) to[(i * dim + c) * dim + d] = work->N[i * dim + d];
   }
-  f->first[q] = f->turns_used;
-  f->turns_used += n * dim * dim;
   *turns = to;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -105,21 +166,18 @@ static PetscErrorCode AddFootNodes(const ContactPair *pair, PetscInt q)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds feet and variations of all slave points of a term before a list of nodes or a block is begun. *room: nodes at
-   most. */
-static PetscErrorCode PreparePoints(const ContactPair *pair, PetscInt c, PetscInt *room)
+/* Finds the feet of all slave points of a term before a list of nodes is begun. *room: nodes at most. */
+static PetscErrorCode FindFeet(const ContactPair *pair, PetscInt c, PetscInt *room)
 {
   PetscFunctionBeginUser;
   *room = FACE_MAX_NODES;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt      q = pair->term_point[k];
     const FrictionFoot *foot;
-    const PetscReal    *turns;
     PetscBool           found;
 
     if (pair->factor[q] == 0) continue;
     PetscCall(FrictionPointFoot(pair, q, &foot, &found));
-    if (pair->friction->anchored[c] && FrictionTermTakes(pair, k)) PetscCall(PointTurns(pair, q, &turns));
     *room += pair->variations->end[q] - pair->variations->first[q] + 3 * FACE_MAX_NODES;
     if (found) *room += pair->slaves->lever_ptr[q + 1] - pair->slaves->lever_ptr[q];
   }
@@ -142,7 +200,7 @@ PetscErrorCode FrictionTermNodes(const ContactPair *pair, PetscInt c)
   PetscInt                 room;
 
   PetscFunctionBeginUser;
-  PetscCall(PreparePoints(pair, c, &room));
+  PetscCall(FindFeet(pair, c, &room));
   PetscCall(ContactWorkNodesBegin(pair->work, pair->lists->n_nodes, room));
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt   q = pair->term_point[k], *node;
@@ -152,13 +210,95 @@ PetscErrorCode FrictionTermNodes(const ContactPair *pair, PetscInt c)
     if (pair->factor[q] == 0) continue;
     ContactWorkNodesAdd(pair->work, v->end[q] - v->first[q], &v->number[v->first[q]]);
     if (!pair->friction->anchored[c] || !FrictionTermTakes(pair, k)) continue;
-    n = FrictionOwnNodes(pair, q, &node, &S);
+    pair->friction->taken[q] = PETSC_TRUE;
+    n                        = FrictionOwnNodes(pair, q, &node, &S);
     ContactWorkNodesAdd(pair->work, n, node);
     PetscCall(AddFootNodes(pair, q));
     AddAnchorNodes(pair, q);
   }
   if (pair->friction->anchored[c] && FrictionTermGuide(pair, c) >= 0) AddAnchorNodes(pair, FrictionTermGuide(pair, c));
   ContactWorkNodesEnd(pair->work);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionTangentBegin - begins a tangent, in which no term has taken a slave point yet.
+
+  Not collective
+
+  Input Parameter:
+. pair - the pair
+@*/
+PetscErrorCode FrictionTangentBegin(const ContactPair *pair)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(pair->friction->taken, pair->slaves->n));
+  PetscCall(PetscArrayzero(pair->friction->held, 3 * pair->slaves->n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionFaceNodes - lists the nodes of a face's block, each once, into the work's number: those of the first
+  variations of some of its slave points and of those that terms take, and of the latter ones' feet and levers.
+
+  Not collective
+
+  Input Parameters:
++ pair   - the pair, projected, after FrictionTermNodes() for all terms
+. face   - the face
+. n      - number of slave points
+- points - the slave points, with area
+@*/
+PetscErrorCode FrictionFaceNodes(const ContactPair *pair, PetscInt face, PetscInt n, const PetscInt points[])
+{
+  const ContactVariations *v     = pair->variations;
+  const PetscBool         *taken = pair->friction->taken;
+  const PetscInt           first = pair->slaves->first[face], end = pair->slaves->first[face + 1];
+  PetscInt                 room = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < n + end - first; k++) {
+    const PetscInt q = k < n ? points[k] : first + k - n;
+
+    if (k >= n && !taken[q]) continue;
+    PetscCall(ContactVariationsNeed(pair, q));
+    room += v->end[q] - v->first[q] + 3 * FACE_MAX_NODES;
+    if (pair->slaves->lever_ptr) room += pair->slaves->lever_ptr[q + 1] - pair->slaves->lever_ptr[q];
+  }
+  PetscCall(ContactWorkNodesBegin(pair->work, pair->lists->n_nodes, room));
+  for (PetscInt k = 0; k < n + end - first; k++) {
+    const PetscInt   q = k < n ? points[k] : first + k - n, *node;
+    const PetscReal *S;
+
+    if (k >= n && !taken[q]) continue;
+    ContactWorkNodesAdd(pair->work, v->end[q] - v->first[q], &v->number[v->first[q]]);
+    if (k < n) continue;
+    ContactWorkNodesAdd(pair->work, FrictionOwnNodes(pair, q, &node, &S), node);
+    PetscCall(AddFootNodes(pair, q));
+  }
+  ContactWorkNodesEnd(pair->work);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionTermPrepare - finds what FrictionTermBlock() needs and what cannot be found while a block is at hand.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair, projected
+- c    - the term
+@*/
+PetscErrorCode FrictionTermPrepare(const ContactPair *pair, PetscInt c)
+{
+  const PetscReal *turns;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    if (!pair->friction->anchored[c] || !FrictionTermTakes(pair, k)) continue;
+    PetscCall(ContactVariationsNeed(pair, pair->term_point[k]));
+    PetscCall(PointTurns(pair, pair->term_point[k], &turns));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -290,16 +430,23 @@ static void AddAlongColumns(const TermBlock *b, PetscInt q, const FrictionTracti
   }
 }
 
+/* Lists a node as one on which a force acts, unless it is not in the block. */
+static void AddRow(TermBlock *b, PetscInt node)
+{
+  const int place = b->pair->work->slot[node];
+
+  if (place < 0 || b->row_of[place] >= 0) return;
+  b->row_of[place]         = (int)b->n_rows;
+  b->row_node[b->n_rows++] = node;
+}
+
 /* Lists a node as one on which a force acts, and adds its share of the term's traction. */
 static void AddShare(TermBlock *b, PetscInt node, const PetscReal share[3][3], PetscReal scale, const PetscReal *sign)
 {
   const int place = b->pair->work->slot[node], dim = b->dim;
 
   if (place < 0) return;
-  if (b->row_of[place] < 0) {
-    b->row_of[place]         = (int)b->n_rows;
-    b->row_node[b->n_rows++] = node;
-  }
+  AddRow(b, node);
   for (int i = 0; i < dim; i++)
     for (int j = 0; j < dim; j++)
       b->share[(b->row_of[place] * dim + i) * dim + j] += scale * share[i][j] * (sign ? sign[i] : 1);
@@ -428,6 +575,27 @@ static PetscErrorCode AddTraction(TermBlock *b, PetscInt c, const FrictionTracti
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the motion over the master of the forces of a term's slave points. Where terms share their points, the forces
+   are summed, and FrictionFaceBlock() adds it once for each point. */
+static PetscErrorCode AddTermMotion(TermBlock *b, PetscInt c, const FrictionTraction *out)
+{
+  const ContactPair *pair = b->pair;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt q = pair->term_point[k];
+    PetscReal      F[3];
+
+    if (!FrictionTermTakes(pair, k)) continue;
+    for (int d = 0; d < 3; d++) F[d] = pair->term_weight[k] * pair->factor[q] * out->traction[d];
+    if (pair->formulation.surface)
+      for (int d = 0; d < 3; d++) pair->friction->held[3 * q + d] += F[d];
+    else
+      PetscCall(AddFootMotion(b, q, F));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Fills the block: the derivative of the traction, taken to the nodes, and the motion of its forces over the master. */
 static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction *out)
 {
@@ -447,18 +615,12 @@ static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction
     for (int d = 0; d < dim; d++)
       for (PetscInt j = 0; j < b->columns; j++)
         b->value[r * b->columns + j] += b->share[r * dim + d] * b->by_node[d * b->columns + j];
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt q = pair->term_point[k];
-    PetscReal      F[3];
-
-    if (!FrictionTermTakes(pair, k)) continue;
-    for (int d = 0; d < 3; d++) F[d] = pair->term_weight[k] * pair->factor[q] * out->traction[d];
-    PetscCall(AddFootMotion(b, q, F));
-  }
+  PetscCall(AddTermMotion(b, c, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the block of a term whose master is a tool with unknowns, completed by the rows and columns of the tool. */
+/* Adds a block against a tool with unknowns, completed by the rows and columns of the tool. out: traction whose shares
+   are on the nodes; NULL: the block is the derivative of no force. */
 static PetscErrorCode AddWithTool(const TermBlock *b, BlockMatrix blocks, int list, PetscInt n, const PetscInt nodes[],
                                   const FrictionTraction *out)
 {
@@ -473,7 +635,7 @@ static PetscErrorCode AddWithTool(const TermBlock *b, BlockMatrix blocks, int li
     const PetscInt i = b->pair->work->slot[b->row_node[r / dim]] * dim + r % dim;
 
     PetscCall(PetscArraycpy(&M[i * m], &b->value[r * m], m));
-    for (int d = 0; d < dim; d++) force[i] += b->share[r * dim + d] * out->traction[d];
+    for (int d = 0; out && d < dim; d++) force[i] += b->share[r * dim + d] * out->traction[d];
   }
   PetscCall(ContactToolBlock(b->pair, n, nodes, force, M));
   for (PetscInt i = 0; i < n; i++) {
@@ -487,13 +649,44 @@ static PetscErrorCode AddWithTool(const TermBlock *b, BlockMatrix blocks, int li
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the block to the matrix. out: as for AddWithTool(). */
+static PetscErrorCode AddBlock(const TermBlock *b, BlockMatrix blocks, int list, PetscInt n, const PetscInt nodes[],
+                               const FrictionTraction *out)
+{
+  PetscFunctionBeginUser;
+  if (b->pair->tool)
+    PetscCall(AddWithTool(b, blocks, list, n, nodes, out));
+  else
+    PetscCall(BlockMatrixAddRows(blocks, list, b->n_rows, b->row_node, n, nodes, b->value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes room for the rows of a block of n nodes, and lists none. */
+static PetscErrorCode RowsBegin(TermBlock *b, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &b->row_node, n, &b->row_of));
+  for (PetscInt i = 0; i < n; i++) b->row_of[i] = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RowsEnd(TermBlock *b)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(b->row_node, b->row_of));
+  PetscCall(PetscFree(b->value));
+  PetscCall(PetscFree(b->turns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  FrictionTermBlock - adds the tangent of a term's friction.
+  FrictionTermBlock - adds the tangent of a term's friction. Where terms share their points, the motion of the forces
+  over the master is left to FrictionFaceBlock().
 
   Not collective
 
   Input Parameters:
-+ pair   - the pair, projected, after ContactWorkBlockBegin() with the block's nodes
++ pair   - the pair, projected, after FrictionTermPrepare() and ContactWorkBlockBegin() with the block's nodes
 . blocks - the matrix
 . list   - the pair's list in it
 . c      - the term
@@ -514,17 +707,73 @@ PetscErrorCode FrictionTermBlock(const ContactPair *pair, BlockMatrix blocks, in
   PetscCall(FrictionTerm(pair, c, t, &in, &out, &acts));
   if (!acts) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc2(dim * b.columns, &b.by_node, n * dim * dim, &b.share));
-  PetscCall(PetscMalloc2(n, &b.row_node, n, &b.row_of));
-  for (PetscInt i = 0; i < n; i++) b.row_of[i] = -1;
+  PetscCall(RowsBegin(&b, n));
   PetscCall(FillBlock(&b, c, &out));
-  if (pair->tool)
-    PetscCall(AddWithTool(&b, blocks, list, n, nodes, &out));
-  else
-    PetscCall(BlockMatrixAddRows(blocks, list, b.n_rows, b.row_node, n, nodes, b.value));
+  PetscCall(AddBlock(&b, blocks, list, n, nodes, &out));
   PetscCall(PetscFree2(b.by_node, b.share));
-  PetscCall(PetscFree2(b.row_node, b.row_of));
-  PetscCall(PetscFree(b.value));
-  PetscCall(PetscFree(b.turns));
+  PetscCall(RowsEnd(&b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Lists the nodes on which the reaction and the lever's forces of slave point q act. */
+static PetscErrorCode AddFootRows(TermBlock *b, PetscInt q)
+{
+  const FrictionFoot *foot;
+  PetscBool           found;
+  const PetscInt     *lever;
+  const PetscReal    *slope;
+  PetscInt            n;
+
+  PetscFunctionBeginUser;
+  PetscCall(FrictionPointFoot(b->pair, q, &foot, &found));
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < foot->nodes; k++) {
+    PetscReal sign[3];
+    PetscInt  at;
+
+    FrictionNodeSign(b->pair, FrictionFootPoint(b->pair, q, k), &at, sign);
+    AddRow(b, at);
+  }
+  n = FrictionLeverNodes(b->pair, q, &lever, &slope);
+  for (PetscInt k = 0; k < n; k++) AddRow(b, lever[k]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionFaceBlock - adds how the forces of friction on a face's slave points move over the master, where they are
+  held.
+
+  Not collective
+
+  Input Parameters:
++ pair   - the pair, after FrictionTermBlock() for all terms and ContactWorkBlockBegin() with the block's nodes
+. blocks - the matrix
+. list   - the pair's list in it
+. face   - the face
+. n      - nodes of the block, of FrictionFaceNodes()
+- nodes  - these nodes
+
+  Note:
+  A force of which terms have shares is linear in them, and so is this.
+@*/
+PetscErrorCode FrictionFaceBlock(const ContactPair *pair, BlockMatrix blocks, int list, PetscInt face, PetscInt n,
+                                 const PetscInt nodes[])
+{
+  const PetscInt   first = pair->slaves->first[face], end = pair->slaves->first[face + 1];
+  const int        dim  = pair->mesh->dim;
+  const PetscReal *held = pair->friction->held;
+  TermBlock        b    = {.pair = pair, .dim = dim, .columns = n * dim};
+
+  PetscFunctionBeginUser;
+  PetscCall(RowsBegin(&b, n));
+  for (PetscInt q = first; q < end; q++)
+    if (pair->friction->taken[q]) PetscCall(AddFootRows(&b, q));
+  PetscCall(PetscCalloc1(b.n_rows * dim * b.columns, &b.value));
+  PetscCall(PetscMalloc1(dim * b.columns, &b.turns));
+  for (PetscInt q = first; q < end; q++)
+    if (held[3 * q] != 0 || held[3 * q + 1] != 0 || held[3 * q + 2] != 0) PetscCall(AddFootMotion(&b, q, &held[3 * q]));
+  if (b.n_rows) PetscCall(AddBlock(&b, blocks, list, n, nodes, NULL));
+  PetscCall(RowsEnd(&b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -550,6 +799,7 @@ PetscErrorCode FrictionTermAlong(const ContactPair *pair, PetscInt c, const Fric
   PetscInt *nodes, n;
 
   PetscFunctionBeginUser;
+  PetscCall(FrictionTermPrepare(pair, c));
   PetscCall(FrictionTermNodes(pair, c));
   n         = pair->work->count;
   b.columns = n * dim;

@@ -13,8 +13,9 @@ enum { FACTOR_DISSECTED = 4000 };
 enum { FACTOR_WORKSPACE = 100 };
 /* Number of times that the workspace may be doubled. Delayed pivots of regular systems have never needed more. */
 enum { FACTOR_MORE = 2 };
-/* Scaling of symmetric systems (ICNTL(8)): by the diagonal. MUMPS's own choice iterates over rows and columns, which
-   costs a seventh of a factorisation at 10,000 unknowns. Stiff penalties are on the diagonal. */
+/* Scaling (ICNTL(8)): by the diagonal. MUMPS's own choice iterates over rows and columns, which costs a seventh of a
+   symmetric factorisation at 10,000 unknowns, and a fifth or more of an unsymmetric one. Stiff penalties are on the
+   diagonal. */
 enum { FACTOR_SCALING = 1 };
 /* Memory that is reserved for the entries of a pattern, in parts of what the pattern needs. The next pattern often has
    few more entries, and new memory costs more than writing the entries does. */
@@ -51,8 +52,8 @@ static PetscErrorCode FactorBegin(Factor f)
   PetscCheck(mumps->INFOG(1) >= 0, f->comm, PETSC_ERR_LIB, "MUMPS does not start: INFOG(1) = %d, INFOG(2) = %d",
              (int)mumps->INFOG(1), (int)mumps->INFOG(2));
   for (int i = 1; i <= 4; i++) mumps->ICNTL(i) = 0; /* MUMPS prints nothing */
-  mumps->ICNTL(6) = 0;                              /* large entries are on the diagonal already */
-  if (f->symmetric) mumps->ICNTL(8) = FACTOR_SCALING;
+  mumps->ICNTL(6)  = 0;                             /* large entries are on the diagonal already */
+  mumps->ICNTL(8)  = FACTOR_SCALING;
   mumps->ICNTL(14) = FACTOR_WORKSPACE;
   PetscCall(MumpsOptionsRead(mumps->icntl, mumps->cntl));
   f->workspace     = mumps->ICNTL(14);

@@ -109,8 +109,8 @@ static void FindLongest(const PetscReal *normal, FaceShape *shape)
   shape->width  = Extent(shape, shape->across);
 }
 
-/* The moments of a face, computed when they are asked for first. */
-static const FaceShape *Shape(FaceRows rows, PetscInt f)
+/* Computes the moments of a face. */
+static void MakeShape(FaceRows rows, PetscInt f)
 {
   const SurfaceView *view  = rows->view;
   const Facet       *facet = &view->facets[f];
@@ -118,7 +118,6 @@ static const FaceShape *Shape(FaceRows rows, PetscInt f)
   const FaceRule    *rule  = FaceRuleGet(facet->type, FACE_RULE_PLAIN);
   PetscReal          x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS], r[FACE_RULE_POINTS][3] = {{0}};
 
-  if (shape->known) return shape;
   *shape = (FaceShape){.known = PETSC_TRUE};
   for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
     for (int d = 0; d < 3; d++) x[a * 3 + d] = view->x[facet->nodes[a] * 3 + d];
@@ -135,7 +134,13 @@ static const FaceShape *Shape(FaceRows rows, PetscInt f)
       shape->covariance[i / 3][i % 3] +=
         area[q] / shape->area * (r[q][i / 3] - shape->centre[i / 3]) * (r[q][i % 3] - shape->centre[i % 3]);
   FindLongest(&view->normals[3 * f], shape);
-  return shape;
+}
+
+/* The moments of a face, computed when they are asked for first. */
+static inline const FaceShape *Shape(FaceRows rows, PetscInt f)
+{
+  if (!rows->shape[f].known) MakeShape(rows, f);
+  return &rows->shape[f];
 }
 
 /*@

@@ -365,17 +365,21 @@ void FitDerivativesFirst(int dim, int n, const double *N, const FitDerivatives *
 @*/
 void FitDerivativesSlave(const FitFactors *factors, int component, double *row)
 {
-  const int     dim = factors->dim, terms = FitTerms(dim, factors->degree), stride = factors->stride;
-  const double *K = &factors->rows[component * stride], *J = K + terms;
+  const int     dim = factors->dim, terms = FitTerms(dim, factors->degree), vectors = factors->stride / LANES;
+  const double *K                       = &factors->rows[component * factors->stride];
+  Lanes         turned[FACTORS / LANES] = {{0}}; /* J, then K */
 
+  memcpy(turned, K + terms, terms * sizeof(double));
+  memcpy((double *)turned + terms, K, terms * sizeof(double));
   for (int i = 0; i < (1 + factors->n) * dim; i++) {
     const int point = i / dim, high = component > i % dim ? component : i % dim,
-              low       = component > i % dim ? i % dim : component;
-    const double *other = &factors->rows[(long)i * stride],
-                 own    = factors->hessians[(long)point * factors->hessianstride + high * (high + 1) / 2 + low];
+              low        = component > i % dim ? i % dim : component;
+    const Lanes *other   = (const Lanes *)factors->rows + (long)i * vectors;
+    const double own     = factors->hessians[(long)point * factors->hessianstride + high * (high + 1) / 2 + low];
+    Lanes        product = Broadcast(0);
 
-    row[i] = point ? -own : own;
-    for (int k = 0; k < terms; k++) row[i] += K[k] * other[terms + k] + J[k] * other[k];
+    for (int v = 0; v < vectors; v++) product += turned[v] * other[v];
+    row[i] = (point ? -own : own) + LanesSum(product);
   }
 }
 

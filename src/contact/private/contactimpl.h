@@ -245,7 +245,8 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *, const Smoother *, Neigh
                                     SmootherWant, PetscBool *found);
 PetscErrorCode ContactPointToNodes(const ContactPair *, NeighbourLists, PetscInt q);
 PetscErrorCode ContactSecondBegin(const ContactPair *, PetscInt nodes, PetscInt points);
-PetscErrorCode ContactSecondAdd(const ContactPair *, PetscInt q, PetscReal factor, double (*own)[FIT_DERIVATIVES_OWN]);
+PetscErrorCode ContactSecondAdd(const ContactPair *, PetscInt q, PetscReal factor, double (*own)[FIT_DERIVATIVES_OWN],
+                                PetscBool *found);
 void           ContactSecondEnd(const ContactPair *);
 PetscErrorCode ContactPointsToNodes(const ContactPair *, PetscInt first, PetscInt end);
 PetscErrorCode ContactOwnToNodes(const ContactPair *, PetscInt nodes, PetscInt first, PetscInt end,
@@ -313,8 +314,14 @@ PetscErrorCode FrictionTermForces(const ContactPair *, PetscInt term, const Pets
 PetscErrorCode FrictionStepTerm(const ContactPair *, PetscInt term, PetscReal t, ActiveSetFriction *,
                                 PetscReal tangent[2][3]);
 /* frictiontangent.c */
+PetscErrorCode FrictionTurnsKeep(const ContactPair *, PetscInt q);
 PetscErrorCode FrictionTermNodes(const ContactPair *, PetscInt term);
+PetscErrorCode FrictionFaceNodes(const ContactPair *, PetscInt face, PetscInt n, const PetscInt points[]);
+PetscErrorCode FrictionTangentBegin(const ContactPair *);
+PetscErrorCode FrictionTermPrepare(const ContactPair *, PetscInt term);
 PetscErrorCode FrictionTermBlock(const ContactPair *, BlockMatrix, int list, PetscInt term, PetscReal t, PetscInt n,
+                                 const PetscInt nodes[]);
+PetscErrorCode FrictionFaceBlock(const ContactPair *, BlockMatrix, int list, PetscInt face, PetscInt n,
                                  const PetscInt nodes[]);
 PetscErrorCode FrictionTermAlong(const ContactPair *, PetscInt term, const FrictionTraction *, const PetscReal *motion,
                                  PetscReal change[3]);

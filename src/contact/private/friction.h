@@ -33,6 +33,10 @@ typedef struct {
      last projection. first: -1: not known yet. */
   PetscInt  *first, turns_used, turns_room;
   PetscReal *turns;
+  /* Of each slave point, while a tangent is made of terms that share their points: whether a term takes it, and the
+     sum of its forces in all terms. */
+  PetscBool *taken;
+  PetscReal *held; /* 3 */
   /* Of each term, since the step began. */
   PetscBool *anchored;  /* some of its points have anchors */
   PetscReal *kept;      /* 2 lengths */
