@@ -28,11 +28,15 @@
 #define FIT_LINEAR_MISSES 1e-3
 
 /* The ladder of fall-backs: wider supports, then lower degrees, until every guard holds. Degree 0 means the degree
-   of the scene. */
+   of the scene. Between rungs of one degree the support is the least that holds. */
 static const struct {
   int    degree;
   double widen;
 } Ladder[RUNGS] = {{0, 1}, {0, 1.15}, {0, 1.32}, {0, 1.52}, {0, 1.75}, {2, 1}, {2, 1.32}, {1, 1}};
+
+/* To this part of itself the least support is found on which a fit holds: gaps follow it to rounding, which friction
+   at rest asks for. */
+#define FIT_NARROW 1e-14
 
 /*@
   FitDegreeCode - returns the code by which the fit's kernel knows a degree: FIT_REVOLVED is added for fits of
@@ -312,18 +316,18 @@ static PetscBool FitMisses(const FitFoot *at, const FitProblem *problem, const F
   return (PetscBool)(result->missed > part * spacing);
 }
 
-/* Tries one rung of the ladder at a foot and writes points, frame and metric into fit and problem. *holds is true if
-   every guard holds. Quadrature points come in clusters, so that their number tells nothing; the pivot is the guard
-   for them. */
-static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result,
-                              PetscBool *holds)
+/* Tries one rung of the ladder at a foot, with a support that is widened by a factor, and writes points, frame and
+   metric into fit and problem. *holds is true if every guard holds. Quadrature points come in clusters, so that their
+   number tells nothing; the pivot is the guard for them. */
+static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, PetscReal widen, FitProblem *problem,
+                              FitResult *result, PetscBool *holds)
 {
   const FitSettings *settings = fit->s->fit;
   const int          dim = fit->lists->dim, lower = Ladder[rung].degree,
             degree            = FitDegreeCode(settings, lower ? PetscMin(lower, settings->degree) : settings->degree);
   const int            wanted = settings->integral ? FitTerms(dim, degree) : FitPointsWanted(dim, degree);
   double               covariance[3][3], area;
-  const PetscReal     *rho2, support = settings->support * Ladder[rung].widen;
+  const PetscReal     *rho2, support = settings->support * widen;
   const PetscBool      upright = (PetscBool)(settings->global_frame || at->upright);
   NeighbourhoodSupport space;
   FaceRow              row = {.share = 0};
@@ -367,8 +371,29 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Narrows a fit that holds on a rung, but not with the support of the rung before, to the least support that holds.
+   Fits then do not jump where a guard begins or ceases to hold, and rounding does not choose between them. */
+static PetscErrorCode FitNarrow(FitSupport *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result)
+{
+  PetscReal low = Ladder[rung - 1].widen, high = Ladder[rung].widen;
+  PetscBool holds;
+
+  PetscFunctionBeginUser;
+  while (high - low > FIT_NARROW * high) {
+    const PetscReal middle = (low + high) / 2;
+
+    PetscCall(FitRung(fit, at, rung, middle, problem, result, &holds));
+    if (holds)
+      high = middle;
+    else
+      low = middle;
+  }
+  PetscCall(FitRung(fit, at, rung, high, problem, result, &holds));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  FitSupportClimb - goes down the ladder of fall-backs until a fit holds.
+  FitSupportClimb - goes down the ladder of fall-backs until a fit holds, with the least support of its degree.
 
   Not collective
 
@@ -390,8 +415,10 @@ PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, int first, Fi
   PetscFunctionBeginUser;
   *rung = RUNG_FACET;
   for (int r = first; r < RUNGS && !holds; r++) {
-    PetscCall(FitRung(fit, at, r, problem, result, &holds));
+    PetscCall(FitRung(fit, at, r, Ladder[r].widen, problem, result, &holds));
     if (holds) *rung = r;
+    if (holds && r > first && Ladder[r - 1].degree == Ladder[r].degree)
+      PetscCall(FitNarrow(fit, at, r, problem, result));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
