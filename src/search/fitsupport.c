@@ -28,7 +28,8 @@
 #define FIT_LINEAR_MISSES 1e-3
 
 /* The ladder of fall-backs: wider supports, then lower degrees, until every guard holds. Degree 0 means the degree
-   of the scene. Between rungs of one degree the support is the least that holds. */
+   of the scene. Between rungs of one degree the support of nodes is the least that
+   holds. */
 static const struct {
   int    degree;
   double widen;
@@ -371,8 +372,10 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Narrows a fit that holds on a rung, but not with the support of the rung before, to the least support that holds.
-   Fits then do not jump where a guard begins or ceases to hold, and rounding does not choose between them. */
+/* Narrows a fit through nodes that holds on a rung, but not with the support of the rung before, to the least support
+   that holds. Fits then do not jump where a guard begins or ceases to hold, and rounding does not choose between them.
+   Not so fits through quadrature points: the guard for them is the pivot, at which the least support would leave each
+   of them, and a punch that is drawn over a slab then loses its way. */
 static PetscErrorCode FitNarrow(FitSupport *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result)
 {
   PetscReal low = Ladder[rung - 1].widen, high = Ladder[rung].widen;
@@ -393,7 +396,8 @@ static PetscErrorCode FitNarrow(FitSupport *fit, const FitFoot *at, int rung, Fi
 }
 
 /*@
-  FitSupportClimb - goes down the ladder of fall-backs until a fit holds, with the least support of its degree.
+  FitSupportClimb - goes down the ladder of fall-backs until a fit holds. Fits through nodes have the least support
+  of their degree that holds.
 
   Not collective
 
@@ -417,7 +421,7 @@ PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, int first, Fi
   for (int r = first; r < RUNGS && !holds; r++) {
     PetscCall(FitRung(fit, at, r, Ladder[r].widen, problem, result, &holds));
     if (holds) *rung = r;
-    if (holds && r > first && Ladder[r - 1].degree == Ladder[r].degree)
+    if (holds && !fit->s->fit->integral && r > first && Ladder[r - 1].degree == Ladder[r].degree)
       PetscCall(FitNarrow(fit, at, r, problem, result));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
