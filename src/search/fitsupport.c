@@ -28,8 +28,7 @@
 #define FIT_LINEAR_MISSES 1e-3
 
 /* The ladder of fall-backs: wider supports, then lower degrees, until every guard holds. Degree 0 means the degree
-   of the scene. Between rungs of one degree the support of nodes is the least that
-   holds. */
+   of the scene. */
 static const struct {
   int    degree;
   double widen;
@@ -372,32 +371,8 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Narrows a fit through nodes that holds on a rung, but not with the support of the rung before, to the least support
-   that holds. Fits then do not jump where a guard begins or ceases to hold, and rounding does not choose between them.
-   Not so fits through quadrature points: the guard for them is the pivot, at which the least support would leave each
-   of them, and a punch that is drawn over a slab then loses its way. */
-static PetscErrorCode FitNarrow(FitSupport *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result)
-{
-  PetscReal low = Ladder[rung - 1].widen, high = Ladder[rung].widen;
-  PetscBool holds;
-
-  PetscFunctionBeginUser;
-  while (high - low > FIT_NARROW * high) {
-    const PetscReal middle = (low + high) / 2;
-
-    PetscCall(FitRung(fit, at, rung, middle, problem, result, &holds));
-    if (holds)
-      high = middle;
-    else
-      low = middle;
-  }
-  PetscCall(FitRung(fit, at, rung, high, problem, result, &holds));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
-  FitSupportClimb - goes down the ladder of fall-backs until a fit holds. Fits through nodes have the least support
-  of their degree that holds.
+  FitSupportClimb - goes down the ladder of fall-backs until a fit holds.
 
   Not collective
 
@@ -421,8 +396,6 @@ PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, int first, Fi
   for (int r = first; r < RUNGS && !holds; r++) {
     PetscCall(FitRung(fit, at, r, Ladder[r].widen, problem, result, &holds));
     if (holds) *rung = r;
-    if (holds && !fit->s->fit->integral && r > first && Ladder[r - 1].degree == Ladder[r].degree)
-      PetscCall(FitNarrow(fit, at, r, problem, result));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -463,6 +436,35 @@ static void KeepFrame(const FitSupport *fit, PetscInt q, FitFoot *at)
   for (int d = 0; d < fit->lists->dim; d++) at->outward[d] = kept[d];
 }
 
+/* Narrows the fit of a slave point that holds on a rung, but not with the support of the rung before, to the least
+   support that holds, if it is one through nodes. Such fits then do not jump where a guard begins or ceases to hold,
+   and rounding does not choose between them. Not so fits through quadrature points and those that make their offsets:
+   the guard for the former is the pivot, at which the least support would leave each of them, and with either a punch
+   that is drawn over a slab lost its way. */
+static PetscErrorCode FitNarrow(FitSupport *fit, const FitFoot *at, int first, int rung, FitProblem *problem,
+                                FitResult *result)
+{
+  PetscReal low, high;
+  PetscBool holds;
+
+  PetscFunctionBeginUser;
+  if (fit->s->fit->integral || rung <= first || Ladder[rung - 1].degree != Ladder[rung].degree)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  low  = Ladder[rung - 1].widen;
+  high = Ladder[rung].widen;
+  while (high - low > FIT_NARROW * high) {
+    const PetscReal middle = (low + high) / 2;
+
+    PetscCall(FitRung(fit, at, rung, middle, problem, result, &holds));
+    if (holds)
+      high = middle;
+    else
+      low = middle;
+  }
+  PetscCall(FitRung(fit, at, rung, high, problem, result, &holds));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FitSupportSlave - fits the surface for one slave point and writes a fit that holds into its list.
 
@@ -485,6 +487,7 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   NeighbourLists   lists = fit->lists;
   const Candidate *best  = &look->candidates[look->best];
   FitFoot          at    = {.facet = look->best, .xi = {look->foot.xi[0], look->foot.xi[1]}, .past = FootPast(look)};
+  const int        rung  = fit->s->first_rung ? fit->s->first_rung[q] : RUNG_PLAIN;
   FitProblem       problem;
   FitResult        result;
 
@@ -498,8 +501,8 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   }
   KeepFrame(fit, q, &at);
   TimingBegin(TIMING_FIT); /* these two readings of the clock cost 0.1 % of a ladder */
-  PetscCall(FitSupportClimb(fit, &at, fit->s->first_rung ? fit->s->first_rung[q] : RUNG_PLAIN, &problem, &result,
-                            &lists->rung[q]));
+  PetscCall(FitSupportClimb(fit, &at, rung, &problem, &result, &lists->rung[q]));
+  PetscCall(FitNarrow(fit, &at, rung, lists->rung[q], &problem, &result));
   TimingEnd(TIMING_FIT);
   if (look->listed && lists->rung[q] != RUNG_FACET && FitStrays(look, &result)) lists->rung[q] = RUNG_FACET;
   if (lists->rung[q] == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
