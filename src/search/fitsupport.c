@@ -438,9 +438,9 @@ static void KeepFrame(const FitSupport *fit, PetscInt q, FitFoot *at)
 
 /* Narrows the fit of a slave point that holds on a rung, but not with the support of the rung before, to the least
    support that holds, if it is one through nodes. Such fits then do not jump where a guard begins or ceases to hold,
-   and rounding does not choose between them. Not so fits through quadrature points and those that make their offsets:
-   the guard for the former is the pivot, at which the least support would leave each of them, and with either a punch
-   that is drawn over a slab lost its way. */
+   and rounding does not choose between them. Not so fits through quadrature points, whose guard is the pivot: the least
+   support would leave each of them at it. Nor those that make offsets: with them a punch that is drawn over a slab lost
+   its way. */
 static PetscErrorCode FitNarrow(FitSupport *fit, const FitFoot *at, int first, int rung, FitProblem *problem,
                                 FitResult *result)
 {
