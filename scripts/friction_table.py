@@ -1,8 +1,8 @@
 """Benchmarks of friction against closed forms and published figures: node to surface and surface to surface, the smooth
 master and its facets. Runs the scenes, leaves one record per figure and prints the table; --print tables an existing
 record.
-    python scripts/friction_table.py [--burnish BINARY] [--record FILE] [--ranks N] [--print] [CASE ...]
-A case that is named replaces its rows in the record. Deviations are in per cent of the reference, those of tractions in
+    python scripts/friction_table.py [--burnish BINARY] [--record FILE] [--ranks N] [--mesh NAME]... [--print] [CASE ...]
+A case that is named replaces its rows in the record, with --mesh those of these meshes only. Deviations are in per cent of the reference, those of tractions in
 per cent of what BENCHMARKS says. Nodal tractions are forces over tributary areas. So they are compared with means of
 the closed form over the nodes' hat functions."""
 import json
@@ -461,8 +461,12 @@ def solve(args, case, mesh, argument, overrides, formulation, smoother):
 
 
 def run(args, case):
+    """Rows of meshes that are not asked for stay as they are, and where they are."""
     records = []
     for mesh, argument, overrides, formulations in BENCHMARKS[case][2]:
+        if args.mesh and mesh not in args.mesh:
+            records += [row for row in read_records(args.record) if (row["case"], row["mesh"]) == (case, mesh)]
+            continue
         for formulation, smoother in formulations:
             records += solve(args, case, mesh, argument, overrides, formulation, smoother)
     replace_records(args.record, COLUMNS, case, records)
@@ -488,6 +492,7 @@ def print_table(records):
 def main():
     parser = table_parser(__doc__, "friction")
     parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--mesh", action="append", metavar="NAME", help="only this one of a case; repeatable")
     parser.add_argument("cases", nargs="*", metavar="CASE", choices=[[], *BENCHMARKS], default=[])
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)

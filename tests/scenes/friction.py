@@ -2,10 +2,14 @@
 a belt on a drum has the forces of Euler and Eytelwein, and a turned pair keeps its tractions."""
 import itertools
 import math
+import sys
 
 import numpy
 
 from harness import Check, arguments, run, SCENES
+
+sys.path.insert(0, str(SCENES.parent.parent / "scripts"))
+import friction_solver_table
 
 RUNS = SCENES.parent.parent / "runs"
 MU = 0.3
@@ -357,33 +361,23 @@ def ironing():
 
 def die():
     """Forces of a die that is drawn over a block, at steps of 3, 1, 1/2 and 1/5 of the block's faces. Over the mesh they
-    swing by less than 0.3 %, while facets let them swing by several per cent. runs/records/friction_solver.csv has the
-    figures, with those of the paper's scenes."""
-    press, slide = 3, 9
+    swing by less than 0.3 %, while facets let them swing by several per cent. The record of
+    scripts/friction_solver_table.py has the figures, with those of the paper's scenes."""
     for mu in (0.3, 0.8):
         means = []
         for smoother, step in (("diffuse", 3), ("diffuse", 1), ("diffuse", 0.5), ("diffuse", 0.2), ("facet", 0.2)):
-            steps = round(slide / step)
-            start = press / (press + steps)
-            finished = run(args, SCENES / "die.yaml", out=f"{smoother}_{mu}_{step}", overrides=[
-                f"loads.0.history=[[0, 0], [{start}, 1], [1, 1]]", f"loads.1.history=[[0, 0], [{start}, 0], [1, 1]]",
-                f"stepping={{control: fixed, initial: {1 / (press + steps)}, at: [{start}]}}",
-                f"contact.0.friction.mu={mu}", f"contact.0.smoother={smoother}",
-                f"contact.0.offset={'live' if smoother == 'diffuse' else 'held'}"
-            ])
-            rows = finished.steps()[press:]
-            iterations = numpy.mean([row["newton"] for row in rows])
-            along = [row for row in rows if row["t"] > start + 0.3 * (1 - start)]
-            forces = numpy.array([[-row["force_y"], row["force_x"]] for row in along])
-            place = numpy.arange(len(forces))
-            trend = numpy.array([numpy.polyval(numpy.polyfit(place, forces[:, k], 1), place) for k in (0, 1)]).T
-            swing = 100 * numpy.ptp(forces - trend, axis=0) / forces.mean(axis=0)
-            print(f"     mu {mu}, {smoother}, step {step}: V {forces[:, 0].mean():.4f}, H {forces[:, 1].mean():.4f}, "
+            finished = run(args, friction_solver_table.DIE, out=f"{smoother}_{mu}_{step}",
+                           overrides=friction_solver_table.die_overrides(mu, step, "surface_to_surface", smoother))
+            rows = finished.steps()
+            forces, swing, iterations = friction_solver_table.die_figures(
+                {name: [row[name] for row in rows]
+                 for name in ("t", "newton", "force_x", "force_y")}, step)
+            print(f"     mu {mu}, {smoother}, step {step}: V {forces[0]:.4f}, H {forces[1]:.4f}, "
                   f"swing {swing[0]:.3f} %, {swing[1]:.3f} %, {iterations:.2f} iterations per step")
             check.holds(f"mu {mu}, {smoother}, step {step}: no failed step", finished.summary()["steps_failed"] == 0)
             if smoother == "facet":
                 continue
-            means.append(forces.mean(axis=0))
+            means.append(forces)
             check.holds(f"mu {mu}, step {step}: swing", swing.max() < 0.3,
                         f"{swing.max():.3f} %")
             if step == 0.5:
