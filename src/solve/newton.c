@@ -263,7 +263,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
     model->work->nearly = it;
   if (model->work->loosely) allowed = PetscMax(NEWTON_LOOSELY * scale, tolerance);
   if (model->work->soft) allowed = PetscMax(NEWTON_SOFT_ENOUGH * scale, round_off);
-  if (fnorm <= PetscMax(NEWTON_LOOSELY * scale, allowed) && force != 0) PetscCall(ModelJudgeHeld(model, force, &holds));
+  if (fnorm <= PetscMax(NEWTON_LOOSELY * scale, allowed) && force != 0) PetscCall(ModelJudgeHeld(model, &holds));
   if (!holds) fnorm = PetscSqrtReal(PetscSqr(fnorm) + PetscSqr(force));
   model->work->balanced = holds && fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
   if (!it && model->work->start == 0 && !model->work->soft) model->work->start = fnorm;
