@@ -197,7 +197,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   model->problem->inverted = -1;
   work->start              = 0;
   work->strayed            = PETSC_FALSE;
-  work->hold.wanted        = work->hold.accepted;
+  work->hold.wanted        = PetscMin(1, work->hold.accepted);
   work->hold.n             = 0;
   work->hold.known         = 0;
   work->hold.ready         = PETSC_FALSE;

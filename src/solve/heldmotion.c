@@ -193,7 +193,7 @@ PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y, PetscBool near)
   HeldMotion *held = &model->work->hold;
   PetscReal   before, turn, stiffness;
   PetscBool   direct, bad, far, unstable = PETSC_FALSE;
-  int         first, i;
+  int         first, most, i;
   Vec         r;
 
   PetscFunctionBeginUser;
@@ -208,8 +208,9 @@ PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y, PetscBool near)
   PetscCall(VecCopy(y, r));
   PetscCall(ModelHeldTakeOut(model, r));
   PetscCall(StepIsBad(model, x, F, r, near, &before, &bad));
-  far = (PetscBool)(before > MODEL_FARTHEST);
-  for (i = first; bad && i < HELD_MOST && held->n == i; i++) {
+  far  = (PetscBool)(before > MODEL_FARTHEST);
+  most = far ? (held->futile ? first : HELD_MOST) : PetscMin(first + 1, HELD_MOST);
+  for (i = first; bad && i < most && held->n == i; i++) {
     PetscCall(ModelHeldAdd(model, r, &stiffness));
     unstable = (PetscBool)(unstable || stiffness < 0);
     PetscCall(VecCopy(y, r));
@@ -217,10 +218,11 @@ PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y, PetscBool near)
     PetscCall(StepIsBad(model, x, F, r, near, &turn, &bad));
   }
   PetscCall(VecDestroy(&r));
-  if (held->n > first)
+  if (bad || held->n > first)
     PetscCall(PetscInfo(model->snes, "of a step that turns cells by %g, %d soft motions are held besides %d: %s\n",
                         (double)before, held->n - first, first, bad ? "that does not mend it" : "the rest is right"));
   if (bad || !(far || unstable)) held->n = first;
+  held->futile = (PetscBool)(held->futile || (bad && far));
   held->wanted = held->known = held->n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -451,6 +451,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   model->work->relaxed.turns    = PETSC_FALSE;
   model->work->relaxed.farthest = MODEL_FARTHEST;
   model->work->hold.anew        = PETSC_TRUE;
+  model->work->hold.futile      = PETSC_FALSE;
   PetscCall(PetscArrayzero(model->work->cuts, CUT_CAUSES));
   PetscCall(ModelIterate(model));
   PetscCall(SNESGetConvergedReason(model->snes, &reason));

@@ -53,7 +53,7 @@ typedef struct {
 
 /* At most so many soft motions are held at a time. A ring rolls in waves around it, and its mesh knows as many of them
    as it has elements there, of which the first dozens are soft. Each takes a solve with the factor in an iteration. */
-enum { HELD_MOST = 48 };
+enum { HELD_MOST = 24 };
 
 /* Soft motions that are held, see ModelHoldMotion() */
 typedef struct {
@@ -63,6 +63,7 @@ typedef struct {
   int       known;                 /* how many b are motions of this load step */
   PetscBool released;              /* in this load step they take too much force */
   PetscBool anew;                  /* they are found anew with the next tangent */
+  PetscBool futile;                /* in this solve a step went too far, however many motions were held */
   PetscBool ready;                 /* the n motions are those of the step at hand */
   Vec       b[HELD_MOST];          /* displacements of the motions, orthogonal to each other, of length 1 */
   Vec       w[HELD_MOST];          /* answers to the forces b with the present tangent, with the motions before held */
