@@ -205,7 +205,6 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->hold.moves         = PETSC_FALSE;
   work->hold.times         = 0;
   work->hold.streak        = 0;
-  work->hold.downhill      = PETSC_FALSE;
   work->cycling            = PETSC_FALSE;
   work->cycles             = 0;
   work->augmented          = PETSC_FALSE;

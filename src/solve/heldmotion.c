@@ -10,9 +10,6 @@
    may be as much longer if the force keeps its sign, and is as much shorter if it has changed. */
 #define HELD_FIRST 0.25
 #define HELD_GROW  2.0
-/* A move to a saddle comes nearer if the coefficient of friction is then below this part of what it was. If one does
-   not, the next moves of the load step lead downhill. */
-#define HELD_NEARER 0.5
 /* Moves in a load step until the motion is released */
 enum { HELD_MOVES = 40 };
 
@@ -35,47 +32,25 @@ static PetscErrorCode TurnOf(Model model, Vec x, Vec y, PetscReal *turn)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newton's step z along the motions under the force that has held them, or, downhill, the one that goes the other way
-   along those whose stiffness is below 0. turn: of a cell. *saddle: there are some. */
-static PetscErrorCode Move(Model model, PetscBool downhill, Vec z, PetscReal *turn, PetscBool *saddle)
-{
-  const HeldMotion *held = &model->work->hold;
-  PetscReal         along;
-
-  PetscFunctionBeginUser;
-  *saddle = PETSC_FALSE;
-  PetscCall(VecZeroEntries(z));
-  for (int i = 0; i < held->n; i++) {
-    const PetscReal compliance = held->compliance[i];
-
-    PetscCall(VecDotRealPart(held->last, held->w[i], &along));
-    PetscCall(VecAXPY(z, along / (downhill ? PetscAbsReal(compliance) : compliance), held->w[i]));
-    *saddle = (PetscBool)(*saddle || compliance < 0);
-  }
-  PetscCall(TurnOf(model, model->x, z, turn));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Adds to the step y a part along the motions under the force that holds them. If the equilibrium along them is as near
-   as the motions may move, the step leads there, whether that is a minimum or a saddle, which the next errors of the
-   mesh may make a minimum. Else it leads downhill, as far as cells may turn. */
+/* Adds to the step y a part along the motions that goes down the force that holds them, as far as cells may turn. It is
+   Newton's step along them, but for those whose stiffness is below 0: along these it goes the other way. */
 static PetscErrorCode MoveOn(Model model, Vec y)
 {
   HeldMotion *held = &model->work->hold;
-  PetscReal   turn;
-  PetscBool   saddle;
+  PetscReal   along, turn;
   Vec         z;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(y, &z));
-  PetscCall(Move(model, PETSC_FALSE, z, &turn, &saddle));
-  if (getenv("SPEC")) { PetscPrintf(PETSC_COMM_WORLD,"MOVE newton %g saddle %d:",turn,saddle); for (int i=0;i<held->n;i++) { PetscReal al; VecDotRealPart(held->last,held->w[i],&al); PetscPrintf(PETSC_COMM_WORLD," %.2g/%.2g/%.1g",1/held->compliance[i],held->force[i],al/held->compliance[i]);} PetscPrintf(PETSC_COMM_WORLD,"\n"); }
-  held->uphill = (PetscBool)(saddle && turn <= held->bound && !held->downhill);
-  if (saddle && !held->uphill) PetscCall(Move(model, PETSC_TRUE, z, &turn, &saddle));
+  PetscCall(VecZeroEntries(z));
+  for (int i = 0; i < held->n; i++) {
+    PetscCall(VecDotRealPart(held->last, held->w[i], &along));
+    PetscCall(VecAXPY(z, along / PetscAbsReal(held->compliance[i]), held->w[i]));
+  }
+  PetscCall(TurnOf(model, model->x, z, &turn));
   held->turn = PetscMin(turn, held->bound);
   PetscCall(VecAXPY(y, turn > 0 ? held->turn / turn : 0, z));
-  PetscCall(PetscInfo(model->snes, "the motion moves on%s: turns cells by %g of %g\n",
-                      held->uphill ? " to a saddle" : "", (double)held->turn, (double)turn));
+  PetscCall(PetscInfo(model->snes, "the motion moves on: turns cells by %g of %g\n", (double)held->turn, (double)turn));
   PetscCall(VecDestroy(&z));
   held->moves  = PETSC_FALSE;
   held->moving = PETSC_TRUE;
@@ -148,21 +123,58 @@ PetscBool ModelMayRoll(Model model)
                      !ContactHasFriction(model->contact));
 }
 
-/* Says whether a step y is one that soft motions may have spoilt: it turns a cell too far, or leads uphill away from an
-   equilibrium. turn: of a cell */
-static PetscErrorCode StepIsBad(Model model, Vec x, Vec F, Vec y, PetscBool near, PetscReal *turn, PetscBool *bad)
+/* Decides whether the softest motion is held, as it alone spoils the step y: the rest turns no cell too far. Either the
+   step does, or its stiffness is below 0 and the rest leads downhill. */
+static PetscErrorCode HoldSoftest(Model model, Vec x, Vec F, Vec y, PetscReal turn)
 {
-  PetscReal slope = 0;
-  Vec       z;
+  HeldMotion *held = &model->work->hold;
+  PetscReal   stiffness, part, rest, downhill;
+  PetscBool   spoils;
+  Vec         r;
 
   PetscFunctionBeginUser;
-  PetscCall(TurnOf(model, x, y, turn));
-  *bad = (PetscBool)(*turn > MODEL_FARTHEST);
-  if (*bad || near) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDuplicate(y, &z));
-  PetscCall(ModelStepSlope(model, F, y, z, &slope));
-  PetscCall(VecDestroy(&z));
-  *bad = (PetscBool)(slope < 0);
+  PetscCall(ModelHeldAdd(model, y, &stiffness, &part));
+  PetscCall(VecDuplicate(y, &r));
+  PetscCall(VecWAXPY(r, -part, held->b[0], y));
+  PetscCall(TurnOf(model, x, r, &rest));
+  PetscCall(VecDotRealPart(F, r, &downhill));
+  PetscCall(VecDestroy(&r));
+  /* pressures of nodes have slopes of their own */
+  spoils = (PetscBool)(rest <= MODEL_FARTHEST &&
+                       ((stiffness < 0 && (model->mesh->saddle || downhill >= 0)) || turn > MODEL_FARTHEST));
+  if (!spoils) held->n = 0;
+  held->wanted = held->known = held->n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Holds more motions, always the softest of those that are left, until the rest of the step y turns no cell too far. If
+   it still does with HELD_MOST of them, they are not what spoils the step, and nothing changes. */
+static PetscErrorCode HoldMore(Model model, Vec x, Vec y)
+{
+  HeldMotion *held  = &model->work->hold;
+  const int   first = held->n;
+  PetscReal   before, turn, stiffness, part;
+  Vec         r;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(y, &r));
+  PetscCall(VecCopy(y, r));
+  PetscCall(ModelHeldTakeOut(model, r));
+  PetscCall(TurnOf(model, x, r, &before));
+  turn = before;
+  for (int i = first; turn > MODEL_FARTHEST && i < HELD_MOST && held->n == i; i++) {
+    PetscCall(ModelHeldAdd(model, r, &stiffness, &part));
+    PetscCall(VecCopy(y, r));
+    PetscCall(ModelHeldTakeOut(model, r));
+    PetscCall(TurnOf(model, x, r, &turn));
+  }
+  PetscCall(VecDestroy(&r));
+  if (held->n > first)
+    PetscCall(PetscInfo(model->snes, "with %d soft motions held besides %d a step turns cells by %g instead of %g\n",
+                        held->n - first, first, (double)turn, (double)before));
+  held->futile = (PetscBool)(turn > MODEL_FARTHEST);
+  if (held->futile) held->n = first;
+  held->wanted = held->known = held->n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -182,48 +194,34 @@ static PetscErrorCode StepIsBad(Model model, Vec x, Vec F, Vec y, PetscBool near
   Rubber that can roll along walls without friction has motions that are softer than all others by orders of magnitude:
   one in the plane, and in space as many as sections of the body can roll on their own, in waves along it. What drives
   them is of the order of the errors of the mesh, and so is their stiffness, which changes its sign with each node that
-  passes an edge. Newton's steps along them are arbitrary. Where a step goes too far or the tangent is indefinite, the
-  softest motion is held, then the softest of what is left, and so on, until the rest of the step is neither: the rest
-  is solved for as if the body could not go along them. If that comes to no end, it is not these motions that do it. What
-  it takes is a force. It stays if next to no friction would hold as much, else the motions move on down that force, see
-  ModelJudgeHeld(). This needs a factor.
+  passes an edge. Newton's steps along them are arbitrary. Where a step goes too far or the tangent is indefinite, and
+it is the softest motion that does it, that is held: the rest is solved for as if the body could not go along it. Where
+  in space the rest still goes too far, so are further ones, until it does not. What that takes is a force. It stays if
+  next to no friction would hold as much, else the motions move on down that force, see ModelJudgeHeld(). This needs a
+  factor.
 @*/
 PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y, PetscBool near)
 {
   HeldMotion *held = &model->work->hold;
-  PetscReal   before, turn, stiffness;
-  PetscBool   direct, bad, far, unstable = PETSC_FALSE;
-  int         first, most, i;
-  Vec         r;
+  PetscReal   turn, slope;
+  PetscBool   direct;
 
   PetscFunctionBeginUser;
-  if (held->released) PetscFunctionReturn(PETSC_SUCCESS);
+  if (held->released || (held->wanted && model->mesh->dim < 3)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LinearSolverDirect(model->work->solver, &direct));
   if (!direct) PetscFunctionReturn(PETSC_SUCCESS);
-  held->n = 0;
-  if (held->wanted) PetscCall(ModelHeldRefresh(model, y));
-  held->ready = PETSC_TRUE;
-  first       = held->n;
-  PetscCall(VecDuplicate(y, &r));
-  PetscCall(VecCopy(y, r));
-  PetscCall(ModelHeldTakeOut(model, r));
-  PetscCall(StepIsBad(model, x, F, r, near, &before, &bad));
-  far  = (PetscBool)(before > MODEL_FARTHEST);
-  most = far ? (held->futile ? first : HELD_MOST) : PetscMin(first + 1, HELD_MOST);
-  for (i = first; bad && i < most && held->n == i; i++) {
-    PetscCall(ModelHeldAdd(model, r, &stiffness));
-    unstable = (PetscBool)(unstable || stiffness < 0);
-    PetscCall(VecCopy(y, r));
-    PetscCall(ModelHeldTakeOut(model, r));
-    PetscCall(StepIsBad(model, x, F, r, near, &turn, &bad));
+  if (held->wanted) {
+    PetscCall(ModelHeldRefresh(model, y));
+    held->ready = PETSC_TRUE;
+  } else {
+    held->n = 0;
+    PetscCall(TurnOf(model, x, y, &turn));
+    PetscCall(VecDotRealPart(F, y, &slope));
+    if (turn <= MODEL_FARTHEST && (near || slope >= 0)) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(HoldSoftest(model, x, F, y, turn));
+    held->ready = PETSC_TRUE;
   }
-  PetscCall(VecDestroy(&r));
-  if (bad || held->n > first)
-    PetscCall(PetscInfo(model->snes, "of a step that turns cells by %g, %d soft motions are held besides %d: %s\n",
-                        (double)before, held->n - first, first, bad ? "that does not mend it" : "the rest is right"));
-  if (bad || !(far || unstable)) held->n = first;
-  held->futile = (PetscBool)(held->futile || (bad && far));
-  held->wanted = held->known = held->n;
+  if (model->mesh->dim == 3 && !held->futile) PetscCall(HoldMore(model, x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -259,7 +257,7 @@ PetscErrorCode ModelHeldResidual(Model model, Vec F, PetscReal *norm, PetscReal 
 }
 
 /* Bounds the next move. It may be longer than the last one if the force has not turned since, and is shorter if it
-   has. */
+   has. Where the force was small enough in between, its direction says nothing of the last move. */
 static PetscErrorCode BoundMove(HeldMotion *held)
 {
   PetscReal along = 0;
@@ -269,13 +267,14 @@ static PetscErrorCode BoundMove(HeldMotion *held)
   PetscCall(VecDuplicate(held->b[0], &force));
   PetscCall(VecZeroEntries(force));
   for (int i = 0; i < held->known; i++) PetscCall(VecAXPY(force, held->force[i], held->b[i]));
-  if (held->streak > 1) PetscCall(VecDotRealPart(force, held->last, &along));
-  if (held->streak == 1)
+  if (held->times > 1) PetscCall(VecDotRealPart(force, held->last, &along));
+  if (held->times == 1)
     held->bound = HELD_FIRST * MODEL_FARTHEST;
   else if (along > 0)
     held->bound = PetscMin(MODEL_FARTHEST, HELD_GROW * held->turn);
   else
     held->bound = held->turn / HELD_GROW;
+  if (held->streak == 1) held->bound = PetscMax(held->bound, HELD_FIRST * MODEL_FARTHEST);
   PetscCall(VecDestroy(&held->last));
   held->last = force;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -299,8 +298,7 @@ static PetscErrorCode BoundMove(HeldMotion *held)
 @*/
 PetscErrorCode ModelJudgeHeld(Model model, PetscBool *holds)
 {
-  HeldMotion     *held   = &model->work->hold;
-  const PetscReal before = held->friction;
+  HeldMotion *held = &model->work->hold;
 
   PetscFunctionBeginUser;
   *holds = PETSC_TRUE;
@@ -311,7 +309,6 @@ PetscErrorCode ModelJudgeHeld(Model model, PetscBool *holds)
                       (double)held->friction, *holds ? "" : ", too much"));
   held->streak = *holds ? 0 : held->streak + 1;
   if (*holds) PetscFunctionReturn(PETSC_SUCCESS);
-  if (held->streak > 1 && held->uphill && held->friction > HELD_NEARER * before) held->downhill = PETSC_TRUE;
   held->moves = (PetscBool)(++held->times <= HELD_MOVES);
   PetscCall(BoundMove(held));
   if (held->moves) PetscFunctionReturn(PETSC_SUCCESS);

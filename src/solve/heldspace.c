@@ -94,14 +94,14 @@ static PetscErrorCode Answer(Model model)
 + model - after a solve with the present tangent
 - start - any vector that has a part of the motion (length)
 
-  Output Parameter:
-. stiffness - of the tangent along it
+  Output Parameters:
++ stiffness - of the tangent along it
+- part      - of the motion in the vector (length)
 @*/
-PetscErrorCode ModelHeldAdd(Model model, Vec start, PetscReal *stiffness)
+PetscErrorCode ModelHeldAdd(Model model, Vec start, PetscReal *stiffness, PetscReal *part)
 {
   HeldMotion *held = &model->work->hold;
   const int   i    = held->n;
-  PetscReal   part;
   Vec         v;
 
   PetscFunctionBeginUser;
@@ -110,7 +110,7 @@ PetscErrorCode ModelHeldAdd(Model model, Vec start, PetscReal *stiffness)
     PetscCall(VecDuplicate(start, &held->w[i]));
   }
   PetscCall(VecDuplicate(start, &v));
-  PetscCall(ModelSoftMotion(model, start, v, stiffness, &part));
+  PetscCall(ModelSoftMotion(model, start, v, stiffness, part));
   PetscCall(ModelDropPressures(model, v, held->b[i]));
   PetscCall(VecDestroy(&v));
   PetscCall(Answer(model));
@@ -131,7 +131,7 @@ PetscErrorCode ModelHeldRefresh(Model model, Vec y)
 {
   HeldMotion *held  = &model->work->hold;
   const int   known = held->known;
-  PetscReal   stiffness;
+  PetscReal   stiffness, part;
   Vec         start;
 
   PetscFunctionBeginUser;
@@ -142,9 +142,9 @@ PetscErrorCode ModelHeldRefresh(Model model, Vec y)
       PetscCall(Answer(model));
       continue;
     }
-    PetscCall(VecCopy(i < known ? held->b[i] : y, start));
+    PetscCall(VecCopy(i > 0 && i < known ? held->b[i] : y, start));
     PetscCall(ModelHeldTakeOut(model, start));
-    PetscCall(ModelHeldAdd(model, start, &stiffness));
+    PetscCall(ModelHeldAdd(model, start, &stiffness, &part));
   }
   PetscCall(VecDestroy(&start));
   held->wanted = held->known = held->n;

@@ -103,11 +103,12 @@ void ModelChooseObjective(Model model, PetscReal residual, PetscReal slope)
 
 /* Computes the part z of Newton's step that mends the residuals F of pressures at nodes alone, and the slope of the
    energy along the rest of the step y. Collective. */
-static PetscErrorCode ModelSplitStep(Model model, Vec F, Vec y, Vec z, PetscReal *slope)
+static PetscErrorCode ModelSplitStep(Model model, SNES snes, Vec F, Vec y, Vec z, PetscReal *slope)
 {
   const Mesh     mesh = model->mesh;
   const PetscInt n    = mesh->n_nodes * mesh->dim;
   PetscReal     *f, all, mended;
+  KSP            ksp;
   Vec            rows;
 
   PetscFunctionBeginUser;
@@ -117,38 +118,14 @@ static PetscErrorCode ModelSplitStep(Model model, Vec F, Vec y, Vec z, PetscReal
   for (PetscInt i = 0; i < n; i++)
     if (!IsPressureNode(mesh, i / mesh->dim)) f[i] = 0;
   PetscCall(MeshCollectFree(mesh, f, rows));
-  PetscCall(ModelHeldSolve(model, rows, z));
+  PetscCall(SNESGetKSP(snes, &ksp));
+  PetscCall(KSPSolve(ksp, rows, z));
   PetscCall(VecAYPX(rows, -1, F)); /* the residuals of displacements */
   PetscCall(VecDotRealPart(rows, y, &all));
   PetscCall(VecDotRealPart(rows, z, &mended));
   *slope = all - mended;
   PetscCall(VecDestroy(&rows));
   PetscCall(PetscFree(f));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ModelStepSlope - finds the slope of the energy along a step. Where nodes have pressures, it is that along the part of
-  the step that keeps the volume.
-
-  Collective
-
-  Input Parameters:
-+ model - after a solve with the tangent at the step's start
-. F     - the residual there
-- y     - the step (length)
-
-  Output Parameters:
-+ z     - the part of the step that makes up for changes of the volume, where nodes have pressures
-- slope - work that the residual takes over the rest (energy)
-@*/
-PetscErrorCode ModelStepSlope(Model model, Vec F, Vec y, Vec z, PetscReal *slope)
-{
-  PetscFunctionBeginUser;
-  if (model->mesh->saddle)
-    PetscCall(ModelSplitStep(model, F, y, z, slope));
-  else
-    PetscCall(VecDotRealPart(F, y, slope));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -172,6 +149,8 @@ static PetscErrorCode ModelTurnSoft(Model model, Vec F, Vec y, PetscReal slope, 
   Vec       soft;
 
   PetscFunctionBeginUser;
+  *turned = PETSC_FALSE;
+  if (model->work->hold.wanted) PetscFunctionReturn(PETSC_SUCCESS); /* it is held */
   PetscCall(VecDuplicate(y, &soft));
   PetscCall(ModelSoftPart(model, y, soft, &stiffness));
   PetscCall(VecDotRealPart(F, soft, &along));
@@ -186,7 +165,7 @@ static PetscErrorCode ModelTurnSoft(Model model, Vec F, Vec y, PetscReal slope, 
    loads that follow the surface the work of the residual stands for the energy. Where nodes have pressures, the part of
    the step that makes up for changes of the volume stays as it is: turned round it would double them. Along the rest
    the linear problem keeps the volume, and its slope is that of the energy of displacements. */
-static PetscErrorCode ModelTurnStep(Model model, Vec F, Vec y, PetscReal slope)
+static PetscErrorCode ModelTurnStep(Model model, SNES snes, Vec F, Vec y, PetscReal slope)
 {
   PetscBool near = PETSC_FALSE, turned;
   PetscReal rest = slope;
@@ -197,7 +176,7 @@ static PetscErrorCode ModelTurnStep(Model model, Vec F, Vec y, PetscReal slope)
   PetscCall(ModelNearEquilibrium(model, F, &near));
   if (near && !model->work->relaxed.turns) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(y, &z));
-  PetscCall(ModelStepSlope(model, F, y, z, &rest));
+  if (model->mesh->saddle) PetscCall(ModelSplitStep(model, snes, F, y, z, &rest));
   turned = (PetscBool)(rest >= 0);
   if (!turned) PetscCall(ModelTurnSoft(model, F, y, rest, &turned));
   if (!turned && model->mesh->saddle) PetscCall(VecAXPY(y, -2, z));
@@ -294,7 +273,7 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
   if (model->contact && conservative) ModelChooseObjective(model, NAN, slope);
   if (model->work->objective != OBJECTIVE_ENERGY) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelHoldStep(model, snes, F, y, &slope));
-  PetscCall(ModelTurnStep(model, F, y, slope));
+  PetscCall(ModelTurnStep(model, snes, F, y, slope));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -73,8 +73,6 @@ typedef struct {
   PetscBool moving;                /* the step at hand is such a step */
   PetscInt  times;                 /* such steps in this load step */
   PetscInt  streak;                /* since the force was small enough */
-  PetscBool uphill;                /* the last of them led to a saddle */
-  PetscBool downhill;              /* one to a saddle came no nearer in this load step: the next ones lead downhill */
   Vec       last;                  /* the force that held them before the last of them */
   PetscReal bound;                 /* by which that may turn a cell */
   PetscReal turn;                  /* by which it turned one */
@@ -176,7 +174,7 @@ PetscErrorCode ModelJudgeHeld(Model, PetscBool *holds);
 PetscErrorCode ModelHeldDestroy(HeldMotion *);
 PetscErrorCode ModelHeldTakeOut(Model, Vec z);
 PetscErrorCode ModelHeldSolve(Model, Vec b, Vec z);
-PetscErrorCode ModelHeldAdd(Model, Vec start, PetscReal *stiffness);
+PetscErrorCode ModelHeldAdd(Model, Vec start, PetscReal *stiffness, PetscReal *part);
 PetscErrorCode ModelHeldRefresh(Model, Vec y);
 /* heldfriction.c */
 PetscErrorCode ModelHeldFriction(Model, PetscReal *coefficient);
@@ -190,7 +188,6 @@ PetscErrorCode ModelSearchSlope(Model, SNESLineSearch, PetscReal slope, PetscRea
 /* relaxedsearch.c */
 PetscErrorCode ModelSearchRelaxed(SNESLineSearch, void *model);
 /* linesearch.c */
-PetscErrorCode ModelStepSlope(Model, Vec F, Vec y, Vec z, PetscReal *slope);
 PetscErrorCode ModelCreateLineSearch(Model);
 void           ModelChooseObjective(Model, PetscReal residual, PetscReal slope);
 PetscErrorCode ModelLocateEdge(Model, PetscBool *found, ContactPlace *);
