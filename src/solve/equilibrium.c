@@ -721,6 +721,7 @@ static PetscErrorCode ModelEndSolve(Model model, SolveReport *report)
   PetscFunctionBeginUser;
   PetscCall(ModelJudgeTurn(model, report));
   report->cycles   = model->work->cycles;
+  report->motions  = model->work->hold.wanted;
   report->friction = model->work->hold.wanted ? model->work->hold.friction : 0;
   PetscCall(PetscStrncpy(report->cycle, model->work->cycle, sizeof(report->cycle)));
   if (report->result != SOLVE_CONVERGED) {

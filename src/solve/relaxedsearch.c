@@ -483,8 +483,8 @@ static PetscErrorCode TakeMove(const Search *s, PetscBool *taken)
     PetscCall(SNESGetFunctionDomainError(s->snes, &inverted));
     *taken = (PetscBool)(*taken || (anew && !inverted));
   }
-  if (!*taken) PetscFunctionReturn(PETSC_SUCCESS);
   work->hold.turn *= lambda;
+  if (!*taken) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->model->contact) PetscCall(ContactCycleStart(work->watch));
   work->relaxed.waits  = PETSC_FALSE;
   work->relaxed.linear = PETSC_TRUE;
