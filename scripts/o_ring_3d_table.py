@@ -59,12 +59,13 @@ parser.add_argument("--burnish", default=str(ROOT / "build/burnish"))
 parser.add_argument("--record", type=pathlib.Path, default=ROOT / "runs/records/o_ring_3d_pressure.csv")
 parser.add_argument("--nu", type=float, default=0.499)
 parser.add_argument("--limit", type=int, default=3600, help="seconds of one run")
+parser.add_argument("--squeeze", nargs="*", choices=list(SQUEEZES), default=list(SQUEEZES))
 parser.add_argument("--only", nargs="*", choices=list(ELEMENTS), default=list(ELEMENTS))
 args = parser.parse_args()
 with open(args.record, "w", newline="") as record:
     table = csv.DictWriter(record, COLUMNS, lineterminator="\n")
     table.writeheader()
-    for way in SQUEEZES:
+    for way in args.squeeze:
         for name in args.only:
             line = run(way, name)
             table.writerow(line)

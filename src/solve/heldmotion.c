@@ -256,6 +256,23 @@ PetscErrorCode ModelHeldResidual(Model model, Vec F, PetscReal *norm, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ModelReleaseHeld - releases the motions that are held, for the rest of the load step.
+
+  Not collective
+
+  Input Parameter:
+. model - the model
+@*/
+void ModelReleaseHeld(Model model)
+{
+  HeldMotion *held = &model->work->hold;
+
+  held->wanted = held->known = held->n = 0;
+  held->moving                         = PETSC_FALSE;
+  held->released                       = PETSC_TRUE;
+}
+
 /* Bounds the next move. It may be longer than the last one if the force has not turned since, and is shorter if it
    has. Where the force was small enough in between, its direction says nothing of the last move. */
 static PetscErrorCode BoundMove(HeldMotion *held)
@@ -312,7 +329,6 @@ PetscErrorCode ModelJudgeHeld(Model model, PetscBool *holds)
   held->moves = (PetscBool)(++held->times <= HELD_MOVES);
   PetscCall(BoundMove(held));
   if (held->moves) PetscFunctionReturn(PETSC_SUCCESS);
-  held->wanted = held->known = held->n = 0;
-  held->released                       = PETSC_TRUE;
+  ModelReleaseHeld(model);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -532,6 +532,7 @@ PetscErrorCode ModelSearchRelaxed(SNESLineSearch search, void *context)
   work->relaxed.linear = PETSC_FALSE;
   if (work->hold.wanted && work->hold.moving) PetscCall(TakeMove(&s, &taken));
   if (taken) PetscFunctionReturn(PETSC_SUCCESS);
+  if (work->hold.wanted && work->hold.moving) ModelReleaseHeld(s.model);
   if (lambda < 1) work->relaxed.waits = PETSC_FALSE;
   PetscCall(VecDotRealPart(s.F, s.y, &slope));
   if (!work->relaxed.waits && (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL || SearchJumps(&s))) {

@@ -170,6 +170,7 @@ PetscErrorCode ModelHoldMotion(Model, Vec x, Vec F, Vec y, PetscBool near);
 PetscBool      ModelMayRoll(Model);
 PetscErrorCode ModelHeldResidual(Model, Vec F, PetscReal *norm, PetscReal *force);
 PetscErrorCode ModelJudgeHeld(Model, PetscBool *holds);
+void           ModelReleaseHeld(Model);
 /* heldspace.c */
 PetscErrorCode ModelHeldDestroy(HeldMotion *);
 PetscErrorCode ModelHeldTakeOut(Model, Vec z);
