@@ -52,7 +52,9 @@ typedef struct {
 } RelaxedStep;
 
 /* At most so many soft motions are held at a time. A ring rolls in waves around it, and its mesh knows as many of them
-   as it has elements there, of which the first dozens are soft. Each takes a solve with the factor in an iteration. */
+   as it has elements there. Each takes a solve with the factor in an iteration; the bound keeps them cheap beside a
+   factor.
+ */
 enum { HELD_MOST = 24 };
 
 /* Soft motions that are held, see ModelHoldMotion() */
