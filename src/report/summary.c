@@ -161,6 +161,7 @@ static void AddSprings(cJSON *json, const RunFigures *figures)
   AddReal(map, "held_instability", way->unstable);
   cJSON_AddNumberToObject(map, "held_soft_steps", (double)way->held);
   AddReal(map, "held_soft_friction", way->friction);
+  cJSON_AddNumberToObject(map, "held_soft_motions", (double)way->motions);
   cJSON_AddNumberToObject(map, "relaxed", (double)way->relaxed);
   AddReal(map, "energy_taken", way->taken * figures->scene->thickness);
   AddReal(map, "largest_energy_share", way->left);

@@ -523,10 +523,9 @@ static void PrintFreeBodies(const RunFigures *figures)
       "         it does not stand there by itself: bodies that lie on each other would roll off. If nothing real holds "
       "them, such as friction on a flat or a guide, the answer is not theirs\n");
   if (report->held)
-    printf(
-      "held along a soft motion, as rolling, whose stiffness is that of the mesh: bodies that only contact holds, in "
-      "%lld steps, as a coefficient of friction of %.2g would (solver.hold_rolling)\n",
-      (long long)report->held, (double)report->friction);
+    printf("held along %s, as rolling, whose stiffness is that of the mesh: bodies that only contact holds, in "
+           "%lld steps, as a coefficient of friction of %.2g would (solver.hold_rolling)\n",
+           report->motions > 1 ? "soft motions" : "a soft motion", (long long)report->held, (double)report->friction);
   if (figures->free_bodies)
     printf("weak springs of free bodies: relaxed %lld times, hold %.2g of the forces at the end\n",
            (long long)report->relaxed, (double)report->share);

@@ -197,11 +197,14 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   model->problem->inverted = -1;
   work->start              = 0;
   work->strayed            = PETSC_FALSE;
-  work->hold.on            = work->hold.accepted;
+  work->hold.wanted        = PetscMin(1, work->hold.accepted);
+  work->hold.n             = 0;
+  work->hold.known         = 0;
+  work->hold.ready         = PETSC_FALSE;
   work->hold.released      = PETSC_FALSE;
-  work->hold.known         = PETSC_FALSE;
   work->hold.moves         = PETSC_FALSE;
   work->hold.times         = 0;
+  work->hold.streak        = 0;
   work->cycling            = PETSC_FALSE;
   work->cycles             = 0;
   work->augmented          = PETSC_FALSE;
@@ -718,7 +721,8 @@ static PetscErrorCode ModelEndSolve(Model model, SolveReport *report)
   PetscFunctionBeginUser;
   PetscCall(ModelJudgeTurn(model, report));
   report->cycles   = model->work->cycles;
-  report->friction = model->work->hold.on ? model->work->hold.friction : 0;
+  report->motions  = model->work->hold.wanted;
+  report->friction = model->work->hold.wanted ? model->work->hold.friction : 0;
   PetscCall(PetscStrncpy(report->cycle, model->work->cycle, sizeof(report->cycle)));
   if (report->result != SOLVE_CONVERGED) {
     PetscCall(ModelExplainFailure(model, report));

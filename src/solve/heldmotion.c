@@ -1,9 +1,9 @@
-/* A soft motion that is held, see ModelHoldMotion(). */
+/* Soft motions that are held, see ModelHoldMotion(). */
 #include "mesh/meshdofs.h"
 #include "mesh/pressurenodes.h"
 #include "modelimpl.h"
 
-/* What holds a motion may be what friction of this coefficient at the surfaces in contact would hold. The least that is
+/* What holds motions may be what friction of this coefficient at the surfaces in contact would hold. The least that is
    measured between lubricated solids is about as much; seals have 0.01 to 1. */
 #define HELD_FRICTION 1e-3
 /* What takes more than that moves on, at first so far that it turns cells by this part of MODEL_FARTHEST. The next move
@@ -12,43 +12,6 @@
 #define HELD_GROW  2.0
 /* Moves in a load step until the motion is released */
 enum { HELD_MOVES = 40 };
-
-/* Takes out of free displacements what they have along the motion, by a force on it. The result is what the tangent
-   gives for the body whose motion is held. */
-static PetscErrorCode TakeOut(const HeldMotion *held, Vec z)
-{
-  PetscReal along;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecDotRealPart(held->b, z, &along));
-  PetscCall(VecAXPY(z, -along / held->compliance, held->w));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Finds the soft motion of the present tangent and keeps it, with the direction that it had. start: any vector that has
-   a part of it. part: of the motion in that */
-static PetscErrorCode KeepMotion(Model model, Vec start, PetscReal *stiffness, PetscReal *part)
-{
-  HeldMotion *held  = &model->work->hold;
-  PetscReal   along = 1;
-  Vec         v;
-
-  PetscFunctionBeginUser;
-  if (!held->b) {
-    PetscCall(VecDuplicate(start, &held->b));
-    PetscCall(VecDuplicate(start, &held->w));
-  }
-  PetscCall(VecDuplicate(start, &v));
-  PetscCall(ModelSoftMotion(model, start, v, stiffness, part));
-  if (held->known) PetscCall(VecDotRealPart(v, held->b, &along));
-  if (along < 0) PetscCall(VecScale(v, -1));
-  if (along < 0) *part = -*part;
-  PetscCall(ModelDropPressures(model, v, held->b));
-  PetscCall(VecDestroy(&v));
-  held->known = PETSC_TRUE;
-  held->anew  = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* How far a step y from the iterate x turns a cell. */
 static PetscErrorCode TurnOf(Model model, Vec x, Vec y, PetscReal *turn)
@@ -69,18 +32,21 @@ static PetscErrorCode TurnOf(Model model, Vec x, Vec y, PetscReal *turn)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds to the step y a part along the motion that goes down the force that holds it, as far as cells may turn. */
+/* Adds to the step y a part along the motions that goes down the force that holds them, as far as cells may turn. It is
+   Newton's step along them, but for those whose stiffness is below 0: along these it goes the other way. */
 static PetscErrorCode MoveOn(Model model, Vec y)
 {
-  HeldMotion     *held  = &model->work->hold;
-  const PetscReal along = (held->compliance > 0 ? 1 : -1) * held->force;
-  PetscReal       turn;
-  Vec             z;
+  HeldMotion *held = &model->work->hold;
+  PetscReal   along, turn;
+  Vec         z;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(y, &z));
-  PetscCall(VecCopy(held->w, z));
-  PetscCall(VecScale(z, along));
+  PetscCall(VecZeroEntries(z));
+  for (int i = 0; i < held->n; i++) {
+    PetscCall(VecDotRealPart(held->last, held->w[i], &along));
+    PetscCall(VecAXPY(z, along / PetscAbsReal(held->compliance[i]), held->w[i]));
+  }
   PetscCall(TurnOf(model, model->x, z, &turn));
   held->turn = PetscMin(turn, held->bound);
   PetscCall(VecAXPY(y, turn > 0 ? held->turn / turn : 0, z));
@@ -92,7 +58,7 @@ static PetscErrorCode MoveOn(Model model, Vec y)
 }
 
 /*@
-  ModelHoldInStep - takes the motion that is held out of a linear step.
+  ModelHoldInStep - takes the motions that are held out of a linear step.
 
   Collective
 
@@ -101,29 +67,24 @@ static PetscErrorCode MoveOn(Model model, Vec y)
 - y     - the step (length)
 
   Output Parameter:
-. y - without the motion, or with a bounded part of it where it is to move on; unchanged where none is held
+. y - without the motions, or with a bounded part of them where they are to move on; unchanged where none is held
 @*/
 PetscErrorCode ModelHoldInStep(Model model, Vec y)
 {
   HeldMotion *held = &model->work->hold;
-  PetscReal   stiffness, part;
-  KSP         ksp;
 
   PetscFunctionBeginUser;
-  if (!held->on) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!held->known || held->anew) PetscCall(KeepMotion(model, y, &stiffness, &part));
-  PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(KSPSolve(ksp, held->b, held->w));
-  PetscCall(VecDotRealPart(held->b, held->w, &held->compliance));
-  if (held->compliance == 0) held->on = PETSC_FALSE;
-  if (held->on) PetscCall(TakeOut(held, y));
+  if (held->wanted && !held->ready) PetscCall(ModelHeldRefresh(model, y));
+  held->ready  = PETSC_FALSE;
   held->moving = PETSC_FALSE;
-  if (held->on && held->moves) PetscCall(MoveOn(model, y));
+  if (!held->wanted) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelHeldTakeOut(model, y));
+  if (held->moves) PetscCall(MoveOn(model, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ModelHoldInColumns - takes the motion that is held out of columns of the factor.
+  ModelHoldInColumns - takes the motions that are held out of columns of the factor.
 
   Collective
 
@@ -137,11 +98,11 @@ PetscErrorCode ModelHoldInColumns(Model model, Mat Z)
   Vec      z;
 
   PetscFunctionBeginUser;
-  if (!model->work->hold.on) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!model->work->hold.wanted) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatGetSize(Z, NULL, &m));
   for (PetscInt j = 0; j < m; j++) {
     PetscCall(MatDenseGetColumnVecWrite(Z, j, &z));
-    PetscCall(TakeOut(&model->work->hold, z));
+    PetscCall(ModelHeldTakeOut(model, z));
     PetscCall(MatDenseRestoreColumnVecWrite(Z, j, &z));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -162,8 +123,63 @@ PetscBool ModelMayRoll(Model model)
                      !ContactHasFriction(model->contact));
 }
 
+/* Decides whether the softest motion is held, as it alone spoils the step y: the rest turns no cell too far. Either the
+   step does, or its stiffness is below 0 and the rest leads downhill. */
+static PetscErrorCode HoldSoftest(Model model, Vec x, Vec F, Vec y, PetscReal turn)
+{
+  HeldMotion *held = &model->work->hold;
+  PetscReal   stiffness, part, rest, downhill;
+  PetscBool   spoils;
+  Vec         r;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelHeldAdd(model, y, &stiffness, &part));
+  PetscCall(VecDuplicate(y, &r));
+  PetscCall(VecWAXPY(r, -part, held->b[0], y));
+  PetscCall(TurnOf(model, x, r, &rest));
+  PetscCall(VecDotRealPart(F, r, &downhill));
+  PetscCall(VecDestroy(&r));
+  /* pressures of nodes have slopes of their own */
+  spoils = (PetscBool)(rest <= MODEL_FARTHEST &&
+                       ((stiffness < 0 && (model->mesh->saddle || downhill >= 0)) || turn > MODEL_FARTHEST));
+  if (!spoils) held->n = 0;
+  held->wanted = held->known = held->n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Holds more motions, always the softest of those that are left, until the rest of the step y turns no cell too far. If
+   it still does with HELD_MOST of them, they are not what spoils the step, and nothing changes. */
+static PetscErrorCode HoldMore(Model model, Vec x, Vec y)
+{
+  HeldMotion *held  = &model->work->hold;
+  const int   first = held->n;
+  PetscReal   before, turn, stiffness, part;
+  Vec         r;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(y, &r));
+  PetscCall(VecCopy(y, r));
+  PetscCall(ModelHeldTakeOut(model, r));
+  PetscCall(TurnOf(model, x, r, &before));
+  turn = before;
+  for (int i = first; turn > MODEL_FARTHEST && i < HELD_MOST && held->n == i; i++) {
+    PetscCall(ModelHeldAdd(model, r, &stiffness, &part));
+    PetscCall(VecCopy(y, r));
+    PetscCall(ModelHeldTakeOut(model, r));
+    PetscCall(TurnOf(model, x, r, &turn));
+  }
+  PetscCall(VecDestroy(&r));
+  if (held->n > first)
+    PetscCall(PetscInfo(model->snes, "with %d soft motions held besides %d a step turns cells by %g instead of %g\n",
+                        held->n - first, first, (double)turn, (double)before));
+  held->futile = (PetscBool)(turn > MODEL_FARTHEST);
+  if (held->futile) held->n = first;
+  held->wanted = held->known = held->n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  ModelHoldMotion - decides whether the soft motion of bodies that contact alone holds is held from now on.
+  ModelHoldMotion - decides whether soft motions of bodies that contact alone holds are held from now on.
 
   Collective
 
@@ -175,41 +191,42 @@ PetscBool ModelMayRoll(Model model)
 - near  - an equilibrium is near, so that short steps are right whether they lead uphill or not
 
   Notes:
-  Rubber that can roll along walls without friction has one motion that is softer than all others by orders of
-  magnitude. What drives it is of the order of the errors of the mesh, and so is its stiffness, which changes its sign
-  with each node that passes an edge. Newton's steps along it are arbitrary. Where a step goes too far or the tangent is
-  indefinite, and it is this motion that does it, the motion is held: the rest is solved for as if the body could not
-  go along it. What that takes is a force. It stays if next to no friction would hold as much, else the motion moves on
-  down that force, see ModelJudgeHeld(). This needs a factor.
+  Rubber that can roll along walls without friction has motions that are softer than all others by orders of magnitude:
+  one in the plane, and in space as many as sections of the body can roll on their own, in waves along it. What drives
+  them is of the order of the errors of the mesh, and so is their stiffness, which changes its sign with each node that
+  passes an edge. Newton's steps along them are arbitrary. Where a step goes too far or the tangent is indefinite, and
+it is the softest motion that does it, that is held: the rest is solved for as if the body could not go along it. Where
+  in space the rest still goes too far, so are further ones, until it does not. What that takes is a force. It stays if
+  next to no friction would hold as much, else the motions move on down that force, see ModelJudgeHeld(). This needs a
+  factor.
 @*/
 PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y, PetscBool near)
 {
   HeldMotion *held = &model->work->hold;
-  PetscReal   turn, rest = 0, slope, downhill, stiffness, part;
+  PetscReal   turn, slope;
   PetscBool   direct;
-  Vec         r;
 
   PetscFunctionBeginUser;
-  if (held->on || held->released) PetscFunctionReturn(PETSC_SUCCESS);
+  if (held->released || (held->wanted && model->mesh->dim < 3)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LinearSolverDirect(model->work->solver, &direct));
   if (!direct) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TurnOf(model, x, y, &turn));
-  PetscCall(VecDotRealPart(F, y, &slope));
-  if (turn <= MODEL_FARTHEST && (near || slope >= 0)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(KeepMotion(model, y, &stiffness, &part));
-  PetscCall(VecDuplicate(y, &r));
-  PetscCall(VecWAXPY(r, -part, held->b, y));
-  PetscCall(TurnOf(model, x, r, &rest));
-  PetscCall(VecDotRealPart(F, r, &downhill));
-  PetscCall(VecDestroy(&r));
-  /* pressures of nodes have slopes of their own */
-  held->on = (PetscBool)(rest <= MODEL_FARTHEST &&
-                         ((stiffness < 0 && (model->mesh->saddle || downhill >= 0)) || turn > MODEL_FARTHEST));
+  if (held->wanted) {
+    PetscCall(ModelHeldRefresh(model, y));
+    held->ready = PETSC_TRUE;
+  } else {
+    held->n = 0;
+    PetscCall(TurnOf(model, x, y, &turn));
+    PetscCall(VecDotRealPart(F, y, &slope));
+    if (turn <= MODEL_FARTHEST && (near || slope >= 0)) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(HoldSoftest(model, x, F, y, turn));
+    held->ready = PETSC_TRUE;
+  }
+  if (model->mesh->dim == 3 && !held->futile) PetscCall(HoldMore(model, x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ModelHeldResidual - finds what is left of a residual without the force that holds a motion.
+  ModelHeldResidual - finds what is left of a residual without the force that holds motions.
 
   Collective
 
@@ -220,83 +237,98 @@ PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y, PetscBool near)
 
   Output Parameters:
 + norm  - of what is left
-- force - that is held, with the sign of the motion; 0 where no motion is
+- force - that is held; 0 where no motion is
 @*/
 PetscErrorCode ModelHeldResidual(Model model, Vec F, PetscReal *norm, PetscReal *force)
 {
-  const HeldMotion *held = &model->work->hold;
+  HeldMotion *held   = &model->work->hold;
+  PetscReal   square = 0;
 
   PetscFunctionBeginUser;
   *force = 0;
-  if (!held->on || !held->known) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDotRealPart(F, held->b, force));
-  *norm = PetscSqrtReal(PetscMax(0, PetscSqr(*norm) - PetscSqr(*force)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The force along the motion that friction with a coefficient of 1 would hold. */
-static PetscErrorCode Friction(Model model, PetscReal *sum)
-{
-  const Mesh mesh = model->mesh;
-  PetscReal *force, *b;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(mesh->n_nodes, &force, mesh->n_nodes * mesh->dim, &b));
-  PetscCall(MeshGlobalToLocal(mesh, model->work->hold.b, b));
-  for (int p = 0; p < ContactPairs(model->contact); p++) PetscCall(ContactTermForces(model->contact, p, 0, force));
-  *sum = 0;
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
-    PetscReal square = 0;
-
-    for (int d = 0; d < mesh->dim; d++) square += PetscSqr(b[i * mesh->dim + d]);
-    *sum += force[i] * PetscSqrtReal(square);
+  if (!held->wanted || !held->known) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int i = 0; i < held->known; i++) {
+    PetscCall(VecDotRealPart(F, held->b[i], &held->force[i]));
+    square += PetscSqr(held->force[i]);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 1, MPIU_REAL, MPI_SUM, mesh->comm));
-  PetscCall(PetscFree2(force, b));
+  *force = PetscSqrtReal(square);
+  *norm  = PetscSqrtReal(PetscMax(0, PetscSqr(*norm) - square));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ModelJudgeHeld - judges the force that holds a motion. If that is too much, the motion moves on in the next step, and
-  after some moves it is released for the rest of the load step.
+  ModelReleaseHeld - releases the motions that are held, for the rest of the load step.
+
+  Not collective
+
+  Input Parameter:
+. model - the model
+@*/
+void ModelReleaseHeld(Model model)
+{
+  HeldMotion *held = &model->work->hold;
+
+  held->wanted = held->known = held->n = 0;
+  held->moving                         = PETSC_FALSE;
+  held->released                       = PETSC_TRUE;
+}
+
+/* Bounds the next move. It may be longer than the last one if the force has not turned since, and is shorter if it
+   has. Where the force was small enough in between, its direction says nothing of the last move. */
+static PetscErrorCode BoundMove(HeldMotion *held)
+{
+  PetscReal along = 0;
+  Vec       force;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(held->b[0], &force));
+  PetscCall(VecZeroEntries(force));
+  for (int i = 0; i < held->known; i++) PetscCall(VecAXPY(force, held->force[i], held->b[i]));
+  if (held->times > 1) PetscCall(VecDotRealPart(force, held->last, &along));
+  if (held->times == 1)
+    held->bound = HELD_FIRST * MODEL_FARTHEST;
+  else if (along > 0)
+    held->bound = PetscMin(MODEL_FARTHEST, HELD_GROW * held->turn);
+  else
+    held->bound = held->turn / HELD_GROW;
+  if (held->streak == 1) held->bound = PetscMax(held->bound, HELD_FIRST * MODEL_FARTHEST);
+  PetscCall(VecDestroy(&held->last));
+  held->last = force;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelJudgeHeld - judges the force that holds motions. If that is too much, they move on in the next step, and after
+  some moves they are released for the rest of the load step.
 
   Collective
 
-  Input Parameters:
-+ model - at a solution with the motion held, after its residual
-- force - that holds it, with its sign
+  Input Parameter:
+. model - at a solution with motions held, after ModelHeldResidual()
 
   Output Parameter:
-. holds - it may stay as it is
+. holds - they may stay as they are
 
   Note:
-  On softened penalties it stays. They hold a body where the full ones do not, and what is found there is only a first
+  On softened penalties they stay. These hold a body where the full ones do not, and what is found there is only a first
   iterate.
 @*/
-PetscErrorCode ModelJudgeHeld(Model model, PetscReal force, PetscBool *holds)
+PetscErrorCode ModelJudgeHeld(Model model, PetscBool *holds)
 {
   HeldMotion *held = &model->work->hold;
-  PetscReal   sum;
 
   PetscFunctionBeginUser;
   *holds = PETSC_TRUE;
   if (model->work->soft) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Friction(model, &sum));
-  held->friction = sum > 0 ? PetscAbsReal(force) / sum : PETSC_INFINITY;
-  *holds         = (PetscBool)(held->friction <= HELD_FRICTION);
-  PetscCall(PetscInfo(model->snes, "a soft motion is held as by a coefficient of friction of %g%s\n",
+  PetscCall(ModelHeldFriction(model, &held->friction));
+  *holds = (PetscBool)(held->friction <= HELD_FRICTION);
+  PetscCall(PetscInfo(model->snes, "%d soft motions are held as by a coefficient of friction of %g%s\n", held->known,
                       (double)held->friction, *holds ? "" : ", too much"));
+  held->streak = *holds ? 0 : held->streak + 1;
   if (*holds) PetscFunctionReturn(PETSC_SUCCESS);
   held->moves = (PetscBool)(++held->times <= HELD_MOVES);
-  if (held->times == 1)
-    held->bound = HELD_FIRST * MODEL_FARTHEST;
-  else if (force * held->force > 0)
-    held->bound = PetscMin(MODEL_FARTHEST, HELD_GROW * held->turn);
-  else
-    held->bound = held->turn / HELD_GROW;
-  held->force = force;
+  PetscCall(BoundMove(held));
   if (held->moves) PetscFunctionReturn(PETSC_SUCCESS);
-  held->on       = PETSC_FALSE;
-  held->released = PETSC_TRUE;
+  ModelReleaseHeld(model);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -149,6 +149,8 @@ static PetscErrorCode ModelTurnSoft(Model model, Vec F, Vec y, PetscReal slope, 
   Vec       soft;
 
   PetscFunctionBeginUser;
+  *turned = PETSC_FALSE;
+  if (model->work->hold.wanted) PetscFunctionReturn(PETSC_SUCCESS); /* it is held */
   PetscCall(VecDuplicate(y, &soft));
   PetscCall(ModelSoftPart(model, y, soft, &stiffness));
   PetscCall(VecDotRealPart(F, soft, &along));

@@ -75,7 +75,8 @@ typedef struct {
   PetscReal   share;            /* norm of the forces left in the contact springs, over F_ref */
   PetscReal   tied;             /* largest force in a tie, over F_ref */
   PetscReal   unstable;    /* least stiffness of a tied motion, over that of its body, turned; 0: none is below 0 */
-  PetscReal   friction;    /* coefficient of friction that would hold the soft motion that is held; 0: none is */
+  PetscReal   friction;    /* coefficient of friction that would hold the soft motions that are held; 0: none is */
+  PetscInt    motions;     /* soft motions that are held */
   PetscInt    cycles;      /* times that the contact set repeated itself and Newton's steps were shortened */
   char        cycle[256];  /* the last repetition: its period and nodes, in gmsh's tags */
   PetscInt    damped;      /* pseudo-time steps with a viscous restraint; 0: a static solve */

@@ -263,7 +263,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
     model->work->nearly = it;
   if (model->work->loosely) allowed = PetscMax(NEWTON_LOOSELY * scale, tolerance);
   if (model->work->soft) allowed = PetscMax(NEWTON_SOFT_ENOUGH * scale, round_off);
-  if (fnorm <= PetscMax(NEWTON_LOOSELY * scale, allowed) && force != 0) PetscCall(ModelJudgeHeld(model, force, &holds));
+  if (fnorm <= PetscMax(NEWTON_LOOSELY * scale, allowed) && force != 0) PetscCall(ModelJudgeHeld(model, &holds));
   if (!holds) fnorm = PetscSqrtReal(PetscSqr(fnorm) + PetscSqr(force));
   model->work->balanced = holds && fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
   if (!it && model->work->start == 0 && !model->work->soft) model->work->start = fnorm;
@@ -451,6 +451,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   model->work->relaxed.turns    = PETSC_FALSE;
   model->work->relaxed.farthest = MODEL_FARTHEST;
   model->work->hold.anew        = PETSC_TRUE;
+  model->work->hold.futile      = PETSC_FALSE;
   PetscCall(PetscArrayzero(model->work->cuts, CUT_CAUSES));
   PetscCall(ModelIterate(model));
   PetscCall(SNESGetConvergedReason(model->snes, &reason));

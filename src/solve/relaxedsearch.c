@@ -466,16 +466,24 @@ static PetscErrorCode SearchByEnergy(const Search *s, PetscReal slope)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes a step in which a motion that was held moves on, or the part of it that inverts no element and that lists
-   reach. The energy may rise, as in Relax(): its bound is that of the motion. *taken: it could be. */
+/* Takes a step in which motions that were held move on, or the part of it that inverts no element. Where lists do not
+   reach, new ones are made there; a part that they reach is taken when no more are to be made. The energy may rise, as
+   in Relax(): its bound is that of the motions. *taken: it could be. */
 static PetscErrorCode TakeMove(const Search *s, PetscBool *taken)
 {
-  ModelWork *work   = s->model->work;
-  PetscReal  lambda = 1;
+  ModelWork      *work   = s->model->work;
+  const PetscBool anew   = (PetscBool)(work->renewed < MODEL_MAX_REGATHER);
+  PetscReal       lambda = 1;
+  PetscBool       inverted;
 
   PetscFunctionBeginUser;
   *taken = PETSC_FALSE;
-  for (int i = 0; i <= SEARCH_HALVINGS && !*taken; i++, lambda /= *taken ? 1 : 2) PetscCall(Try(s, lambda, taken));
+  for (int i = 0; i <= SEARCH_HALVINGS && !*taken; i++, lambda /= *taken ? 1 : 2) {
+    PetscCall(Try(s, lambda, taken));
+    PetscCall(SNESGetFunctionDomainError(s->snes, &inverted));
+    *taken = (PetscBool)(*taken || (anew && !inverted));
+  }
+  work->hold.turn *= lambda;
   if (!*taken) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->model->contact) PetscCall(ContactCycleStart(work->watch));
   work->relaxed.waits  = PETSC_FALSE;
@@ -522,8 +530,9 @@ PetscErrorCode ModelSearchRelaxed(SNESLineSearch search, void *context)
   PetscCall(SNESLineSearchGetDamping(search, &lambda));
   PetscCall(SNESLineSearchPreCheck(search, s.x, s.y, &changed));
   work->relaxed.linear = PETSC_FALSE;
-  if (work->hold.on && work->hold.moving) PetscCall(TakeMove(&s, &taken));
+  if (work->hold.wanted && work->hold.moving) PetscCall(TakeMove(&s, &taken));
   if (taken) PetscFunctionReturn(PETSC_SUCCESS);
+  if (work->hold.wanted && work->hold.moving) ModelReleaseHeld(s.model);
   if (lambda < 1) work->relaxed.waits = PETSC_FALSE;
   PetscCall(VecDotRealPart(s.F, s.y, &slope));
   if (!work->relaxed.waits && (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL || SearchJumps(&s))) {

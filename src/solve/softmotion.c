@@ -87,7 +87,7 @@ PetscErrorCode ModelDropPressures(Model model, Vec from, Vec to)
    between their sums, and held along a sum a body is free along the difference. From b, of norm 1, and what the tangent
    gives for it as a force, v, and without pressures c, follows the plane of the two (Rayleigh and Ritz). b becomes the
    softer of them, v and c what the tangent gives for it. inverse: b . c. */
-static PetscErrorCode SeparateMotions(Model model, KSP ksp, Vec b, Vec v, Vec c, PetscReal *inverse)
+static PetscErrorCode SeparateMotions(Model model, Vec b, Vec v, Vec c, PetscReal *inverse)
 {
   PetscReal across, own, off, mean, root, softer, first, second;
   Vec       q, z, w;
@@ -98,7 +98,7 @@ static PetscErrorCode SeparateMotions(Model model, KSP ksp, Vec b, Vec v, Vec c,
   PetscCall(VecDuplicate(b, &w));
   PetscCall(VecWAXPY(q, -*inverse, b, c));
   PetscCall(VecNormalize(q, &across));
-  PetscCall(KSPSolve(ksp, q, z));
+  PetscCall(ModelHeldSolve(model, q, z));
   PetscCall(ModelDropPressures(model, z, w));
   PetscCall(VecDotRealPart(b, w, &off));
   PetscCall(VecDotRealPart(q, w, &own));
@@ -122,7 +122,7 @@ static PetscErrorCode SeparateMotions(Model model, KSP ksp, Vec b, Vec v, Vec c,
 }
 
 /*@
-  ModelSoftMotion - finds the softest motion in a linear step.
+  ModelSoftMotion - finds the softest motion in a linear step, besides those that are held.
 
   Collective
 
@@ -143,11 +143,9 @@ static PetscErrorCode SeparateMotions(Model model, KSP ksp, Vec b, Vec v, Vec c,
 PetscErrorCode ModelSoftMotion(Model model, Vec y, Vec v, PetscReal *stiffness, PetscReal *part)
 {
   PetscReal norm = 0, inverse = 0;
-  KSP       ksp;
   Vec       b, c;
 
   PetscFunctionBeginUser;
-  PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(VecDuplicate(y, &b));
   PetscCall(VecDuplicate(y, &c));
   PetscCall(VecCopy(y, v));
@@ -155,13 +153,13 @@ PetscErrorCode ModelSoftMotion(Model model, Vec y, Vec v, PetscReal *stiffness, 
     PetscCall(ModelDropPressures(model, v, b));
     PetscCall(VecNorm(b, NORM_2, &norm));
     if (norm > 0) PetscCall(VecScale(b, 1 / norm));
-    PetscCall(KSPSolve(ksp, b, v));
+    PetscCall(ModelHeldSolve(model, b, v));
     PetscCall(VecDotRealPart(v, b, &inverse));
     PetscCall(ModelDropPressures(model, v, c));
     PetscCall(VecNorm(c, NORM_2, &norm));
   }
   if (norm > 0 && PetscAbsReal(inverse) < (1 - SOFT_SAME) * norm) {
-    PetscCall(SeparateMotions(model, ksp, b, v, c, &inverse));
+    PetscCall(SeparateMotions(model, b, v, c, &inverse));
     PetscCall(VecNorm(c, NORM_2, &norm));
   }
   PetscCall(VecCopy(c, b));

@@ -465,6 +465,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   report->unstable = PetscMax(report->unstable, solve->unstable);
   report->friction = PetscMax(report->friction, solve->friction);
   report->held += solve->friction > 0;
+  report->motions = PetscMax(report->motions, solve->motions);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -837,7 +838,8 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                               &report->relaxed,         &report->cycles,
                               &report->cycles_cut,      &report->jumps,
                               &report->damped,          &report->held,
-                              &stepper->damped,         &size.tied};
+                              &stepper->damped,         &size.tied,
+                              &report->motions};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));

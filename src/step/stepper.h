@@ -36,6 +36,7 @@ typedef struct {
   PetscReal unstable;   /* how unstable a tied motion was, as a part of its body's stiffness, in the worst step */
   PetscReal friction;   /* coefficient of friction that would hold what held a soft motion, in the worst step */
   PetscInt  held;       /* accepted steps in which one was held */
+  PetscInt  motions;    /* most of them that were held at the end of an accepted step */
   PetscInt  cycles;     /* times that a contact set repeated itself */
   PetscInt  cycles_cut; /* steps that failed because of that */
   char      cycle[512]; /* the last repetition: load parameter, period, nodes */

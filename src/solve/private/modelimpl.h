@@ -51,23 +51,34 @@ typedef struct {
   Vec       x, y;     /* free displacements at its start, and the whole step (length) */
 } RelaxedStep;
 
-/* A soft motion that is held, see ModelHoldMotion() */
+/* At most so many soft motions are held at a time. A ring rolls in waves around it, and its mesh knows as many of them
+   as it has elements there. Each takes a solve with the factor in an iteration; the bound keeps them cheap beside a
+   factor.
+ */
+enum { HELD_MOST = 24 };
+
+/* Soft motions that are held, see ModelHoldMotion() */
 typedef struct {
-  PetscBool on;         /* it is held */
-  PetscBool accepted;   /* it was in the accepted state */
-  PetscBool released;   /* in this load step it takes too much force */
-  PetscBool known;      /* b is the motion of this load step */
-  PetscBool anew;       /* it is found anew with the next tangent */
-  Vec       b;          /* displacements of the motion, of length 1 */
-  Vec       w;          /* its answer to the force b with the present tangent */
-  PetscReal compliance; /* of that force */
-  PetscBool moves;      /* it moves on in the next step */
-  PetscBool moving;     /* the step at hand is such a step */
-  PetscInt  times;      /* such steps in this load step */
-  PetscReal force;      /* that held it before the last of them */
-  PetscReal bound;      /* by which that may turn a cell */
-  PetscReal turn;       /* by which it turned one */
-  PetscReal friction;   /* coefficient of friction that would hold it at the last solution */
+  int       wanted;                /* how many are to be held; 0: none */
+  int       accepted;              /* how many were in the accepted state */
+  int       n;                     /* how many have their answers to the present tangent */
+  int       known;                 /* how many b are motions of this load step */
+  PetscBool released;              /* in this load step they take too much force */
+  PetscBool anew;                  /* they are found anew with the next tangent */
+  PetscBool futile;                /* in this solve a step went too far, however many motions were held */
+  PetscBool ready;                 /* the n motions are those of the step at hand */
+  Vec       b[HELD_MOST];          /* displacements of the motions, orthogonal to each other, of length 1 */
+  Vec       w[HELD_MOST];          /* answers to the forces b with the present tangent, with the motions before held */
+  PetscReal compliance[HELD_MOST]; /* b . w */
+  PetscReal force[HELD_MOST];      /* along each of them, of the last residual */
+  PetscBool moves;                 /* they move on in the next step */
+  PetscBool moving;                /* the step at hand is such a step */
+  PetscInt  times;                 /* such steps in this load step */
+  PetscInt  streak;                /* since the force was small enough */
+  Vec       last;                  /* the force that held them before the last of them */
+  PetscReal bound;                 /* by which that may turn a cell */
+  PetscReal turn;                  /* by which it turned one */
+  PetscReal friction;              /* coefficient of friction that would hold them at the last solution */
 } HeldMotion;
 
 typedef struct _n_ModelWork {
@@ -160,7 +171,16 @@ PetscErrorCode ModelHoldInColumns(Model, Mat Z);
 PetscErrorCode ModelHoldMotion(Model, Vec x, Vec F, Vec y, PetscBool near);
 PetscBool      ModelMayRoll(Model);
 PetscErrorCode ModelHeldResidual(Model, Vec F, PetscReal *norm, PetscReal *force);
-PetscErrorCode ModelJudgeHeld(Model, PetscReal force, PetscBool *holds);
+PetscErrorCode ModelJudgeHeld(Model, PetscBool *holds);
+void           ModelReleaseHeld(Model);
+/* heldspace.c */
+PetscErrorCode ModelHeldDestroy(HeldMotion *);
+PetscErrorCode ModelHeldTakeOut(Model, Vec z);
+PetscErrorCode ModelHeldSolve(Model, Vec b, Vec z);
+PetscErrorCode ModelHeldAdd(Model, Vec start, PetscReal *stiffness, PetscReal *part);
+PetscErrorCode ModelHeldRefresh(Model, Vec y);
+/* heldfriction.c */
+PetscErrorCode ModelHeldFriction(Model, PetscReal *coefficient);
 /* linearcontact.c */
 PetscErrorCode ModelResidualAt(Model, Vec x, PetscBool *ok, PetscReal *norm);
 PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);

@@ -1,0 +1,153 @@
+/* The space of the soft motions that are held: its answers to the present tangent, and how motions are added to it. */
+#include "modelimpl.h"
+
+/*@
+  ModelHeldDestroy - frees the motions that are held.
+
+  Collective
+
+  Input Parameter:
+. held - the motions
+@*/
+PetscErrorCode ModelHeldDestroy(HeldMotion *held)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < HELD_MOST; i++) {
+    PetscCall(VecDestroy(&held->b[i]));
+    PetscCall(VecDestroy(&held->w[i]));
+  }
+  PetscCall(VecDestroy(&held->last));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelHeldTakeOut - takes out of free displacements what they have along the motions that are held, by forces on them.
+
+  Collective
+
+  Input Parameters:
++ model - its motions have their answers to the present tangent
+- z     - displacements that a force causes with that tangent (length)
+
+  Output Parameter:
+. z - what it causes where the motions are held
+
+  Note:
+  Each answer w is that of a body whose motions before are held. So the motions are taken out one after the other, and
+  what is done for one does not bring back those before. That is the factorisation L D L^T of their compliances.
+@*/
+PetscErrorCode ModelHeldTakeOut(Model model, Vec z)
+{
+  const HeldMotion *held = &model->work->hold;
+  PetscReal         along;
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < held->n; i++) {
+    PetscCall(VecDotRealPart(held->b[i], z, &along));
+    PetscCall(VecAXPY(z, -along / held->compliance[i], held->w[i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelHeldSolve - solves with the present tangent, where the motions are held that have their answers to it.
+
+  Collective
+
+  Input Parameters:
++ model - after a solve with that tangent
+- b     - forces
+
+  Output Parameter:
+. z - free displacements (length)
+@*/
+PetscErrorCode ModelHeldSolve(Model model, Vec b, Vec z)
+{
+  KSP ksp;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(KSPSolve(ksp, b, z));
+  PetscCall(ModelHeldTakeOut(model, z));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the answer of the next motion, which is then held. One that no force moves is not. */
+static PetscErrorCode Answer(Model model)
+{
+  HeldMotion *held = &model->work->hold;
+  const int   i    = held->n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelHeldSolve(model, held->b[i], held->w[i]));
+  PetscCall(VecDotRealPart(held->b[i], held->w[i], &held->compliance[i]));
+  if (held->compliance[i] != 0) held->n++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelHeldAdd - finds the softest motion besides those that are held, and holds it too.
+
+  Collective
+
+  Input Parameters:
++ model - after a solve with the present tangent
+- start - any vector that has a part of the motion (length)
+
+  Output Parameters:
++ stiffness - of the tangent along it
+- part      - of the motion in the vector (length)
+@*/
+PetscErrorCode ModelHeldAdd(Model model, Vec start, PetscReal *stiffness, PetscReal *part)
+{
+  HeldMotion *held = &model->work->hold;
+  const int   i    = held->n;
+  Vec         v;
+
+  PetscFunctionBeginUser;
+  if (!held->b[i]) {
+    PetscCall(VecDuplicate(start, &held->b[i]));
+    PetscCall(VecDuplicate(start, &held->w[i]));
+  }
+  PetscCall(VecDuplicate(start, &v));
+  PetscCall(ModelSoftMotion(model, start, v, stiffness, part));
+  PetscCall(ModelDropPressures(model, v, held->b[i]));
+  PetscCall(VecDestroy(&v));
+  PetscCall(Answer(model));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelHeldRefresh - finds the answers of the motions that are to be held to the present tangent, and the motions, where
+  they are not known or are to be found anew.
+
+  Collective
+
+  Input Parameters:
++ model - after a solve with that tangent
+- y     - the step (length)
+@*/
+PetscErrorCode ModelHeldRefresh(Model model, Vec y)
+{
+  HeldMotion *held  = &model->work->hold;
+  const int   known = held->known;
+  PetscReal   stiffness, part;
+  Vec         start;
+
+  PetscFunctionBeginUser;
+  held->n = 0;
+  PetscCall(VecDuplicate(y, &start));
+  for (int i = 0; i < held->wanted && held->n == i; i++) {
+    if (i < known && !held->anew) {
+      PetscCall(Answer(model));
+      continue;
+    }
+    PetscCall(VecCopy(i > 0 && i < known ? held->b[i] : y, start));
+    PetscCall(ModelHeldTakeOut(model, start));
+    PetscCall(ModelHeldAdd(model, start, &stiffness, &part));
+  }
+  PetscCall(VecDestroy(&start));
+  held->wanted = held->known = held->n;
+  held->anew                 = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
