@@ -288,10 +288,6 @@ JOBS = [
         Answer("pole", 12.7998, 0.01, "limit"),
         Answer("push", -722.1, 0.12, "limit"),
     ], steps=12, picture=["--mirror", "x"]),
-    Job("syringe_stopper", "stopper pushed into a syringe", [
-        Answer("push", 4.265, 1, "limit"),
-        Answer("grip", 28.45, 1, "limit"),
-    ], steps=10, picture=["--mirror", "x"]),
     Job("foam_ball", "rough ball pressed into foam, in space", [
         Answer("force", 10.27, 0.2, "limit"),
     ], steps=12),
