@@ -26,6 +26,7 @@ LIKE = {
     f"{PYTHON} scripts/ring_table.py": f"{PYTHON} scripts/ring_table.py --help",
     f"{PYTHON} scripts/incompressible_table.py {BURNISH}": f"{PYTHON} scripts/incompressible_table.py --help",
     f"{PYTHON} scripts/o_ring_table.py {BURNISH}": f"{PYTHON} scripts/o_ring_table.py --help",
+    f"{PYTHON} scripts/o_ring_3d_table.py {BURNISH}": f"{PYTHON} scripts/o_ring_3d_table.py --help",
     f"{PYTHON} scripts/o_ring_calculix.py": f"{PYTHON} scripts/o_ring_calculix.py --help",
     f"{PYTHON} scripts/o_ring_calculix.py --solid": f"{PYTHON} scripts/o_ring_calculix.py --help",
     "build/tests/incompressible meshes runs/records/incompressible_rates.csv": "test -s "
@@ -106,6 +107,8 @@ FULL = {
     f"{PYTHON} scripts/axis_table.py": printed("axis_table", "axis"),
     f"{PYTHON} scripts/drawn_table.py --record runs/records/drawn.csv": printed("drawn_table", "drawn"),
     f"{PYTHON} scripts/friction_table.py --record runs/records/friction.csv": printed("friction_table", "friction"),
+    f"{PYTHON} scripts/friction_solver_table.py --record runs/records/friction_solver.csv":
+    printed("friction_solver_table", "friction_solver"),
     f"{PYTHON} scripts/plot.py out/press_fit": None,
     f"{PYTHON} scripts/rubber_jobs_table.py --record runs/records/rubber_jobs.csv":
     printed("rubber_jobs_table", "rubber_jobs"),
