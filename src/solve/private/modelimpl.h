@@ -2,7 +2,8 @@
    offers to those above it.
 
    problem.c is below all of them, and freebodies.c and rigidsearch.c below it. tangent.c makes the tangent and prepares
-   its linear solver. softmotion.c finds the softest motion in a linear step, heldmotion.c holds it. linearcontact.c
+   its linear solver. softmotion.c finds the softest motion in a linear step, heldmotion.c holds such motions: heldspace.c
+   finds them, heldsolve.c solves with them held, heldfriction.c tells what friction would hold them. linearcontact.c
    finds the contact that is right at the end of a linear step. linecuts.c says why a line search shortened its step.
    slopesearch.c finds how far a step of bodies that yield leads to balance, relaxedsearch.c is the line search,
    linesearch.c chooses what it compares, and corrects steps for contact. newton.c runs SNES once with the present
@@ -160,11 +161,20 @@ typedef struct _n_ModelWork {
 PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, PetscReal t);
 PetscErrorCode ModelReleaseTangent(Model);
 PetscErrorCode ModelLinearise(Model, KSP *);
+/* heldsolve.c */
+PetscErrorCode ModelHeldTakeOut(Model, Vec z);
+PetscErrorCode ModelHeldSolve(Model, Vec b, Vec z);
 /* softmotion.c */
 PetscErrorCode ModelLargestTurn(Model, const PetscReal *u, const PetscReal *v, PetscReal *turn);
 PetscErrorCode ModelDropPressures(Model, Vec from, Vec to);
 PetscErrorCode ModelSoftMotion(Model, Vec y, Vec v, PetscReal *stiffness, PetscReal *part);
 PetscErrorCode ModelSoftPart(Model, Vec y, Vec soft, PetscReal *stiffness);
+/* heldspace.c */
+PetscErrorCode ModelHeldDestroy(HeldMotion *);
+PetscErrorCode ModelHeldAdd(Model, Vec start, PetscReal *stiffness, PetscReal *part);
+PetscErrorCode ModelHeldRefresh(Model, Vec y);
+/* heldfriction.c */
+PetscErrorCode ModelHeldFriction(Model, PetscReal *coefficient);
 /* heldmotion.c */
 PetscErrorCode ModelHoldInStep(Model, Vec y);
 PetscErrorCode ModelHoldInColumns(Model, Mat Z);
@@ -173,14 +183,6 @@ PetscBool      ModelMayRoll(Model);
 PetscErrorCode ModelHeldResidual(Model, Vec F, PetscReal *norm, PetscReal *force);
 PetscErrorCode ModelJudgeHeld(Model, PetscBool *holds);
 void           ModelReleaseHeld(Model);
-/* heldspace.c */
-PetscErrorCode ModelHeldDestroy(HeldMotion *);
-PetscErrorCode ModelHeldTakeOut(Model, Vec z);
-PetscErrorCode ModelHeldSolve(Model, Vec b, Vec z);
-PetscErrorCode ModelHeldAdd(Model, Vec start, PetscReal *stiffness, PetscReal *part);
-PetscErrorCode ModelHeldRefresh(Model, Vec y);
-/* heldfriction.c */
-PetscErrorCode ModelHeldFriction(Model, PetscReal *coefficient);
 /* linearcontact.c */
 PetscErrorCode ModelResidualAt(Model, Vec x, PetscBool *ok, PetscReal *norm);
 PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
