@@ -168,15 +168,10 @@ static PetscErrorCode PairDampOffsets(ContactPair *pair, const PetscReal *u, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rung on which the fit of a slave point stands; RUNGS: it has none. Rungs of one degree pass into each other without a
-   jump where nodes are fitted: then it is the first of that degree. */
-static int FitRung(const ContactPair *pair, NeighbourLists lists, PetscInt q)
+/* Rung on which the fit of a slave point stands; RUNGS: it has none. */
+static int FitRung(NeighbourLists lists, PetscInt q)
 {
-  const int rung = lists->rung[q];
-
-  if (!lists->fit_n[q]) return RUNGS;
-  if (pair->fit.integral || rung == RUNG_LINEAR) return rung;
-  return rung <= RUNG_WIDER ? RUNG_PLAIN : RUNG_QUADRATIC;
+  return lists->fit_n[q] ? lists->rung[q] : RUNGS;
 }
 
 /* A fit that falls to a lower rung a second time within a step stays there to the end of the step. The surface of that
@@ -184,9 +179,9 @@ static int FitRung(const ContactPair *pair, NeighbourLists lists, PetscInt q)
 static void PairKeepRungs(ContactPair *pair)
 {
   for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.fitted; q++) {
-    const int next = FitRung(pair, pair->next, q);
+    const int next = FitRung(pair->next, q);
 
-    if (next <= FitRung(pair, pair->lists, q)) continue;
+    if (next <= FitRung(pair->lists, q)) continue;
     if (pair->fallen[q]) pair->first_rung[q] = PetscMax(pair->first_rung[q], next);
     pair->fallen[q] = PETSC_TRUE;
   }

@@ -34,10 +34,6 @@ static const struct {
   double widen;
 } Ladder[RUNGS] = {{0, 1}, {0, 1.15}, {0, 1.32}, {0, 1.52}, {0, 1.75}, {2, 1}, {2, 1.32}, {1, 1}};
 
-/* To this part of itself the least support is found on which a fit holds: gaps follow it to rounding, which friction
-   at rest asks for. */
-#define FIT_NARROW 1e-14
-
 /*@
   FitDegreeCode - returns the code by which the fit's kernel knows a degree: FIT_REVOLVED is added for fits of
   revolution.
@@ -316,18 +312,18 @@ static PetscBool FitMisses(const FitFoot *at, const FitProblem *problem, const F
   return (PetscBool)(result->missed > part * spacing);
 }
 
-/* Tries one rung of the ladder at a foot, with a support that is widened by a factor, and writes points, frame and
-   metric into fit and problem. *holds is true if every guard holds. Quadrature points come in clusters, so that their
-   number tells nothing; the pivot is the guard for them. */
-static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, PetscReal widen, FitProblem *problem,
-                              FitResult *result, PetscBool *holds)
+/* Tries one rung of the ladder at a foot and writes points, frame and metric into fit and problem. *holds is true if
+   every guard holds. Quadrature points come in clusters, so that their number tells nothing; the pivot is the guard
+   for them. */
+static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result,
+                              PetscBool *holds)
 {
   const FitSettings *settings = fit->s->fit;
   const int          dim = fit->lists->dim, lower = Ladder[rung].degree,
             degree            = FitDegreeCode(settings, lower ? PetscMin(lower, settings->degree) : settings->degree);
   const int            wanted = settings->integral ? FitTerms(dim, degree) : FitPointsWanted(dim, degree);
   double               covariance[3][3], area;
-  const PetscReal     *rho2, support = settings->support * widen;
+  const PetscReal     *rho2, support = settings->support * Ladder[rung].widen;
   const PetscBool      upright = (PetscBool)(settings->global_frame || at->upright);
   NeighbourhoodSupport space;
   FaceRow              row = {.share = 0};
@@ -394,7 +390,7 @@ PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, int first, Fi
   PetscFunctionBeginUser;
   *rung = RUNG_FACET;
   for (int r = first; r < RUNGS && !holds; r++) {
-    PetscCall(FitRung(fit, at, r, Ladder[r].widen, problem, result, &holds));
+    PetscCall(FitRung(fit, at, r, problem, result, &holds));
     if (holds) *rung = r;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -436,35 +432,6 @@ static void KeepFrame(const FitSupport *fit, PetscInt q, FitFoot *at)
   for (int d = 0; d < fit->lists->dim; d++) at->outward[d] = kept[d];
 }
 
-/* Narrows the fit of a slave point that holds on a rung, but not with the support of the rung before, to the least
-   support that holds, if it is one through nodes. Such fits then do not jump where a guard begins or ceases to hold,
-   and rounding does not choose between them. Not so fits through quadrature points, whose guard is the pivot: the least
-   support would leave each of them at it. Nor those that make offsets: with them a punch that is drawn over a slab lost
-   its way. */
-static PetscErrorCode FitNarrow(FitSupport *fit, const FitFoot *at, int first, int rung, FitProblem *problem,
-                                FitResult *result)
-{
-  PetscReal low, high;
-  PetscBool holds;
-
-  PetscFunctionBeginUser;
-  if (fit->s->fit->integral || rung <= first || Ladder[rung - 1].degree != Ladder[rung].degree)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  low  = Ladder[rung - 1].widen;
-  high = Ladder[rung].widen;
-  while (high - low > FIT_NARROW * high) {
-    const PetscReal middle = (low + high) / 2;
-
-    PetscCall(FitRung(fit, at, rung, middle, problem, result, &holds));
-    if (holds)
-      high = middle;
-    else
-      low = middle;
-  }
-  PetscCall(FitRung(fit, at, rung, high, problem, result, &holds));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   FitSupportSlave - fits the surface for one slave point and writes a fit that holds into its list.
 
@@ -487,7 +454,6 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   NeighbourLists   lists = fit->lists;
   const Candidate *best  = &look->candidates[look->best];
   FitFoot          at    = {.facet = look->best, .xi = {look->foot.xi[0], look->foot.xi[1]}, .past = FootPast(look)};
-  const int        rung  = fit->s->first_rung ? fit->s->first_rung[q] : RUNG_PLAIN;
   FitProblem       problem;
   FitResult        result;
 
@@ -501,8 +467,8 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   }
   KeepFrame(fit, q, &at);
   TimingBegin(TIMING_FIT); /* these two readings of the clock cost 0.1 % of a ladder */
-  PetscCall(FitSupportClimb(fit, &at, rung, &problem, &result, &lists->rung[q]));
-  PetscCall(FitNarrow(fit, &at, rung, lists->rung[q], &problem, &result));
+  PetscCall(FitSupportClimb(fit, &at, fit->s->first_rung ? fit->s->first_rung[q] : RUNG_PLAIN, &problem, &result,
+                            &lists->rung[q]));
   TimingEnd(TIMING_FIT);
   if (look->listed && lists->rung[q] != RUNG_FACET && FitStrays(look, &result)) lists->rung[q] = RUNG_FACET;
   if (lists->rung[q] == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
