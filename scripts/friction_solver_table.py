@@ -1,10 +1,10 @@
-"""What friction costs the solver, and how even the forces of a sliding die are: iterations and failed steps of the paper's
-scenes with friction and without, and forces of a die that is drawn over a block in long and short steps. Both ways to
+"""What friction costs the solver, and how even the forces of a sliding die are: iterations and failed steps of the
+paper's scenes with friction and without, and forces of a die that is drawn over a block in long and short steps. Both ways to
 measure the gap, the smooth master and its facets; cheap scenes on several ranks, too. Leaves one record per run and
 prints the tables; --print tables an existing record.
     python scripts/friction_solver_table.py [--burnish BINARY] [--record FILE] [--print] [CASE ...]
-A case that is named replaces its rows in the record. Iterations are those of all steps, iterations_per_step those of the
-die while it slides. V and H are means after the first 30 % of its way, and a swing is from peak to peak without the
+A case that is named replaces its rows in the record. Iterations are those of all steps, iterations_per_step those of
+the die while it slides. V and H are means after the first 30 % of its way, and a swing is from peak to peak without the
 trend, in per cent of the mean."""
 import shutil
 import subprocess
@@ -13,8 +13,8 @@ import numpy
 
 from launch import ROOT, command, environment, read_records, read_steps, read_summary, replace_records, table_parser
 
-COLUMNS = ("case", "mu", "step", "formulation", "smoother", "ranks", "status", "iterations", "iterations_per_step", "failed",
-           "V", "H", "swing_V", "swing_H")
+COLUMNS = ("case", "mu", "step", "formulation", "smoother", "ranks", "status", "iterations", "iterations_per_step",
+           "failed", "V", "H", "swing_V", "swing_H")
 SURFACE, NODE = "surface_to_surface", "node_to_surface"
 WAYS = ((SURFACE, "diffuse"), (NODE, "diffuse"), (SURFACE, "facet"), (NODE, "facet"))
 SHORT = {SURFACE: "surface", NODE: "nodes", "diffuse": "smooth", "facet": "facets"}
@@ -110,8 +110,8 @@ def groups(records, names):
 
 
 def print_die(records):
-    print("| gap | master | mu | step (faces) | iterations a step | failed | V | H | swing of V, H (per cent) | ranks apart |"
-          "\n|" + " --- |" * 10)
+    print("| gap | master | mu | step (faces) | iterations a step | failed | V | H | swing of V, H (per cent) | "
+          "ranks apart |\n|" + " --- |" * 10)
     for key, rows in groups(records, ("formulation", "smoother", "mu", "step")).items():
         row = next(row for row in rows if row["ranks"] == "1")
         figures = "not converged | - | - | - | -" if row["status"] != "0" else (

@@ -2,8 +2,8 @@
 master and its facets. Runs the scenes, leaves one record per figure and prints the table; --print tables an existing
 record.
     python scripts/friction_table.py [--burnish BINARY] [--record FILE] [--ranks N] [--mesh NAME]... [--print] [CASE ...]
-A case that is named replaces its rows in the record, with --mesh those of these meshes only. Deviations are in per cent of the reference, those of tractions in
-per cent of what BENCHMARKS says. Nodal tractions are forces over tributary areas. So they are compared with means of
+A case that is named replaces its rows in the record, with --mesh those of these meshes only. Deviations are in per cent
+of the reference, those of tractions in per cent of what BENCHMARKS says. Nodal tractions are forces over tributary areas. So they are compared with means of
 the closed form over the nodes' hat functions."""
 import json
 import math

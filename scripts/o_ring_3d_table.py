@@ -1,7 +1,7 @@
 """A quarter of the O-ring in space (runs/rubber/o_ring_3d_pressure.yaml) that is squeezed and then pressed on by a
 fluid of 10 MPa, at default settings: how far each element comes, in how many steps and iterations. `reached` is the
-pressure of the fluid where the run has ended or was stopped (MPa); `motions` are the soft motions of the ring that were held at
-once, and `friction` the largest coefficient of friction that would have held as much. A run is stopped after --limit
+pressure of the fluid where the run has ended or was stopped (MPa); `motions` are the soft motions of the ring that
+were held at once, and `friction` the largest coefficient of friction that would have held as much. A run is stopped after --limit
 seconds, which leaves rows that depend on the machine. Writes runs/records/o_ring_3d_pressure.csv.
 
     build/venv/bin/python scripts/o_ring_3d_table.py --burnish build/burnish

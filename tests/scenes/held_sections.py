@@ -1,6 +1,6 @@
 """A coarse rubber ring in space that is squeezed by 30 % and then pressed on by a fluid. Its sections roll on their
-own, so that one motion that is held is not enough: with a fluid of 4 MPa the run then takes steps of 0.0005 from 1.1 MPa
-on, and is at 1.2 MPa after 20 steps."""
+own, so that one motion that is held is not enough: with a fluid of 4 MPa the run then takes steps of 0.0005 from 1.1
+MPa on, and is at 1.2 MPa after 20 steps."""
 from harness import Check, arguments, run, SCENES
 
 SCENE = SCENES.parent.parent / "runs/rubber/o_ring_3d_pressure.yaml"

@@ -14,7 +14,8 @@ args = arguments(("formulation", "of contact", ["node_to_surface", "surface_to_s
                  ("order", "of the elements", ["1", "2"]))
 check = Check()
 finished = run(args, SCENES / "ring_closed.yaml", overrides=[
-    f"mesh.order={args.order}", f"contact.0.formulation={args.formulation}", f"mesh.parameters.n={8 if args.order == '1' else 4}"
+    f"mesh.order={args.order}", f"contact.0.formulation={args.formulation}",
+    f"mesh.parameters.n={8 if args.order == '1' else 4}"
 ])
 probes = finished.summary()["probes"]
 allowed = PENETRATION + MESH[args.order]
