@@ -37,13 +37,11 @@ int ToolDof(Mesh mesh, int component)
 @*/
 const MeshTool *ToolOfPair(Mesh mesh, Scene scene, int contact)
 {
-  const char *master = scene->contacts[contact].master;
-
   for (int k = 0; k < mesh->n_tools; k++) {
     const MeshTool *tool = &mesh->tools[k];
 
     if (tool->contact == contact) return tool;
-    if (tool->body >= 0 && !tool->bolt && master && !strcmp(master, tool->name)) return tool;
+    if (tool->body >= 0 && !tool->bolt && SceneContactHasMaster(&scene->contacts[contact], tool->name)) return tool;
   }
   return NULL;
 }

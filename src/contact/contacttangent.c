@@ -237,19 +237,30 @@ static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Goes on to the next block of a pair with nodes on this rank, of those that PairName() named: term number *k, or face
+   number *k - pair->n. *block: number of the next named block. Returns PETSC_FALSE behind the last one. */
+static PetscBool NextBlock(Contact contact, const ContactPair *pair, PetscInt *k, PetscInt *block, PetscInt *n,
+                           const PetscInt **nodes)
+{
+  const PetscInt faces = pair->formulation.surface ? pair->slaves->n_faces : 0;
+
+  for (; *k < pair->n + faces; (*k)++) {
+    if (*k < pair->n && pair->stiffness[*k] <= 0) continue;
+    BlockMatrixGetNodes(contact->blocks, (*block)++, n, nodes);
+    if (*n) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 /* Adds the blocks of friction of a pair, whose first named block is `block`. Those of terms come before those of
    faces, which need the forces of all terms. */
 static PetscErrorCode FrictionBlocks(Contact contact, ContactPair *pair, int p, PetscReal t, PetscInt block)
 {
-  const PetscInt  faces = pair->formulation.surface ? pair->slaves->n_faces : 0;
   const PetscInt *nodes;
   PetscInt        n;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < pair->n + faces; k++) {
-    if (k < pair->n && pair->stiffness[k] <= 0) continue;
-    BlockMatrixGetNodes(contact->blocks, block++, &n, &nodes);
-    if (!n) continue;
+  for (PetscInt k = 0; NextBlock(contact, pair, &k, &block, &n, &nodes); k++) {
     if (k < pair->n) PetscCall(FrictionTermPrepare(pair, k));
     PetscCall(ContactWorkBlockBegin(pair->work, pair->lists->n_nodes, n, nodes));
     if (k < pair->n)
@@ -264,17 +275,14 @@ static PetscErrorCode FrictionBlocks(Contact contact, ContactPair *pair, int p, 
 /* Adds the blocks of a pair in the order in which PairName() named them, from block number *block on. */
 static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, PetscReal t, PetscInt *block)
 {
-  const PetscInt faces = pair->formulation.surface ? pair->slaves->n_faces : 0;
-  const PetscInt first = *block, *nodes;
-  PetscInt       n;
+  const PetscInt  first = *block;
+  const PetscInt *nodes;
+  PetscInt        n;
   double(*own)[FIT_DERIVATIVES_OWN] = NULL;
 
   PetscFunctionBeginUser;
   if (pair->fit.fitted) PetscCall(PetscCalloc1(pair->lists->n_points, &own));
-  for (PetscInt k = 0; k < pair->n + faces; k++) {
-    if (k < pair->n && pair->stiffness[k] <= 0) continue;
-    BlockMatrixGetNodes(contact->blocks, (*block)++, &n, &nodes);
-    if (!n) continue;
+  for (PetscInt k = 0; NextBlock(contact, pair, &k, block, &n, &nodes); k++) {
     PetscCall(ContactWorkBlockBegin(pair->work, pair->lists->n_nodes, n, nodes));
     if (k < pair->n)
       PetscCall(TermBlock(contact, pair, p, k, n, nodes, own));

@@ -17,8 +17,7 @@ static PetscBool IsWanted(Scene scene, int body, char name[MESH_TEXT])
   SceneBodySkin(&scene->bodies[body], name, MESH_TEXT);
   for (int c = 0; c < scene->n_contacts; c++)
     if (scene->contacts[c].listed &&
-        (!strcmp(scene->contacts[c].slave, name) ||
-         (scene->contacts[c].master && !strcmp(scene->contacts[c].master, name))))
+        (!strcmp(scene->contacts[c].slave, name) || SceneContactHasMaster(&scene->contacts[c], name)))
       return PETSC_TRUE;
   return PETSC_FALSE;
 }

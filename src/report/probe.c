@@ -286,7 +286,7 @@ static PetscErrorCode EvaluateReaction(Probes probes, Probe *probe, PetscReal *v
   PetscReal force[3];
 
   PetscFunctionBeginUser;
-  if (probe->tool)
+  if (ProbeOfTool(probes, probe))
     PetscCall(ToolReaction(probes, probe, force));
   else
     PetscCall(ProblemReaction(probes->model->problem, probe->group, force));
@@ -624,8 +624,6 @@ static PetscErrorCode ProbesPrepare(Probes probes, Probe *probe)
   if (type->names == NAMES_SURFACE) {
     PetscCall(MeshGetGroup(mesh, probes->scene, scene->path, type->key, scene->target, mesh->dim, &surface));
     probe->group = surface;
-    probe->tool =
-      (PetscBool)(scene->kind == PROBE_REACTION && MeshFindBody(probes->scene, scene->target, PETSC_TRUE) >= 0);
   } else if (type->names == NAMES_PAIR) {
     probe->pair =
       ContactFindPair(probes->model->contact, scene->target); /* the scene has made sure that there is one */

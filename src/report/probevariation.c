@@ -9,7 +9,7 @@ static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional
   const Mesh    mesh    = problem->mesh;
 
   PetscFunctionBeginUser;
-  if (probe->tool) {
+  if (ProbeOfTool(probes, probe)) {
     *why = "reactions of rigid tools are not varied; ask for contact_force";
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -197,14 +197,14 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   model->problem->inverted = -1;
   work->start              = 0;
   work->strayed            = PETSC_FALSE;
-  work->hold.wanted        = PetscMin(1, work->hold.accepted);
+  work->hold.wanted        = work->hold.accepted ? 1 : 0;
   work->hold.n             = 0;
   work->hold.known         = 0;
   work->hold.ready         = PETSC_FALSE;
   work->hold.released      = PETSC_FALSE;
   work->hold.moves         = PETSC_FALSE;
   work->hold.times         = 0;
-  work->hold.streak        = 0;
+  work->hold.rested        = PETSC_TRUE;
   work->cycling            = PETSC_FALSE;
   work->cycles             = 0;
   work->augmented          = PETSC_FALSE;

@@ -1,4 +1,5 @@
 /* The friction that would hold what holds soft motions, see ModelJudgeHeld(). */
+#include "kernels/rigidkernel.h"
 #include "mesh/meshdofs.h"
 #include "modelimpl.h"
 
@@ -90,26 +91,6 @@ static PetscErrorCode FrictionWork(const Rubbing *r, const PetscReal *v, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves M x = f for a positive definite M, which is destroyed, by elimination. *ok: it is one. */
-static void SolveSquares(int n, PetscReal *M, const PetscReal *f, PetscReal *x, PetscBool *ok)
-{
-  *ok = PETSC_TRUE;
-  for (int i = 0; i < n; i++) x[i] = f[i];
-  for (int i = 0; i < n && *ok; i++) {
-    *ok = (PetscBool)(M[i * n + i] > 0);
-    for (int j = i + 1; j < n && *ok; j++) {
-      const PetscReal l = M[j * n + i] / M[i * n + i];
-
-      for (int k = i; k < n; k++) M[j * n + k] -= l * M[i * n + k];
-      x[j] -= l * x[i];
-    }
-  }
-  for (int i = n - 1; i >= 0 && *ok; i--) {
-    for (int k = i + 1; k < n; k++) x[i] -= M[i * n + k] * x[k];
-    x[i] /= M[i * n + i];
-  }
-}
-
 /*@
   ModelHeldFriction - finds the coefficient of friction that would hold the forces along the motions that are held.
 
@@ -147,10 +128,12 @@ PetscErrorCode ModelHeldFriction(Model model, PetscReal *coefficient)
     }
     least = work;
     if (n == 1) break;
-    SolveSquares(n, M, held->force, x, &ok);
+    RigidCholesky(n, M, M);
+    for (int k = 0; k < n; k++) x[k] = held->force[k];
+    RigidSolve(n, M, x);
     given = 0;
     for (int k = 0; k < n; k++) given += held->force[k] * x[k];
-    ok = (PetscBool)(ok && given > 0);
+    ok = (PetscBool)(given > 0); /* no where M is singular */
     for (int k = 0; k < n && ok; k++) v[k] = x[k] / given;
   }
   *coefficient = least > 0 ? 1 / least : PETSC_INFINITY;

@@ -195,10 +195,10 @@ static PetscErrorCode HoldMore(Model model, Vec x, Vec y)
   one in the plane, and in space as many as sections of the body can roll on their own, in waves along it. What drives
   them is of the order of the errors of the mesh, and so is their stiffness, which changes its sign with each node that
   passes an edge. Newton's steps along them are arbitrary. Where a step goes too far or the tangent is indefinite, and
-it is the softest motion that does it, that is held: the rest is solved for as if the body could not go along it. Where
-  in space the rest still goes too far, so are further ones, until it does not. What that takes is a force. It stays if
-  next to no friction would hold as much, else the motions move on down that force, see ModelJudgeHeld(). This needs a
-  factor.
+  it is the softest motion that does it, that is held: the rest is solved for as if the body could not go along it.
+  Where in space the rest still goes too far, so are further ones, until it does not. What that takes is a force. It
+  stays if next to no friction would hold as much, else the motions move on down that force, see ModelJudgeHeld(). This
+  needs a factor.
 @*/
 PetscErrorCode ModelHoldMotion(Model model, Vec x, Vec F, Vec y, PetscBool near)
 {
@@ -246,7 +246,7 @@ PetscErrorCode ModelHeldResidual(Model model, Vec F, PetscReal *norm, PetscReal 
 
   PetscFunctionBeginUser;
   *force = 0;
-  if (!held->wanted || !held->known) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!held->known) PetscFunctionReturn(PETSC_SUCCESS);
   for (int i = 0; i < held->known; i++) {
     PetscCall(VecDotRealPart(F, held->b[i], &held->force[i]));
     square += PetscSqr(held->force[i]);
@@ -284,14 +284,12 @@ static PetscErrorCode BoundMove(HeldMotion *held)
   PetscCall(VecDuplicate(held->b[0], &force));
   PetscCall(VecZeroEntries(force));
   for (int i = 0; i < held->known; i++) PetscCall(VecAXPY(force, held->force[i], held->b[i]));
-  if (held->times > 1) PetscCall(VecDotRealPart(force, held->last, &along));
-  if (held->times == 1)
-    held->bound = HELD_FIRST * MODEL_FARTHEST;
-  else if (along > 0)
-    held->bound = PetscMin(MODEL_FARTHEST, HELD_GROW * held->turn);
-  else
-    held->bound = held->turn / HELD_GROW;
-  if (held->streak == 1) held->bound = PetscMax(held->bound, HELD_FIRST * MODEL_FARTHEST);
+  held->bound = 0;
+  if (held->times > 1) {
+    PetscCall(VecDotRealPart(force, held->last, &along));
+    held->bound = along > 0 ? PetscMin(MODEL_FARTHEST, HELD_GROW * held->turn) : held->turn / HELD_GROW;
+  }
+  if (held->rested) held->bound = PetscMax(held->bound, HELD_FIRST * MODEL_FARTHEST);
   PetscCall(VecDestroy(&held->last));
   held->last = force;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -324,11 +322,11 @@ PetscErrorCode ModelJudgeHeld(Model model, PetscBool *holds)
   *holds = (PetscBool)(held->friction <= HELD_FRICTION);
   PetscCall(PetscInfo(model->snes, "%d soft motions are held as by a coefficient of friction of %g%s\n", held->known,
                       (double)held->friction, *holds ? "" : ", too much"));
-  held->streak = *holds ? 0 : held->streak + 1;
-  if (*holds) PetscFunctionReturn(PETSC_SUCCESS);
-  held->moves = (PetscBool)(++held->times <= HELD_MOVES);
-  PetscCall(BoundMove(held));
-  if (held->moves) PetscFunctionReturn(PETSC_SUCCESS);
-  ModelReleaseHeld(model);
+  if (!*holds) {
+    held->moves = (PetscBool)(++held->times <= HELD_MOVES);
+    PetscCall(BoundMove(held));
+  }
+  held->rested = *holds;
+  if (!*holds && !held->moves) ModelReleaseHeld(model);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

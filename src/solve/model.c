@@ -283,7 +283,7 @@ PetscErrorCode ModelAccept(Model model)
   work->settled = work->searched = PETSC_FALSE;
   if (stepped) work->accepted_start = work->start;
   if (stepped) work->accepted_held = work->held;
-  work->hold.accepted = work->hold.wanted;
+  work->hold.accepted = (PetscBool)(work->hold.wanted > 0);
   if (work->extrapolation) PetscCall(ExtrapolationAdd(work->extrapolation, model->u, model->t));
   if (work->extrapolation && SceneBreaks(model->scene, model->t)) PetscCall(ExtrapolationForget(work->extrapolation));
   work->looked_ahead = PETSC_FALSE;
@@ -407,7 +407,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscCall(ArchiveReals(archive, "model/start", 1, &work->accepted_start));
   PetscCall(ArchiveIntegers(archive, "model/held", 1, &held));
   work->accepted_held = (PetscBool)(held & 1);
-  work->hold.accepted = (int)(held >> 1);
+  work->hold.accepted = (PetscBool)(held >> 1);
   PetscCall(ArchiveReals(archive, "model/force_scale", 1, &model->problem->force_so_far));
   if (ArchiveLoads(archive)) {
     PetscCall(PetscArraycpy(model->u, work->accepted_u, mesh->n_nodes * mesh->dim));

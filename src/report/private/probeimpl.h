@@ -7,7 +7,6 @@
 typedef struct {
   const SceneProbe *scene;
   const MeshGroup  *group; /* reaction; slave surface of the pair */
-  PetscBool         tool;  /* the reaction is that of a rigid tool */
   int               pair;
   PetscInt          id[2];      /* node_id of the points */
   PetscInt          node[2];    /* the local node on its owner, -1 elsewhere */
@@ -35,3 +34,9 @@ struct _n_Probes {
   Probe       *probe;
   GatherTable *slaves; /* per pair, of the evaluation under way; row NULL: not asked for yet */
 };
+
+/* Is a reaction asked for that is the force on a rigid tool? */
+static inline PetscBool ProbeOfTool(const struct _n_Probes *probes, const Probe *probe)
+{
+  return (PetscBool)(MeshFindBody(probes->scene, probe->scene->target, PETSC_TRUE) >= 0);
+}

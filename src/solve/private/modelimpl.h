@@ -61,7 +61,7 @@ enum { HELD_MOST = 24 };
 /* Soft motions that are held, see ModelHoldMotion() */
 typedef struct {
   int       wanted;                /* how many are to be held; 0: none */
-  int       accepted;              /* how many were in the accepted state */
+  PetscBool accepted;              /* some were in the accepted state */
   int       n;                     /* how many have their answers to the present tangent */
   int       known;                 /* how many b are motions of this load step */
   PetscBool released;              /* in this load step they take too much force */
@@ -75,7 +75,7 @@ typedef struct {
   PetscBool moves;                 /* they move on in the next step */
   PetscBool moving;                /* the step at hand is such a step */
   PetscInt  times;                 /* such steps in this load step */
-  PetscInt  streak;                /* since the force was small enough */
+  PetscBool rested;                /* the force was small enough at the last solution, or there was none yet */
   Vec       last;                  /* the force that held them before the last of them */
   PetscReal bound;                 /* by which that may turn a cell */
   PetscReal turn;                  /* by which it turned one */
