@@ -26,7 +26,6 @@ LIKE = {
     f"{PYTHON} scripts/ring_table.py": f"{PYTHON} scripts/ring_table.py --help",
     f"{PYTHON} scripts/incompressible_table.py {BURNISH}": f"{PYTHON} scripts/incompressible_table.py --help",
     f"{PYTHON} scripts/o_ring_table.py {BURNISH}": f"{PYTHON} scripts/o_ring_table.py --help",
-    f"{PYTHON} scripts/o_ring_3d_table.py {BURNISH}": f"{PYTHON} scripts/o_ring_3d_table.py --help",
     f"{PYTHON} scripts/o_ring_calculix.py": f"{PYTHON} scripts/o_ring_calculix.py --help",
     f"{PYTHON} scripts/o_ring_calculix.py --solid": f"{PYTHON} scripts/o_ring_calculix.py --help",
     "build/tests/incompressible meshes runs/records/incompressible_rates.csv": "test -s "
@@ -107,6 +106,8 @@ FULL = {
     f"{PYTHON} scripts/axis_table.py": printed("axis_table", "axis"),
     f"{PYTHON} scripts/drawn_table.py --record runs/records/drawn.csv": printed("drawn_table", "drawn"),
     f"{PYTHON} scripts/friction_table.py --record runs/records/friction.csv": printed("friction_table", "friction"),
+    f"{PYTHON} scripts/o_ring_3d_table.py --record runs/records/o_ring_3d_pressure.csv":
+    printed("o_ring_3d_table", "o_ring_3d_pressure"),
     f"{PYTHON} scripts/friction_solver_table.py --record runs/records/friction_solver.csv":
     printed("friction_solver_table", "friction_solver"),
     f"{PYTHON} scripts/plot.py out/press_fit": None,
