@@ -1,4 +1,4 @@
-/* The quadrature points of one cell: their places, displacement gradients and stresses, and how these change. */
+/* The points of one cell: their places, displacement gradients and stresses, and how these change. */
 #include "elasticityimpl.h"
 
 /* Part of a cell's size by which its nodes are moved to both sides for a derivative of its displacement gradients. The
@@ -63,45 +63,102 @@ PetscErrorCode ElasticityPointModes(Elasticity e, PetscInt cell, const PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The table of the points of a cell. */
+static const Element *PointTable(const CellGroup *g, CellPoints set)
+{
+  return set == POINTS_OF_PRODUCTS ? ElementGetProducts(g->kernel.type) : ElementGet(g->kernel.type);
+}
+
+/* How many moves of a cell show all its points, its own points counting as one. */
+static int Moves(const CellGroup *g, CellPoints set)
+{
+  return PointTable(g, set)->points / ElementGet(g->kernel.type)->points;
+}
+
+/* Moves the nodes of an element with one point so that this point stands where the element has a point of products, and
+   adds to their values what a linear field changes by: at its point the element then shows the state of that place.
+   values: [n_nodes][dim], coordinates or those of a field; n_nodes: a multiple of the corners, as pressures follow. */
+static void MoveToPoint(const CellGroup *g, CellPoints set, int point, int n_nodes, int dim, PetscReal *values)
+{
+  const Element *own = ElementGet(g->kernel.type), *table = PointTable(g, set);
+
+  if (table == own) return;
+  for (int first = 0; first < n_nodes; first += own->nodes) {
+    for (int i = 0; i < dim; i++) {
+      PetscReal change = 0;
+
+      for (int a = 0; a < own->nodes; a++)
+        change += (table->N[point][a] - own->N[0][a]) * values[(first + a) * dim + i];
+      for (int a = 0; a < own->nodes; a++) values[(first + a) * dim + i] += change;
+    }
+  }
+}
+
 /*@
-  ElasticityPlacePoints - gives the quadrature points of a cell.
+  ElasticityPlacePoints - gives the points of a cell.
 
   Not collective
 
   Input Parameters:
 + e    - the elasticity
-- cell - a local cell
+. cell - a local cell
+- set  - which points
 
   Output Parameters:
 + x      - reference coordinates (length) [points][dim]
 - volume - reference volumes, axisymmetric: over 360 degrees [points]
 @*/
-PetscErrorCode ElasticityPlacePoints(Elasticity e, PetscInt cell, PetscReal *x, PetscReal *volume)
+PetscErrorCode ElasticityPlacePoints(Elasticity e, PetscInt cell, CellPoints set, PetscReal *x, PetscReal *volume)
 {
-  const CellGroup *g       = &e->groups[e->cell_group[cell]];
-  const Element   *element = ElementGet(g->kernel.type);
-  PetscReal        X[MAX_DOFS];
+  const CellGroup *g     = &e->groups[e->cell_group[cell]];
+  const Element   *table = PointTable(g, set);
+  const int        moves = Moves(g, set);
+  PetscReal        X[MAX_DOFS], at[MAX_DOFS];
 
   PetscFunctionBeginUser;
   ElasticitySlotCoordinates(e, g, e->cell_slot[cell], X);
-  ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, X, volume);
-  for (int p = 0; p < element->points; p++) {
+  for (int m = 0; m < moves; m++) {
+    PetscCall(PetscArraycpy(at, X, table->nodes * e->dim));
+    MoveToPoint(g, set, m, table->nodes, e->dim, at);
+    ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, at, &volume[m]);
+    if (moves > 1) volume[m] /= moves;
+  }
+  for (int p = 0; p < table->points; p++) {
     for (int i = 0; i < e->dim; i++) {
       x[p * e->dim + i] = 0;
-      for (int a = 0; a < element->nodes; a++) x[p * e->dim + i] += element->N[p][a] * X[a * e->dim + i];
+      for (int a = 0; a < table->nodes; a++) x[p * e->dim + i] += table->N[p][a] * X[a * e->dim + i];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ElementPointNominal() at all points of a set. P may be NULL. */
+static void MovedStates(Elasticity e, const CellGroup *g, CellPoints set, const PetscReal *X, const PetscReal *u,
+                        const PetscReal *constants, const PetscReal *m, PetscReal *H, PetscReal *pressure, PetscReal *P)
+{
+  const int moves = Moves(g, set);
+  PetscReal X_at[MAX_DOFS], u_at[MAX_DOFS];
+
+  for (int k = 0; k < moves; k++) {
+    for (int i = 0; i < g->nodes * e->dim; i++) {
+      X_at[i] = X[i];
+      u_at[i] = u[i];
+    }
+    MoveToPoint(g, set, k, g->nodes, e->dim, X_at);
+    MoveToPoint(g, set, k, g->nodes, e->dim, u_at);
+    ElementPointNominal(&g->kernel, X_at, u_at, constants, m, &H[9 * k], &pressure[k], P ? &P[9 * k] : NULL);
+  }
+}
+
 /*@
-  ElasticityPointStates - gives displacement gradients and stresses at the quadrature points of a cell.
+  ElasticityPointStates - gives displacement gradients and stresses at points of a cell.
 
   Not collective
 
   Input Parameters:
 + e    - the elasticity; its multipliers and its accepted plastic state are those of the step to u
 . cell - a local cell
+. set  - which points
 - u    - local displacements (length) [n_nodes*dim]
 
   Output Parameters:
@@ -110,15 +167,15 @@ PetscErrorCode ElasticityPlacePoints(Elasticity e, PetscInt cell, PetscReal *x, 
 . pressure   - of a mixed element (stress), 0 of others [points]
 - compliance - of the volume of a mixed element: one over the modulus (one over stress); 0 of others
 @*/
-PetscErrorCode ElasticityPointStates(Elasticity e, PetscInt cell, const PetscReal *u, PetscReal *H, PetscReal *P,
-                                     PetscReal *pressure, PetscReal *compliance)
+PetscErrorCode ElasticityPointStates(Elasticity e, PetscInt cell, CellPoints set, const PetscReal *u, PetscReal *H,
+                                     PetscReal *P, PetscReal *pressure, PetscReal *compliance)
 {
   CellGroup *g = &e->groups[e->cell_group[cell]];
   PetscReal  X[MAX_DOFS], cell_u[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES];
 
   PetscFunctionBeginUser;
   ElasticityGatherCell(e, g, e->cell_slot[cell], u, X, cell_u, constants, m);
-  ElementPointNominal(&g->kernel, X, cell_u, constants, m, H, pressure, P);
+  MovedStates(e, g, set, X, cell_u, constants, m, H, pressure, P);
   *compliance = 0;
   if (g->kernel.formulation == FORMULATION_MIXED) {
     VolumeModuli moduli;
@@ -140,14 +197,15 @@ static PetscReal LargestDifference(int nodes, int dim, const PetscReal *v)
 }
 
 /*@
-  ElasticityPointRates - gives how displacement gradients, stresses and pressures at the quadrature points of a cell
-  change along a motion.
+  ElasticityPointRates - gives how displacement gradients, stresses and pressures at points of a cell change along a
+  motion.
 
   Not collective
 
   Input Parameters:
 + e    - the elasticity, as for ElasticityPointStates()
 . cell - a local cell
+. set  - which points
 . u    - local displacements (length) [n_nodes*dim]
 - v    - local motion [n_nodes*dim]
 
@@ -156,14 +214,13 @@ static PetscReal LargestDifference(int nodes, int dim, const PetscReal *v)
 . P        - likewise of the stress [points][9]; or NULL
 - pressure - derivative of the pressure of a mixed element, 0 of others [points]
 @*/
-PetscErrorCode ElasticityPointRates(Elasticity e, PetscInt cell, const PetscReal *u, const PetscReal *v, PetscReal *H,
-                                    PetscReal *P, PetscReal *pressure)
+PetscErrorCode ElasticityPointRates(Elasticity e, PetscInt cell, CellPoints set, const PetscReal *u, const PetscReal *v,
+                                    PetscReal *H, PetscReal *P, PetscReal *pressure)
 {
   CellGroup *g      = &e->groups[e->cell_group[cell]];
-  const int  points = ElementGet(g->kernel.type)->points, nodes = ElementGet(g->kernel.type)->nodes;
+  const int  points = PointTable(g, set)->points, nodes = ElementGet(g->kernel.type)->nodes;
   PetscReal  X[MAX_DOFS], at[MAX_DOFS], cell_u[MAX_DOFS], cell_v[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS],
-    m[MIXED_PRESSURES], H_at[ELEMENT_MAX_POINTS * 9], P_at[ELEMENT_MAX_POINTS * 9], pressure_at[ELEMENT_MAX_POINTS],
-    most, step;
+    m[MIXED_PRESSURES], most, step;
 
   PetscFunctionBeginUser;
   ElasticityGatherCell(e, g, e->cell_slot[cell], v, X, cell_v, constants, m);
@@ -178,8 +235,10 @@ PetscErrorCode ElasticityPointRates(Elasticity e, PetscInt cell, const PetscReal
   if (!(most > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   step = POINT_STEP * CellLength(g->kernel.type, e->dim, X) / most;
   for (int side = -1; side <= 1; side += 2) {
+    PetscReal H_at[ELEMENT_MAX_POINTS * 9], P_at[ELEMENT_MAX_POINTS * 9], pressure_at[ELEMENT_MAX_POINTS];
+
     for (int k = 0; k < g->nodes * e->dim; k++) at[k] = cell_u[k] + side * step * cell_v[k];
-    ElementPointNominal(&g->kernel, X, at, constants, m, H_at, pressure_at, P ? P_at : NULL);
+    MovedStates(e, g, set, X, at, constants, m, H_at, pressure_at, P ? P_at : NULL);
     for (int k = 0; k < points * 9; k++) H[k] += side * H_at[k] / (2 * step);
     for (int k = 0; k < points * 9 && P; k++) P[k] += side * P_at[k] / (2 * step);
     for (int p = 0; p < points; p++) pressure[p] += side * pressure_at[p] / (2 * step);

@@ -79,11 +79,14 @@ PetscBool      ElasticityAugments(Elasticity);
 PetscErrorCode ElasticitySetEnclosed(Elasticity, Scene, const PetscBool *prescribed);
 PetscBool      ElasticityEnclosedChange(Elasticity);
 PetscErrorCode ElasticityEnhanced(Elasticity, PetscBool *any);
-PetscErrorCode ElasticityPlacePoints(Elasticity, PetscInt cell, PetscReal *x, PetscReal *volume);
-PetscErrorCode ElasticityPointStates(Elasticity, PetscInt cell, const PetscReal *u, PetscReal *H, PetscReal *P,
-                                     PetscReal *pressure, PetscReal *compliance);
-PetscErrorCode ElasticityPointRates(Elasticity, PetscInt cell, const PetscReal *u, const PetscReal *v, PetscReal *H,
-                                    PetscReal *P, PetscReal *pressure);
+/* Points of a cell: the quadrature points of the element, or those of ElementGetProducts() */
+typedef enum { POINTS_OF_ELEMENT, POINTS_OF_PRODUCTS } CellPoints;
+
+PetscErrorCode ElasticityPlacePoints(Elasticity, PetscInt cell, CellPoints, PetscReal *x, PetscReal *volume);
+PetscErrorCode ElasticityPointStates(Elasticity, PetscInt cell, CellPoints, const PetscReal *u, PetscReal *H,
+                                     PetscReal *P, PetscReal *pressure, PetscReal *compliance);
+PetscErrorCode ElasticityPointRates(Elasticity, PetscInt cell, CellPoints, const PetscReal *u, const PetscReal *v,
+                                    PetscReal *H, PetscReal *P, PetscReal *pressure);
 PetscErrorCode ElasticityPointModes(Elasticity, PetscInt cell, const PetscReal *v, PetscReal *H);
 PetscReal      ElasticityCellModulus(Elasticity, PetscInt cell);
 PetscInt       ElasticityInvertedCell(Elasticity, int *fault);

@@ -14,6 +14,7 @@ enum { RATE_PRESSURE = 9, RATE_STRESS, RATE_MOST = RATE_STRESS + 9 };
 struct _n_BodyError {
   Mesh             mesh;
   Elasticity       elasticity;
+  Kinematics       kinematics;
   const PetscReal *u;
   Recovery         recovery;
   PetscReal       *state;      /* of the solution at the points [points][STATE_WIDTH] */
@@ -40,25 +41,66 @@ static PetscReal Dilatation(const PetscReal H[9], Kinematics kinematics)
                       H[2] * (H[3] * H[7] - F[1] * H[6]));
 }
 
-/* Evaluates the solution at the points of a cell. */
-static PetscErrorCode CellState(BodyError b, Kinematics kinematics, PetscInt cell)
+/* Are the points of products of a cell those of its element? */
+static PetscBool SamePoints(BodyError b, PetscInt cell)
 {
-  const PetscInt first  = RecoveryPoints(b->recovery, cell, NULL);
-  const int      points = ElementGet(b->mesh->cell_type[cell])->points;
-  PetscReal      H[ELEMENT_MAX_POINTS * 9], P[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
+  const ElementType type = b->mesh->cell_type[cell];
+
+  return (PetscBool)(ElementGet(type) == ElementGetProducts(type));
+}
+
+static int CountPoints(BodyError b, PetscInt cell, CellPoints set)
+{
+  const ElementType type = b->mesh->cell_type[cell];
+
+  return set == POINTS_OF_PRODUCTS ? ElementGetProducts(type)->points : ElementGet(type)->points;
+}
+
+/* Evaluates the solution at points of a cell: [points][STATE_WIDTH]. */
+static PetscErrorCode CellState(BodyError b, PetscInt cell, CellPoints set, PetscReal *states)
+{
+  PetscReal H[ELEMENT_MAX_POINTS * 9], P[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
 
   PetscFunctionBeginUser;
-  PetscCall(ElasticityPointStates(b->elasticity, cell, b->u, H, P, pressure, &b->compliance[cell]));
-  for (int p = 0; p < points; p++) {
-    PetscReal *state = &b->state[(first + p) * STATE_WIDTH];
+  PetscCall(ElasticityPointStates(b->elasticity, cell, set, b->u, H, P, pressure, &b->compliance[cell]));
+  for (int p = 0; p < CountPoints(b, cell, set); p++) {
+    PetscReal *state = &states[p * STATE_WIDTH];
 
     for (int r = 0; r < 9; r++) state[r] = P[9 * p + r];
     state[STATE_PRESSURE]   = pressure[p];
-    state[STATE_DILATATION] = Dilatation(&H[9 * p], kinematics);
+    state[STATE_DILATATION] = Dilatation(&H[9 * p], b->kinematics);
   }
-  if (!b->modes) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ElasticityPointModes(b->elasticity, cell, b->u, H));
-  PetscCall(PetscArraycpy(&b->modes[first * 9], H, points * 9));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Evaluates an adjoint solution at points of a cell: [points][rate_width]. */
+static PetscErrorCode CellRate(BodyError b, const PetscReal *y, PetscInt cell, CellPoints set, PetscReal *rates)
+{
+  PetscReal H[ELEMENT_MAX_POINTS * 9], P[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
+
+  PetscFunctionBeginUser;
+  PetscCall(ElasticityPointRates(b->elasticity, cell, set, b->u, y, H, b->modes ? P : NULL, pressure));
+  for (int p = 0; p < CountPoints(b, cell, set); p++) {
+    PetscReal *rate = &rates[p * b->rate_width];
+
+    for (int r = 0; r < 9; r++) rate[r] = H[9 * p + r];
+    rate[RATE_PRESSURE] = pressure[p];
+    for (int r = 0; r < 9 && b->modes; r++) rate[RATE_STRESS + r] = P[9 * p + r];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What modes of enhanced elements add to the displacement gradients at the quadrature points [points][9]. */
+static PetscErrorCode FillModes(BodyError b, const PetscReal *v, PetscReal *modes)
+{
+  PetscReal H[ELEMENT_MAX_POINTS * 9];
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
+    PetscCall(ElasticityPointModes(b->elasticity, c, v, H));
+    PetscCall(PetscArraycpy(&modes[RecoveryPoints(b->recovery, c, NULL) * 9], H,
+                            ElementGet(b->mesh->cell_type[c])->points * 9));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -87,13 +129,16 @@ PetscErrorCode BodyErrorCreate(Mesh mesh, Elasticity elasticity, Kinematics kine
   b->mesh       = mesh;
   b->elasticity = elasticity;
   b->u          = u;
+  b->kinematics = kinematics;
   PetscCall(RecoveryCreate(mesh, elasticity, &b->recovery));
   PetscCall(PetscMalloc2(RecoveryPoints(b->recovery, mesh->n_cells, NULL) * STATE_WIDTH, &b->state, mesh->n_cells,
                          &b->compliance));
   PetscCall(ElasticityEnhanced(elasticity, &enhanced));
   if (enhanced) PetscCall(PetscMalloc1(RecoveryPoints(b->recovery, mesh->n_cells, NULL) * 9, &b->modes));
   b->rate_width = enhanced ? RATE_MOST : RATE_STRESS;
-  for (PetscInt c = 0; c < mesh->n_cells; c++) PetscCall(CellState(b, kinematics, c));
+  if (enhanced) PetscCall(FillModes(b, u, b->modes));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    PetscCall(CellState(b, c, POINTS_OF_ELEMENT, &b->state[RecoveryPoints(b->recovery, c, NULL) * STATE_WIDTH]));
   PetscCall(RecoveryFit(b->recovery, STATE_WIDTH, b->state, &b->patches));
   *error = b;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -116,28 +161,6 @@ PetscErrorCode BodyErrorDestroy(BodyError *error)
   PetscCall(PetscFree((*error)->modes));
   PetscCall(PetscFree((*error)->patches));
   PetscCall(PetscFree(*error));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Evaluates an adjoint solution at the points of a cell. */
-static PetscErrorCode CellRate(BodyError b, const PetscReal *y, PetscInt cell, PointRates *rates)
-{
-  const PetscInt first  = RecoveryPoints(b->recovery, cell, NULL);
-  const int      points = ElementGet(b->mesh->cell_type[cell])->points;
-  PetscReal      H[ELEMENT_MAX_POINTS * 9], P[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
-
-  PetscFunctionBeginUser;
-  PetscCall(ElasticityPointRates(b->elasticity, cell, b->u, y, H, b->modes ? P : NULL, pressure));
-  for (int p = 0; p < points; p++) {
-    PetscReal *rate = &rates->value[(first + p) * b->rate_width];
-
-    for (int r = 0; r < 9; r++) rate[r] = H[9 * p + r];
-    rate[RATE_PRESSURE] = pressure[p];
-    for (int r = 0; r < 9 && b->modes; r++) rate[RATE_STRESS + r] = P[9 * p + r];
-  }
-  if (!b->modes) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ElasticityPointModes(b->elasticity, cell, y, H));
-  PetscCall(PetscArraycpy(&rates->modes[first * 9], H, points * 9));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,26 +191,37 @@ static PetscReal ModesWork(BodyError b, const PointRates *rates)
   return sum;
 }
 
-/* The part of a cell. */
-static PetscReal CellError(BodyError b, PetscInt cell, const PointRates *rates)
+/* The part of a cell. y: the adjoint solution. */
+static PetscErrorCode CellError(BodyError b, PetscInt cell, const PetscReal *y, const PointRates *rates,
+                                PetscReal *error)
 {
-  const PetscReal *volume, compliance = b->compliance[cell];
-  const PetscInt   first = RecoveryPoints(b->recovery, cell, &volume);
-  PetscReal        sum   = 0;
+  const PetscInt   first = RecoveryPoints(b->recovery, cell, NULL);
+  const PetscReal *volume, *computed_state = &b->state[first * STATE_WIDTH],
+                           *computed_rate = &rates->value[first * b->rate_width];
+  PetscReal more_states[ELEMENT_MAX_POINTS * STATE_WIDTH], more_rates[ELEMENT_MAX_POINTS * RATE_MOST];
 
-  for (int p = 0; p < ElementGet(b->mesh->cell_type[cell])->points; p++) {
-    PetscReal state[STATE_WIDTH], rate[RATE_MOST], product;
+  PetscFunctionBeginUser;
+  *error = 0;
+  if (!SamePoints(b, cell)) {
+    PetscCall(CellState(b, cell, POINTS_OF_PRODUCTS, more_states));
+    PetscCall(CellRate(b, y, cell, POINTS_OF_PRODUCTS, more_rates));
+    computed_state = more_states;
+    computed_rate  = more_rates;
+  }
+  for (int p = 0; p < RecoveryProducts(b->recovery, cell, &volume); p++) {
+    PetscReal state[STATE_WIDTH], rate[RATE_MOST], product = 0;
 
     RecoveryEvaluate(b->recovery, STATE_WIDTH, b->patches, cell, p, state);
     RecoveryEvaluate(b->recovery, b->rate_width, rates->patches, cell, p, rate);
-    product = b->modes ? ModesProduct(b, rates, first + p, state, rate) : 0;
-    for (int k = 0; k < STATE_WIDTH; k++) state[k] -= b->state[(first + p) * STATE_WIDTH + k];
-    for (int k = 0; k < RATE_STRESS; k++) rate[k] -= rates->value[(first + p) * b->rate_width + k];
+    if (b->modes && SamePoints(b, cell)) product = ModesProduct(b, rates, first + p, state, rate);
+    for (int k = 0; k < STATE_WIDTH; k++) state[k] -= computed_state[p * STATE_WIDTH + k];
+    for (int k = 0; k < RATE_STRESS; k++) rate[k] -= computed_rate[p * b->rate_width + k];
     for (int r = 0; r < 9; r++) product += state[r] * rate[r];
-    if (compliance > 0) product += rate[RATE_PRESSURE] * (state[STATE_DILATATION] - compliance * state[STATE_PRESSURE]);
-    sum -= volume[p] * product;
+    if (b->compliance[cell] > 0)
+      product += rate[RATE_PRESSURE] * (state[STATE_DILATATION] - b->compliance[cell] * state[STATE_PRESSURE]);
+    *error -= volume[p] * product;
   }
-  return sum;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -212,10 +246,12 @@ PetscErrorCode BodyErrorEvaluate(BodyError b, const PetscReal *y, PetscReal *cel
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(points * b->rate_width, &rates.value));
   if (b->modes) PetscCall(PetscMalloc1(points * 9, &rates.modes));
-  for (PetscInt c = 0; c < b->mesh->n_cells; c++) PetscCall(CellRate(b, y, c, &rates));
+  if (b->modes) PetscCall(FillModes(b, y, rates.modes));
+  for (PetscInt c = 0; c < b->mesh->n_cells; c++)
+    PetscCall(CellRate(b, y, c, POINTS_OF_ELEMENT, &rates.value[RecoveryPoints(b->recovery, c, NULL) * b->rate_width]));
   PetscCall(RecoveryFit(b->recovery, b->rate_width, rates.value, &rates.patches));
   for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
-    cells[c] = CellError(b, c, &rates);
+    PetscCall(CellError(b, c, y, &rates, &cells[c]));
     sum[0] += cells[c];
     sum[1] += PetscAbsReal(cells[c]);
   }

@@ -10,6 +10,9 @@
 
      J(u) - J(u_h) ~ -sum over points of volume (P* - P) : (G* - G).
 
+   The fields are recovered from the quadrature points. The points of the sum are those of ElementGetProducts(): at the
+   one point of a triangle or tetrahedron of first order P and G are best, and nearly all that differs is elsewhere.
+
    Where the elements are mixed, the pressure p has its own equation, that the volume be right: with q the pressure
    of y and theta = ln det F (with small strains tr grad u) the form is that of the saddle point, and
 

@@ -4,12 +4,14 @@
 struct _n_Recovery {
   Mesh       mesh;
   int        dim, degree, terms;
-  PetscInt  *point_ptr;     /* first point of each local cell */
-  PetscReal *x, *volume;    /* of the points: reference coordinates (length), reference volume */
-  PetscReal *size;          /* of the patch of each node (length) */
-  int       *patch_degree;  /* -1: no patch */
-  PetscReal *variance;      /* of its polynomial at the node */
-  PetscReal *factor;        /* RECOVERY_MATRIX for each node */
+  PetscInt  *point_ptr;   /* first point of each local cell */
+  PetscReal *x, *volume;  /* of the points: reference coordinates (length), reference volume */
+  PetscInt  *product_ptr; /* the same of the points of products */
+  PetscReal *product_x, *product_volume;
+  PetscReal *size;         /* of the patch of each node (length) */
+  int       *patch_degree; /* -1: no patch */
+  PetscReal *variance;     /* of its polynomial at the node */
+  PetscReal *factor;       /* RECOVERY_MATRIX for each node */
 };
 
 /* The element with the corners of a cell alone. */
@@ -18,20 +20,24 @@ static ElementType LinearType(ElementType type)
   return ElementGet(type)->order == 1 ? type : (ElementType)(type - 1);
 }
 
-/* Places the quadrature points of all local cells. */
-static PetscErrorCode PlacePoints(Recovery r, Elasticity elasticity)
+/* Places one set of points of all local cells; ptr: the first one of each. */
+static PetscErrorCode PlacePoints(Mesh mesh, Elasticity elasticity, CellPoints set, PetscInt **ptr, PetscReal **x,
+                                  PetscReal **volume)
 {
-  const Mesh mesh = r->mesh;
+  PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->n_cells + 1, &r->point_ptr));
-  r->point_ptr[0] = 0;
+  PetscCall(PetscMalloc1(mesh->n_cells + 1, ptr));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const ElementType type = mesh->cell_type[c];
+
+    (*ptr)[c] = n;
+    n += set == POINTS_OF_PRODUCTS ? ElementGetProducts(type)->points : ElementGet(type)->points;
+  }
+  (*ptr)[mesh->n_cells] = n;
+  PetscCall(PetscMalloc2(n * mesh->dim, x, n, volume));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
-    r->point_ptr[c + 1] = r->point_ptr[c] + ElementGet(mesh->cell_type[c])->points;
-  PetscCall(PetscMalloc2(r->point_ptr[mesh->n_cells] * r->dim, &r->x, r->point_ptr[mesh->n_cells], &r->volume));
-  for (PetscInt c = 0; c < mesh->n_cells; c++)
-    PetscCall(
-      ElasticityPlacePoints(elasticity, c, &r->x[r->point_ptr[c] * r->dim], &r->volume[r->point_ptr[c]]));
+    PetscCall(ElasticityPlacePoints(elasticity, c, set, &(*x)[(*ptr)[c] * mesh->dim], &(*volume)[(*ptr)[c]]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -61,12 +67,12 @@ static PetscErrorCode SizePatches(Recovery r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The terms of the polynomial of a node's patch at a point. */
-static void PointTerms(Recovery r, PetscInt node, PetscInt p, PetscReal terms[RECOVERY_TERMS])
+/* The terms of the polynomial of a node's patch at the place X. */
+static void PointTerms(Recovery r, PetscInt node, const PetscReal *X, PetscReal terms[RECOVERY_TERMS])
 {
   PetscReal x[3];
 
-  for (int i = 0; i < r->dim; i++) x[i] = (r->x[p * r->dim + i] - r->mesh->coords[node * r->dim + i]) / r->size[node];
+  for (int i = 0; i < r->dim; i++) x[i] = (X[i] - r->mesh->coords[node * r->dim + i]) / r->size[node];
   RecoveryBasis(r->dim, r->degree, x, terms);
 }
 
@@ -82,7 +88,7 @@ static PetscErrorCode FactorPatches(Recovery r)
       const PetscInt node = mesh->cell_nodes[mesh->cell_ptr[c] + k];
 
       for (PetscInt p = r->point_ptr[c]; p < r->point_ptr[c + 1]; p++) {
-        PointTerms(r, node, p, terms);
+        PointTerms(r, node, &r->x[p * r->dim], terms);
         RecoveryAdd(r->terms, terms, &r->factor[node * RECOVERY_MATRIX]);
       }
     }
@@ -117,7 +123,8 @@ PetscErrorCode RecoveryCreate(Mesh mesh, Elasticity elasticity, Recovery *recove
   r->terms  = RecoveryTerms(r->dim, r->degree);
   PetscCall(PetscCalloc4(mesh->n_nodes, &r->size, mesh->n_nodes, &r->patch_degree, mesh->n_nodes, &r->variance,
                          mesh->n_nodes * RECOVERY_MATRIX, &r->factor));
-  PetscCall(PlacePoints(r, elasticity));
+  PetscCall(PlacePoints(mesh, elasticity, POINTS_OF_ELEMENT, &r->point_ptr, &r->x, &r->volume));
+  PetscCall(PlacePoints(mesh, elasticity, POINTS_OF_PRODUCTS, &r->product_ptr, &r->product_x, &r->product_volume));
   PetscCall(SizePatches(r));
   PetscCall(FactorPatches(r));
   *recovery = r;
@@ -139,6 +146,8 @@ PetscErrorCode RecoveryDestroy(Recovery *recovery)
   PetscCall(PetscFree4((*recovery)->size, (*recovery)->patch_degree, (*recovery)->variance, (*recovery)->factor));
   PetscCall(PetscFree2((*recovery)->x, (*recovery)->volume));
   PetscCall(PetscFree((*recovery)->point_ptr));
+  PetscCall(PetscFree2((*recovery)->product_x, (*recovery)->product_volume));
+  PetscCall(PetscFree((*recovery)->product_ptr));
   PetscCall(PetscFree(*recovery));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -159,6 +168,24 @@ PetscInt RecoveryPoints(Recovery recovery, PetscInt cell, const PetscReal **volu
 {
   if (volume) *volume = &recovery->volume[recovery->point_ptr[cell]];
   return recovery->point_ptr[cell];
+}
+
+/*@
+  RecoveryProducts - returns the number of points of products of a local cell.
+
+  Not collective
+
+  Input Parameters:
++ recovery - the patches
+- cell     - a local cell
+
+  Output Parameter:
+. volume - reference volumes of these points
+@*/
+int RecoveryProducts(Recovery recovery, PetscInt cell, const PetscReal **volume)
+{
+  *volume = &recovery->product_volume[recovery->product_ptr[cell]];
+  return (int)(recovery->product_ptr[cell + 1] - recovery->product_ptr[cell]);
 }
 
 /*@
@@ -187,7 +214,7 @@ PetscErrorCode RecoveryFit(Recovery r, int width, const PetscReal *values, Petsc
       const PetscInt node = mesh->cell_nodes[mesh->cell_ptr[c] + k];
 
       for (PetscInt p = r->point_ptr[c]; p < r->point_ptr[c + 1]; p++) {
-        PointTerms(r, node, p, terms);
+        PointTerms(r, node, &r->x[p * r->dim], terms);
         for (int t = 0; t < r->terms; t++)
           for (int i = 0; i < width; i++) sums[node * stride + t * width + i] += terms[t] * values[p * width + i];
       }
@@ -206,7 +233,7 @@ PetscErrorCode RecoveryFit(Recovery r, int width, const PetscReal *values, Petsc
 }
 
 /*@
-  RecoveryEvaluate - gives a recovered field at a quadrature point.
+  RecoveryEvaluate - gives a recovered field at a point of products.
 
   Not collective
 
@@ -223,8 +250,8 @@ PetscErrorCode RecoveryFit(Recovery r, int width, const PetscReal *values, Petsc
 void RecoveryEvaluate(Recovery r, int width, const PetscReal *patches, PetscInt cell, int p, PetscReal *value)
 {
   const Mesh      mesh    = r->mesh;
-  const Element  *element = ElementGet(mesh->cell_type[cell]);
-  const PetscInt *nodes   = &mesh->cell_nodes[mesh->cell_ptr[cell]], stride = r->terms * width;
+  const Element  *element = ElementGetProducts(mesh->cell_type[cell]);
+  const PetscInt *nodes = &mesh->cell_nodes[mesh->cell_ptr[cell]], stride = r->terms * width;
   PetscReal       N[ELEMENT_MAX_NODES], terms[RECOVERY_TERMS], all = 0;
   int             best = 0;
 
@@ -236,7 +263,7 @@ void RecoveryEvaluate(Recovery r, int width, const PetscReal *patches, PetscInt 
 
     all += weight;
     if (weight == 0) continue;
-    PointTerms(r, nodes[k], r->point_ptr[cell] + p, terms);
+    PointTerms(r, nodes[k], &r->product_x[(r->product_ptr[cell] + p) * r->dim], terms);
     for (int t = 0; t < r->terms; t++)
       for (int i = 0; i < width; i++) value[i] += weight * terms[t] * patches[nodes[k] * stride + t * width + i];
   }

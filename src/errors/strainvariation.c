@@ -68,8 +68,8 @@ static PetscErrorCode AddCell(Mesh mesh, Scene scene, Elasticity elasticity, Pet
   PointPair mean = {{0}, {0}};
 
   PetscFunctionBeginUser;
-  PetscCall(ElasticityPlacePoints(elasticity, cell, x, volume));
-  PetscCall(ElasticityPointStates(elasticity, cell, u, H, P, pressure, &compliance));
+  PetscCall(ElasticityPlacePoints(elasticity, cell, POINTS_OF_ELEMENT, x, volume));
+  PetscCall(ElasticityPointStates(elasticity, cell, POINTS_OF_ELEMENT, u, H, P, pressure, &compliance));
   for (int p = 0; p < points; p++) {
     const PointPair pair = Pair((PetscBool)(scene->kinematics == KINEMATICS_FINITE), &H[9 * p], &P[9 * p]);
 

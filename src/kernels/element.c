@@ -76,7 +76,8 @@ static Element element_table[ELEMENT_TYPES] = {
                      .node = CORNERS_HEX},
 };
 /* clang-format on */
-static Element face_tri3; /* tri3 with the quadrature of a face */
+static Element face_tri3;    /* tri3 with the quadrature of a face */
+static Element product_tet4; /* tet4 with that of tet10 */
 
 static const double gauss2_point = 0.57735026918962576451; /* 1/sqrt(3) */
 static const double gauss3_point = 0.77459666924148337704; /* sqrt(3/5) */
@@ -324,10 +325,14 @@ static void CompleteTable(void)
       QuadratureSimplex(e, e->order == 1 ? 1 : e->dim + 1);
     Tabulate(e);
   }
-  face_tri3        = element_table[ELEMENT_TRI3];
-  face_tri3.points = 0;
+  face_tri3           = element_table[ELEMENT_TRI3];
+  face_tri3.points    = 0;
+  product_tet4        = element_table[ELEMENT_TET4];
+  product_tet4.points = 0;
   QuadratureSimplex(&face_tri3, 3);
+  QuadratureSimplex(&product_tet4, 4);
   Tabulate(&face_tri3);
+  Tabulate(&product_tet4);
 }
 
 /*@
@@ -368,6 +373,28 @@ const Element *ElementGetFace(ElementType type)
 {
   CompleteTable();
   return type == ELEMENT_TRI3 ? &face_tri3 : &element_table[type];
+}
+
+/*@
+  ElementGetProducts - returns the table of a reference element with points for products of two fields of which each
+  varies as displacements do.
+
+  Not collective
+
+  Input Parameter:
+. type - the element type of a cell
+
+  Output Parameter:
+. element - its table, as ElementGet() gives it; tri3 has three quadrature points and tet4 four, with equal weights,
+            instead of one
+
+  Note:
+  One point sees the mean of a field alone.
+@*/
+const Element *ElementGetProducts(ElementType type)
+{
+  CompleteTable();
+  return type == ELEMENT_TRI3 ? &face_tri3 : type == ELEMENT_TET4 ? &product_tet4 : &element_table[type];
 }
 
 /*@

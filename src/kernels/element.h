@@ -1,7 +1,8 @@
 /* Reference elements: nodes, faces, shape functions and quadrature. Plain C.
 
-   ElementGet() gives the table of a cell, ElementGetFace() that of a face, ElementFromGmsh() translates gmsh's number
-   of an element type. ElementShape() evaluates shape functions at any point.
+   ElementGet() gives the table of a cell, ElementGetFace() that of a face, ElementGetProducts() that of a cell with
+   points for products of fields, ElementFromGmsh() translates gmsh's number of an element type. ElementShape()
+   evaluates shape functions at any point.
 
    The order of nodes is gmsh's for every element and face (gmsh's manual, "Node ordering"). The nodes of a face are
    listed so that its normal points out of the cell. The normal follows from the order of the nodes by the right-hand
@@ -49,5 +50,6 @@ typedef struct {
 
 const Element *ElementGet(ElementType);
 const Element *ElementGetFace(ElementType);
+const Element *ElementGetProducts(ElementType);
 const Element *ElementFromGmsh(int gmsh_type);
 void           ElementShape(ElementType, const double *xi, double *N, double *dN, double *d2N);

@@ -116,6 +116,7 @@ PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
   model = errors->model;
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
+  PetscCall(ProbesEvaluate(errors->probes, errors->value)); /* first variations take their signs from here */
   PetscCall(PetscCalloc1(errors->scene->n_probes, &functional));
   PetscCall(Estimate(errors, functional));
   if (wanted >= 0 && errors->why[wanted]) {
