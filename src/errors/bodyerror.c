@@ -56,8 +56,20 @@ static int CountPoints(BodyError b, PetscInt cell, CellPoints set)
   return set == POINTS_OF_PRODUCTS ? ElementGetProducts(type)->points : ElementGet(type)->points;
 }
 
-/* Evaluates the solution at points of a cell: [points][STATE_WIDTH]. */
-static PetscErrorCode CellState(BodyError b, PetscInt cell, CellPoints set, PetscReal *states)
+/* Takes what modes add to displacement gradients of a field v at the quadrature points of a cell [points][9]. */
+static PetscErrorCode CellModes(BodyError b, const PetscReal *v, PetscInt cell, PetscReal *H, PetscReal *modes)
+{
+  const PetscInt first = RecoveryPoints(b->recovery, cell, NULL);
+
+  PetscFunctionBeginUser;
+  PetscCall(ElasticityPointModes(b->elasticity, cell, v, H));
+  PetscCall(PetscArraycpy(&modes[first * 9], H, CountPoints(b, cell, POINTS_OF_ELEMENT) * 9));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Evaluates the solution at points of a cell: [points][STATE_WIDTH]. modes: of all cells, at the quadrature points;
+   NULL: not wanted. */
+static PetscErrorCode CellState(BodyError b, PetscInt cell, CellPoints set, PetscReal *states, PetscReal *modes)
 {
   PetscReal H[ELEMENT_MAX_POINTS * 9], P[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
 
@@ -70,11 +82,13 @@ static PetscErrorCode CellState(BodyError b, PetscInt cell, CellPoints set, Pets
     state[STATE_PRESSURE]   = pressure[p];
     state[STATE_DILATATION] = Dilatation(&H[9 * p], b->kinematics);
   }
+  if (modes) PetscCall(CellModes(b, b->u, cell, H, modes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Evaluates an adjoint solution at points of a cell: [points][rate_width]. */
-static PetscErrorCode CellRate(BodyError b, const PetscReal *y, PetscInt cell, CellPoints set, PetscReal *rates)
+/* Evaluates an adjoint solution at points of a cell: [points][rate_width]. modes: as above. */
+static PetscErrorCode CellRate(BodyError b, const PetscReal *y, PetscInt cell, CellPoints set, PetscReal *rates,
+                               PetscReal *modes)
 {
   PetscReal H[ELEMENT_MAX_POINTS * 9], P[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
 
@@ -87,20 +101,7 @@ static PetscErrorCode CellRate(BodyError b, const PetscReal *y, PetscInt cell, C
     rate[RATE_PRESSURE] = pressure[p];
     for (int r = 0; r < 9 && b->modes; r++) rate[RATE_STRESS + r] = P[9 * p + r];
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What modes of enhanced elements add to the displacement gradients at the quadrature points [points][9]. */
-static PetscErrorCode FillModes(BodyError b, const PetscReal *v, PetscReal *modes)
-{
-  PetscReal H[ELEMENT_MAX_POINTS * 9];
-
-  PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
-    PetscCall(ElasticityPointModes(b->elasticity, c, v, H));
-    PetscCall(PetscArraycpy(&modes[RecoveryPoints(b->recovery, c, NULL) * 9], H,
-                            ElementGet(b->mesh->cell_type[c])->points * 9));
-  }
+  if (modes) PetscCall(CellModes(b, y, cell, H, modes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -136,9 +137,9 @@ PetscErrorCode BodyErrorCreate(Mesh mesh, Elasticity elasticity, Kinematics kine
   PetscCall(ElasticityEnhanced(elasticity, &enhanced));
   if (enhanced) PetscCall(PetscMalloc1(RecoveryPoints(b->recovery, mesh->n_cells, NULL) * 9, &b->modes));
   b->rate_width = enhanced ? RATE_MOST : RATE_STRESS;
-  if (enhanced) PetscCall(FillModes(b, u, b->modes));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
-    PetscCall(CellState(b, c, POINTS_OF_ELEMENT, &b->state[RecoveryPoints(b->recovery, c, NULL) * STATE_WIDTH]));
+    PetscCall(
+      CellState(b, c, POINTS_OF_ELEMENT, &b->state[RecoveryPoints(b->recovery, c, NULL) * STATE_WIDTH], b->modes));
   PetscCall(RecoveryFit(b->recovery, STATE_WIDTH, b->state, &b->patches));
   *error = b;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -203,8 +204,8 @@ static PetscErrorCode CellError(BodyError b, PetscInt cell, const PetscReal *y, 
   PetscFunctionBeginUser;
   *error = 0;
   if (!SamePoints(b, cell)) {
-    PetscCall(CellState(b, cell, POINTS_OF_PRODUCTS, more_states));
-    PetscCall(CellRate(b, y, cell, POINTS_OF_PRODUCTS, more_rates));
+    PetscCall(CellState(b, cell, POINTS_OF_PRODUCTS, more_states, NULL));
+    PetscCall(CellRate(b, y, cell, POINTS_OF_PRODUCTS, more_rates, NULL));
     computed_state = more_states;
     computed_rate  = more_rates;
   }
@@ -246,9 +247,9 @@ PetscErrorCode BodyErrorEvaluate(BodyError b, const PetscReal *y, PetscReal *cel
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(points * b->rate_width, &rates.value));
   if (b->modes) PetscCall(PetscMalloc1(points * 9, &rates.modes));
-  if (b->modes) PetscCall(FillModes(b, y, rates.modes));
   for (PetscInt c = 0; c < b->mesh->n_cells; c++)
-    PetscCall(CellRate(b, y, c, POINTS_OF_ELEMENT, &rates.value[RecoveryPoints(b->recovery, c, NULL) * b->rate_width]));
+    PetscCall(CellRate(b, y, c, POINTS_OF_ELEMENT, &rates.value[RecoveryPoints(b->recovery, c, NULL) * b->rate_width],
+                       rates.modes));
   PetscCall(RecoveryFit(b->recovery, b->rate_width, rates.value, &rates.patches));
   for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
     PetscCall(CellError(b, c, y, &rates, &cells[c]));
