@@ -89,8 +89,8 @@ static void DerivativesAreDifferences(void **state)
 static void QuadratureIsExact(void **state)
 {
   (void)state;
-  for (int type = 0; type <= ELEMENT_TYPES; type++) {
-    const Element *e = type < ELEMENT_TYPES ? ElementGet(type) : ElementGetFace(ELEMENT_TRI3);
+  for (int type = 0; type < 2 * ELEMENT_TYPES; type++) {
+    const Element *e = type < ELEMENT_TYPES ? ElementGet(type) : ElementGetProducts(type - ELEMENT_TYPES);
     const int      degree =
       IsSimplex(e) ? (e->points == 1 ? 1 : 2) : 2 * e->order + 1; /* total degree; per direction for tensor products */
 
@@ -117,6 +117,24 @@ static void QuadratureHasTheNumberOfPointsOfFullIntegration(void **state)
   for (int type = 0; type < ELEMENT_TYPES; type++) assert_int_equal(ElementGet(type)->points, points[type]);
   assert_int_equal(ElementGetFace(ELEMENT_TRI3)->points, 3);
   assert_ptr_equal(ElementGetFace(ELEMENT_QUAD9), ElementGet(ELEMENT_QUAD9));
+}
+
+/* Products of two linear fields need points that are exact to degree 2; all have the same weight, as cells are moved.
+ */
+static void ProductsHaveTheirPoints(void **state)
+{
+  (void)state;
+  for (int type = 0; type < ELEMENT_TYPES; type++) {
+    const Element *e = ElementGetProducts(type);
+
+    assert_int_equal(e->type, type);
+    if (ElementGet(type)->points > 1) {
+      assert_ptr_equal(e, ElementGet(type));
+      continue;
+    }
+    assert_int_equal(e->points, e->dim + 1);
+    for (int p = 0; p < e->points; p++) assert_near(e->weight[p], ElementGet(type)->weight[0] / e->points, 1e-15);
+  }
 }
 
 static void TablesAreTheShapesAtThePoints(void **state)
@@ -280,6 +298,7 @@ int main(void)
     cmocka_unit_test(DerivativesAreDifferences),
     cmocka_unit_test(QuadratureIsExact),
     cmocka_unit_test(QuadratureHasTheNumberOfPointsOfFullIntegration),
+    cmocka_unit_test(ProductsHaveTheirPoints),
     cmocka_unit_test(TablesAreTheShapesAtThePoints),
     cmocka_unit_test(FacesPointOutward),
     cmocka_unit_test(FacesAreTracesOfTheCell),
