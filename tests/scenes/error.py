@@ -24,6 +24,24 @@ for order, formulation, allowed in ((1, "fbar", 1e-4), (2, "mixed", 1e-4)):
     check.holds("the same on all ranks", abs(error["sum"] / alone - 1) < allowed, f"{error['sum']:.6g}")
 
 
+def one_point(scene, true, probe, *overrides):
+    """Effectivity on a mesh of elements with one point; the answer is that of the first step, whose sign `absolute`
+    turns."""
+    summary = run(args, scene, out="one_point", overrides=["output.error=true", "mesh.order=1", *overrides]).summary()
+    return (true - summary["probes"][probe]) / summary["error"][probe]["sum"]
+
+
+# References: of second order, triangles as in scripts/error_table.py, 16 x 8 x 8 boxes of tetrahedra
+ratio = one_point(RUNS / "free/bracket.yaml", 0.227703, "force", "mesh.parameters={refine: 2}")
+check.holds("triangles of first order: effectivity", 0.5 <= ratio <= 2, f"{ratio:.3f}")
+ratio = one_point(
+    SCENES / "rubber.yaml", 0.27015, "force", "mesh.parameters={tet: 1, nx: 8, ny: 4, nz: 4, lx: 2, skew: 0}",
+    "bodies=[{volume: block, formulation: full, material: {law: linear, E: 100, nu: 0.3}}]", "kinematics=small",
+    "supports=[{surface: x_min, ux: 0, uy: 0, uz: 0}]", "loads=[{surface: x_max, uy: -0.1}]",
+    "probes=[{name: force, reaction: x_max, component: y, absolute: true}]")
+check.holds("tetrahedra of first order: effectivity", 0.5 <= ratio <= 2, f"{ratio:.3f}")
+
+
 def sheared(kinematics, nu):
     """Estimate of a displacement of a block of distorted enhanced elements, whose solution is smooth; second order, 40 x
     40 elements: the reference."""
