@@ -269,11 +269,13 @@ PetscErrorCode FrictionFaceNodes(const ContactPair *pair, PetscInt face, PetscIn
   for (PetscInt k = 0; k < n + end - first; k++) {
     const PetscInt   q = k < n ? points[k] : first + k - n, *node;
     const PetscReal *S;
+    PetscInt         own;
 
     if (k >= n && !taken[q]) continue;
     ContactWorkNodesAdd(pair->work, v->end[q] - v->first[q], &v->number[v->first[q]]);
     if (k < n) continue;
-    ContactWorkNodesAdd(pair->work, FrictionOwnNodes(pair, q, &node, &S), node);
+    own = FrictionOwnNodes(pair, q, &node, &S); /* sets node, before it is an argument */
+    ContactWorkNodesAdd(pair->work, own, node);
     PetscCall(AddFootNodes(pair, q));
   }
   ContactWorkNodesEnd(pair->work);
