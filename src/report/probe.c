@@ -526,6 +526,21 @@ static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode EvaluateContactArea(Probes probes, Probe *probe, PetscReal *value)
+{
+  const GatherTable *slaves;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
+  *value = 0.0;
+  for (PetscInt k = 0; k < slaves->n; k++) {
+    const PetscReal *slave = &slaves->row[k * SLAVE_COLUMNS];
+
+    if (slave[SLAVE_PRESSURE] > 0.0) *value += slave[SLAVE_AREA];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A figure of a pair's friction. */
 static PetscErrorCode EvaluateFriction(Probes probes, Probe *probe, PetscReal *value)
 {
@@ -599,6 +614,7 @@ static const ProbeType types[PROBE_KINDS] = {
   [PROBE_PRESSURE_MAX]       = {"pressure_max", NAMES_PAIR, 0, NULL, EvaluatePressureMax},
   [PROBE_PRESSURE_MEAN]      = {"pressure_mean", NAMES_PAIR, 0, NULL, EvaluatePressureMean},
   [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", NAMES_PAIR, 0, NULL, EvaluatePressureDeviation},
+  [PROBE_CONTACT_AREA]       = {"contact_area", NAMES_PAIR, 0, NULL, EvaluateContactArea},
   [PROBE_FRICTION_FORCE]     = {"friction_force", NAMES_PAIR, 0, NULL, EvaluateFriction},
   [PROBE_FRICTION_TORQUE]    = {"friction_torque", NAMES_PAIR, 0, NULL, EvaluateFrictionTorque},
   [PROBE_SLIPPED_AREA]       = {"slipped_area", NAMES_PAIR, 0, NULL, EvaluateFriction},

@@ -93,6 +93,7 @@ void UnitsProbe(Scene scene, const SceneProbe *probe, char text[UNITS_TEXT])
   case PROBE_FRICTION_TORQUE:
     snprintf(text, UNITS_TEXT, "%.60s %.60s%.70s", UnitsForce(scene), UnitsLength(scene), per);
     break;
+  case PROBE_CONTACT_AREA:
   case PROBE_SLIPPED_AREA: snprintf(text, UNITS_TEXT, "%.60s%s", UnitsLength(scene), *per ? "" : "^2"); break;
   case PROBE_PRESSURE_MAX:
   case PROBE_PRESSURE_MEAN:

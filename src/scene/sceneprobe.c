@@ -20,6 +20,7 @@ static const struct {
   [PROBE_PRESSURE_MAX]       = {"pressure_max", "", "at"},
   [PROBE_PRESSURE_MEAN]      = {"pressure_mean", "", "at within"},
   [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", "", "measure excluding only"},
+  [PROBE_CONTACT_AREA]       = {"contact_area", "", ""},
   [PROBE_FRICTION_FORCE]     = {"friction_force", "component", ""},
   [PROBE_FRICTION_TORQUE]    = {"friction_torque", "", "axis at"},
   [PROBE_SLIPPED_AREA]       = {"slipped_area", "", ""},
@@ -260,7 +261,8 @@ static PetscErrorCode SceneCheckProbeName(Scene scene, const SceneProbe *probe)
 static int ProbePerThickness(ProbeKind kind)
 {
   return kind == PROBE_REACTION || kind == PROBE_BOLT_FORCE || kind == PROBE_CONTACT_FORCE ||
-         kind == PROBE_FRICTION_FORCE || kind == PROBE_FRICTION_TORQUE || kind == PROBE_SLIPPED_AREA;
+         kind == PROBE_CONTACT_AREA || kind == PROBE_FRICTION_FORCE || kind == PROBE_FRICTION_TORQUE ||
+         kind == PROBE_SLIPPED_AREA;
 }
 
 static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)

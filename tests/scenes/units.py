@@ -1,4 +1,5 @@
 """Units of the scene in the last screen, summary.json, -check and pictures; what forces are meant of."""
+import math
 import pathlib
 import subprocess
 import sys
@@ -13,11 +14,15 @@ PROBES = {
     "drag": ("friction_force: pair, component: x", "N"),
     "torque": ("friction_torque: pair", "N mm"),
     "area": ("slipped_area: pair", "mm^2"),
+    "pressed": ("contact_area: pair", "mm^2"),
     "way": ("tool_motion: pair, component: y", "mm"),
     "peak": ("pressure_max: pair", "MPa"),
     "spread": ("pressure_deviation: pair", "per cent")
 }
-PER_THICKNESS = {"force": "N/mm", "contact": "N/mm", "drag": "N/mm", "torque": "N mm/mm", "area": "mm"}
+PER_THICKNESS = {"force": "N/mm", "contact": "N/mm", "drag": "N/mm", "torque": "N mm/mm", "area": "mm", "pressed": "mm"}
+
+# Of the surface y_max of the block of 2 x 1 x 1.5; of the plane 2 x 1 per thickness, or about the axis x = 0.
+AREAS = {"solid": 3, "plane": 2, "thick": 6, "axisymmetric": 4 * math.pi}
 
 
 def pressed(name, *overrides, dim=2, **options):
@@ -42,6 +47,8 @@ def geometries():
         finished = pressed(name, UNITS, *overrides, dim=dim)
         units = finished.summary()["units"]
         check.holds(f"{name}: forces", units["forces"] == forces, units["forces"])
+        area = finished.summary()["probes"]["pressed"]
+        check.holds(f"{name}: the whole surface is in contact", abs(area / AREAS[name] - 1) < 1e-9, area)
         for key, unit in units["probes"].items():
             check.holds(f"{name}: {key}", unit == special.get(key, PROBES[key][1]), unit)
         check.holds(f"{name}: the last screen", any(
