@@ -63,7 +63,8 @@ typedef enum { WINDOW_HOLDS, WINDOW_MISSED, WINDOW_AT_BOUND } ContactWindowState
 typedef struct {
   PetscInt points;                                 /* slave points near the master */
   PetscInt plain, wider, degree_2, linear, facets; /* of these, by rung of the ladder of fall-backs */
-  PetscInt within, within_low; /* points not beyond a free edge of the master; of these, without a fit of full degree */
+  PetscInt within, within_low; /* points not beyond a free edge of the master; of these, without a fit of full degree on a
+                                  surface that is not flat */
   PetscInt neighbours_min, neighbours_max;
   PetscReal neighbours_mean;
   PetscReal pivot, amplified; /* worst guards: smallest pivot, largest sum of absolute shape values */

@@ -5,6 +5,8 @@
 
 /* Areas of shape functions below this part of the area of the term are zero: corners of 6-node triangles. */
 #define CONTACT_NO_SHAPE_AREA 1e-3
+/* Facets whose nodes are this part of their size off a plane are flat: meshes are often written with 7 digits. */
+#define CONTACT_FLAT          1e-5
 
 /* Nodes outside the window of their penalty, all pairs; -1: no pair has a window. */
 static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)
@@ -421,10 +423,31 @@ PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slav
 typedef struct {
   PetscInt  rung[RUNGS + 1]; /* slave points by rung, then those that only facets serve */
   PetscInt  points, neighbours;
-  PetscInt  within, within_low; /* not beyond a free edge of the master; of these, those of degree 2 and less */
+  PetscInt  within, within_low; /* not beyond a free edge of the master; of these, those of degree 2 and less where it is not flat */
   PetscReal least_neighbours, least_pivot; /* negative, as a maximum is taken */
   PetscReal most_neighbours, amplified, residual, facets, apart;
 } FitTally;
+
+/* Says whether all facets in the list of slave point q lie in one plane, or on one straight line. The point was just
+   evaluated with the facets, and its positions are still in the work space. */
+static PetscBool ListIsFlat(const ContactPair *pair, PetscInt q)
+{
+  NeighbourLists        lists  = pair->lists;
+  const SmootherResult *result = &pair->work->result;
+
+  for (PetscInt i = lists->facet_ptr[q]; i < lists->facet_ptr[q + 1]; i++) {
+    const Facet *facet = &lists->facet[i];
+
+    for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
+      const PetscReal *x   = &pair->work->x[facet->nodes[a] * lists->dim];
+      PetscReal        off = result->gap;
+
+      for (int d = 0; d < lists->dim; d++) off += result->normal[d] * x[d];
+      if (PetscAbsReal(off) > CONTACT_FLAT * lists->facet_size[i]) return PETSC_FALSE;
+    }
+  }
+  return PETSC_TRUE;
+}
 
 /* Adds slave point q, which has a master near, to the counts. */
 static PetscErrorCode TallyPoint(const ContactPair *pair, PetscInt q, FitTally *tally)
@@ -442,7 +465,7 @@ static PetscErrorCode TallyPoint(const ContactPair *pair, PetscInt q, FitTally *
   facets = result->gap;
   within = found && result->beyond == 0 ? PETSC_TRUE : PETSC_FALSE;
   tally->within += within;
-  tally->within_low += within && rung > RUNG_WIDER;
+  tally->within_low += within && rung > RUNG_WIDER && !ListIsFlat(pair, q);
   if (!lists->fit_n[q]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, -1, SMOOTHER_GAP, &found));
   if (!found || result->facet_served) PetscFunctionReturn(PETSC_SUCCESS);
