@@ -2,11 +2,12 @@
 #include "base/largest.h"
 #include "contactimpl.h"
 #include "penaltyrule.h"
+#include "search/surfacepatch.h"
 
 /* Areas of shape functions below this part of the area of the term are zero: corners of 6-node triangles. */
 #define CONTACT_NO_SHAPE_AREA 1e-3
 /* Facets whose nodes are this part of their size off a plane are flat: meshes are often written with 7 digits. */
-#define CONTACT_FLAT          1e-5
+#define CONTACT_FLAT 1e-5
 
 /* Nodes outside the window of their penalty, all pairs; -1: no pair has a window. */
 static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)
@@ -256,6 +257,30 @@ PetscErrorCode ContactNodePressures(Contact contact, int p, const PetscReal *u, 
 }
 
 /*@
+  ContactPatchAreas - computes what each slave node of a pair counts in a mean over a round patch, with the functions by
+  which its pressure is spread.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. p       - number of the pair
+. middle  - of the patch, reference coordinates (length)
+- radius  - of the patch (length)
+
+  Output Parameter:
+. area - area[n_nodes] of the mesh's nodes, see SurfacePatchAreas()
+@*/
+PetscErrorCode ContactPatchAreas(Contact contact, int p, const PetscReal middle[3], PetscReal radius, PetscReal *area)
+{
+  const ContactPair *pair = &contact->pairs[p];
+
+  PetscFunctionBeginUser;
+  PetscCall(SurfacePatchAreas(pair->slave, pair->geometry, (PetscBool)pair->formulation.surface, middle, radius, area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactGetNodes - gets what this rank's slave nodes of a pair show: areas, gaps, forces, pressures, normals.
 
   Collective
@@ -421,9 +446,10 @@ PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slav
 
 /* What is counted of the fits of a pair, so that one sum and one maximum over the ranks complete it. */
 typedef struct {
-  PetscInt  rung[RUNGS + 1]; /* slave points by rung, then those that only facets serve */
-  PetscInt  points, neighbours;
-  PetscInt  within, within_low; /* not beyond a free edge of the master; of these, those of degree 2 and less where it is not flat */
+  PetscInt rung[RUNGS + 1]; /* slave points by rung, then those that only facets serve */
+  PetscInt points, neighbours;
+  PetscInt within,
+    within_low; /* not beyond a free edge of the master; of these, those of degree 2 and less where it is not flat */
   PetscReal least_neighbours, least_pivot; /* negative, as a maximum is taken */
   PetscReal most_neighbours, amplified, residual, facets, apart;
 } FitTally;

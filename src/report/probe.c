@@ -477,33 +477,62 @@ static PetscErrorCode EvaluatePressureMax(Probes probes, Probe *probe, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode ProbeMeanWeights(Probes probes, const Probe *probe, ContactNodes *slaves, PetscReal **weight,
+                                PetscReal *sum)
+{
+  const Model model = probes->model;
+  const Mesh  mesh  = model->mesh;
+  PetscReal  *area  = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetNodes(model->contact, probe->pair, model->u, slaves));
+  PetscCall(PetscMalloc1(slaves->n, weight));
+  if (probe->scene->within > 0) {
+    PetscReal middle[3] = {probe->scene->point[0][0], probe->scene->point[0][1], probe->scene->point[0][2]};
+
+    PetscCall(PetscMalloc1(mesh->n_nodes, &area));
+    PetscCall(ContactPatchAreas(model->contact, probe->pair, middle, probe->scene->within, area));
+  }
+  *sum = 0;
+  for (PetscInt k = 0; k < slaves->n; k++) {
+    (*weight)[k] = area ? area[slaves->node[k]] : slaves->area[k];
+    *sum += (*weight)[k];
+  }
+  PetscCall(PetscFree(area));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NaN without contact or without a node. */
+static PetscErrorCode EvaluatePressureMean(Probes probes, Probe *probe, PetscReal *value)
+{
+  ContactNodes slaves;
+  PetscReal   *weight, area, force = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProbeMeanWeights(probes, probe, &slaves, &weight, &area));
+  for (PetscInt k = 0; k < slaves.n; k++) force += weight[k] * slaves.pressure[k];
+  PetscCall(PetscFree(weight));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &force, 1, MPIU_REAL, MPIU_SUM, probes->model->mesh->comm));
+  *value = force > 0 ? force / area : NAN;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Returns the area-weighted mean pressure over the slave nodes that the probe counts, and their area. NaN without
    contact or without a node. */
-static PetscReal MeanPressure(const Probe *probe, int dim, const GatherTable *slaves, PetscReal *area)
+static PetscReal MeanPressure(const Probe *probe, const GatherTable *slaves, PetscReal *area)
 {
-  PetscReal force = 0.0, weight;
+  PetscReal force = 0;
 
-  *area = 0.0;
+  *area = 0;
   for (PetscInt k = 0; k < slaves->n; k++) {
     const PetscReal *slave = &slaves->row[k * SLAVE_COLUMNS];
 
     if (!ProbeKeeps(probe, slave)) continue;
-    weight = ProbePatchWeight(probe->scene, dim, &slave[SLAVE_REFERENCE]) * slave[SLAVE_AREA];
-    *area += weight;
-    force += weight * slave[SLAVE_PRESSURE];
+    *area += slave[SLAVE_AREA];
+    force += slave[SLAVE_AREA] * slave[SLAVE_PRESSURE];
   }
-  return force > 0.0 ? force / *area : NAN;
-}
-
-static PetscErrorCode EvaluatePressureMean(Probes probes, Probe *probe, PetscReal *value)
-{
-  const GatherTable *slaves;
-  PetscReal          area;
-
-  PetscFunctionBeginUser;
-  PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
-  *value = MeanPressure(probe, probes->model->mesh->dim, slaves, &area);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return force > 0 ? force / *area : NAN;
 }
 
 static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, PetscReal *value)
@@ -513,7 +542,7 @@ static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, Pet
 
   PetscFunctionBeginUser;
   PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
-  mean = MeanPressure(probe, probes->model->mesh->dim, slaves, &area);
+  mean = MeanPressure(probe, slaves, &area);
   for (PetscInt k = 0; k < slaves->n; k++) {
     const PetscReal *slave = &slaves->row[k * SLAVE_COLUMNS];
     const PetscReal  off   = slave[SLAVE_PRESSURE] - mean;

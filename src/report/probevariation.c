@@ -102,15 +102,6 @@ static PetscErrorCode VaryDistance(Probes probes, const Probe *probe, Functional
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How much a local node counts in a mean pressure. */
-static PetscReal NodePatchWeight(const Probe *probe, Mesh mesh, PetscInt node)
-{
-  PetscReal X[3];
-
-  for (int i = 0; i < mesh->dim; i++) X[i] = mesh->coords[node * mesh->dim + i] + mesh->centre[i];
-  return ProbePatchWeight(probe->scene, mesh->dim, X);
-}
-
 /* The mean pressure is the sum of the nodes' normal forces over their present areas, weighted by their reference areas.
    That areas and normals change besides is left out. */
 static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functional *f, const char **why)
@@ -118,7 +109,7 @@ static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functi
   const Mesh   mesh = probes->model->mesh;
   const int    dim  = mesh->dim;
   ContactNodes slaves;
-  PetscReal   *mark, area = 0;
+  PetscReal   *mark, *share, area;
   PetscBool    shared;
 
   PetscFunctionBeginUser;
@@ -129,17 +120,16 @@ static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functi
     *why = shared ? "slave and master of the pair share nodes" : "forces of pairs with friction are not varied";
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(ContactGetNodes(probes->model->contact, probe->pair, probes->model->u, &slaves));
-  for (PetscInt k = 0; k < slaves.n; k++) area += NodePatchWeight(probe, mesh, slaves.node[k]) * slaves.area[k];
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
+  PetscCall(ProbeMeanWeights(probes, probe, &slaves, &share, &area));
   PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->pressed));
   f->pair = probe->pair;
   for (PetscInt k = 0; k < slaves.n; k++) {
-    const PetscReal weight = NodePatchWeight(probe, mesh, slaves.node[k]) *
-                             (slaves.force[k] > 0 ? slaves.area[k] * slaves.pressure[k] / slaves.force[k] : 1);
+    const PetscReal weight =
+      share[k] * (slaves.force[k] > 0 ? slaves.pressure[k] / slaves.force[k] : 1 / slaves.area[k]);
 
     for (int i = 0; i < dim; i++) f->pressed[slaves.node[k] * dim + i] = -slaves.normal[3 * k + i] * weight / area;
   }
+  PetscCall(PetscFree(share));
   PetscCall(MeshSumNodes(mesh, dim, f->pressed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -439,8 +439,8 @@ const SchemaKey SchemaKeys[] = {
    .help = "for gap a point; for friction_torque a point of the axis, by default the origin; for pressure_mean the middle "
            "of a patch; for contact_edge and pressure_max one reference coordinate, such as {z: 100}"},
   {"probes.*.within", REAL, .range = "(0, inf)", .unit = "length",
-   .help = "of pressure_mean: the mean is that of a patch of this radius around the point at; a node at the distance r "
-           "counts (1 - (r/within)^2)^2 times its area"},
+   .help = "of pressure_mean: the mean is that of a patch of this radius around the point at; what lies at the "
+           "distance r counts by (1 - (r/within)^2)^2"},
   {"probes.*.at.x|y", REAL, .unit = "length", .help = "reference coordinate"},
   {"probes.*.at.z", REAL, SOLID, .unit = "length", .help = "reference coordinate"},
   {"probes.*.axis", CHOICE, .values = "x | y | z",

@@ -16,17 +16,6 @@ typedef struct {
   PetscReal         plain; /* the value at the last evaluation, before `absolute` and `factor` */
 } Probe;
 
-/* How much a slave node counts in a mean pressure. X: its reference place (length), not relative to the mesh's centre.
- */
-static inline PetscReal ProbePatchWeight(const SceneProbe *scene, int dim, const PetscReal *X)
-{
-  PetscReal square = 0;
-
-  if (!(scene->within > 0)) return 1;
-  for (int i = 0; i < dim; i++) square += PetscSqr((X[i] - scene->point[0][i]) / scene->within);
-  return square < 1 ? PetscSqr(1 - square) : 0;
-}
-
 struct _n_Probes {
   Model        model;
   Scene        scene;
@@ -40,3 +29,7 @@ static inline PetscBool ProbeOfTool(const struct _n_Probes *probes, const Probe 
 {
   return (PetscBool)(MeshFindBody(probes->scene, probe->scene->target, PETSC_TRUE) >= 0);
 }
+
+/* Gives the slave nodes of a probe that is a mean pressure, and what each of them counts (area), weight[n]; the caller
+   frees it. sum: of all ranks. Collective. */
+PetscErrorCode ProbeMeanWeights(Probes, const Probe *, ContactNodes *, PetscReal **weight, PetscReal *sum);
