@@ -163,8 +163,8 @@ typedef enum {
   PROBE_TOOL_ROTATION,
   PROBE_BOLT_FORCE, /* the target is the body of a bolt, of the next one too */
   PROBE_BOLT_SHORTENING,
-  PROBE_PRESSURE_DEVIATION,
   PROBE_CONTACT_AREA,
+  PROBE_PRESSURE_DEVIATION,
   PROBE_FRICTION_FORCE, /* from here on the target is a pair with friction */
   PROBE_FRICTION_TORQUE,
   PROBE_SLIPPED_AREA,

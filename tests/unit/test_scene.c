@@ -74,6 +74,7 @@ static const char Everything[] =
   "  - {name: p9, tool_rotation: crown, component: y}\n"
   "  - {name: bolt_0, bolt_force: plate}\n"
   "  - {name: bolt_1, bolt_shortening: plate}\n"
+  "  - {name: pressed, contact_area: crown}\n"
   "  - {name: p10, pressure_deviation: crown, measure: rms, excluding: 2}\n"
   "  - {name: p11, pressure_deviation: crown, measure: max, only: 1.5}\n"
   "  - {name: p12, fluid_front: plate_bottom, axis: y, side: min}\n"
@@ -236,7 +237,7 @@ static void ProbesOfEveryKindArrive(void **state)
 
   (void)state;
   ReadOrFail(Everything, 0, NULL, &scene);
-  assert_int_equal(scene->n_probes, 17);
+  assert_int_equal(scene->n_probes, 18);
   probe = scene->probes;
   for (int i = 0; i < PROBE_FRICTION_FORCE; i++) assert_int_equal(probe[i].kind, i);
   for (int i = PROBE_FLUID_FRONT; i < PROBE_KINDS; i++) /* p10 and p11 are one; none is of friction */
@@ -261,10 +262,10 @@ static void ProbesOfEveryKindArrive(void **state)
   assert_string_equal(probe[10].target, "plate");
   assert_true(scene->bodies[1].bolt && scene->bodies[1].axis[1] == 1 && scene->bodies[1].locked == 0.5 &&
               MotionForce(&scene->bodies[1].motion, 0.5, 0) == 2.5 && SceneBreaks(scene, 0.5));
-  assert_true(probe[12].rms && probe[12].edge_filter == 1 && probe[12].edge_faces == 2);
-  assert_true(!probe[13].rms && probe[13].edge_filter == 2 && probe[13].edge_faces == 1.5);
-  assert_true(probe[14].axis == 1 && !probe[14].max_side);
-  assert_string_equal(probe[16].target, "plate_bottom");
+  assert_true(probe[13].rms && probe[13].edge_filter == 1 && probe[13].edge_faces == 2);
+  assert_true(!probe[14].rms && probe[14].edge_filter == 2 && probe[14].edge_faces == 1.5);
+  assert_true(probe[15].axis == 1 && !probe[15].max_side);
+  assert_string_equal(probe[17].target, "plate_bottom");
   Free(&scene);
 }
 
