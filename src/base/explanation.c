@@ -223,8 +223,9 @@ static const Explanation Unsolved[] = {
    {"the step cannot be certified"},
    "the step cannot be certified",
    "Surfaces would cross deeper than is allowed, or something would have passed through something unseen: a penalty "
-   "that is too soft, a slave that is coarser than its master, or an edge that no pair knows.",
-   "Refine the slave at the place that the message names, exchange slave and master, or leave the penalty to the run. "
+   "that is too soft, a slave that is coarser than its master, an edge that no pair knows, or the end of a slave beside "
+   "which the body bulges against the master.",
+   "Where the slave ends, add the surface beside it to the slave. Refine the slave at the place that the message names, exchange slave and master, or leave the penalty to the run. "
    "A soft penalty that is meant needs a larger `certificate.penetration`."},
   {"B203",
    {"an element turned inside out", "was inverted"},

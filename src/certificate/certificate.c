@@ -2,7 +2,14 @@
 #include "certificate/certificate.h"
 #include "analytic.h"
 #include "base/timing.h"
+#include "mesh/pressurenodes.h"
+#include "search/freeedge.h"
 #include <string.h>
+
+/* A node is at the end of a surface if it is nearer to a free edge than this part of the mean size of the faces: the
+   node in the middle of an edge that turns by 45 degrees is off the chord by a tenth of it, and other nodes are
+   further. */
+#define CERTIFICATE_AT_END 0.1
 
 /* Room for the name of a surface in a message. The scene allows 127 characters. */
 enum { SURFACE_NAME = 128 };
@@ -270,6 +277,32 @@ static PetscErrorCode Presses(Certificate certificate, int pair, PetscBool *pres
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether a slave node that stands too deep lies where the slave ends, and nothing holds it: what the body has
+   beside it bulges against the master without a contact term. */
+static PetscErrorCode IsAtEnd(Certificate certificate, const Finding *finding, const ContactSides *of, PetscBool *ends)
+{
+  const Mesh  mesh = certificate->mesh;
+  FreeEdges   edges;
+  PetscReal   X[3] = {0};
+  PetscMPIInt held = 0;
+
+  PetscFunctionBeginUser;
+  *ends = PETSC_FALSE;
+  if (finding->kind != FINDING_DEPTH || finding->tag[0] < 0 || finding->tag[1] || finding->side)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    if (mesh->node_tag[n] != finding->tag[0] || IsPressureNode(mesh, n)) continue;
+    for (int d = 0; d < mesh->dim; d++) held = held || LoadsPrescribed(certificate->loads, n * mesh->dim + d);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &held, 1, MPI_INT, MPI_MAX, mesh->comm));
+  if (held) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int d = 0; d < mesh->dim; d++) X[d] = finding->X[d] + mesh->centre[d];
+  PetscCall(FreeEdgesCreate(mesh, certificate->scene, of->scene, of->slave->group, &edges));
+  *ends = (PetscBool)(FreeEdgesDistance(edges, X) <= CERTIFICATE_AT_END * of->slave->mean_size);
+  PetscCall(FreeEdgesDestroy(&edges));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Writes who did what: nodes, face, place, and the surfaces of both. */
 static PetscErrorCode Describe(Certificate certificate, const Finding *finding, int pair, char *text, size_t size)
 {
@@ -282,11 +315,12 @@ static PetscErrorCode Describe(Certificate certificate, const Finding *finding, 
                   second                       = tool ? -1 - finding->tag[1] : finding->tag[1];
   char         who[96], face[64 + SURFACE_NAME] = "the tool";
   ContactSides of;
-  PetscBool    presses = PETSC_FALSE;
+  PetscBool    presses = PETSC_FALSE, ends;
 
   PetscFunctionBeginUser;
   ContactPairSides(certificate->contact, pair, &of);
   PetscCall(Presses(certificate, pair, &presses));
+  PetscCall(IsAtEnd(certificate, finding, &of, &ends));
   if (finding->tag[1])
     PetscCall(PetscSNPrintf(who, sizeof(who), "the edge of the nodes %lld and %lld", first, second));
   else
@@ -295,11 +329,12 @@ static PetscErrorCode Describe(Certificate certificate, const Finding *finding, 
     PetscCall(PetscSNPrintf(face, sizeof(face), "face %ld of '%s'", finding->face,
                             finding->side || !of.scene->master ? of.scene->slave : of.scene->master));
   PetscCall(PetscSNPrintf(
-    text, size, "contact '%s': %s (%.5g, %.5g, %.5g) of '%s' %s %.3g deep, at %s; allowed are %.3g%s",
+    text, size, "contact '%s': %s (%.5g, %.5g, %.5g) of '%s' %s %.3g deep, at %s; allowed are %.3g%s%s",
     ContactPairName(certificate->contact, pair), who, (double)(finding->X[0] + centre[0]),
     (double)(finding->X[1] + centre[1]), (double)(finding->X[2] + centre[2]),
     finding->side && of.scene->master ? of.scene->master : of.scene->slave, what[finding->kind], finding->depth, face,
-    finding->allowed, finding->kind == FINDING_EDGES && !presses ? "; an edge against an edge has no contact" : ""));
+    finding->allowed, finding->kind == FINDING_EDGES && !presses ? "; an edge against an edge has no contact" : "",
+    ends ? "; the slave ends there, and what the body has beside it has no contact" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
