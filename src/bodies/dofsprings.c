@@ -4,6 +4,7 @@
 struct _n_DofSprings {
   Vec       weight, anchor, work; /* of each free dof; where the spring has no force (length) */
   PetscReal scale;                /* times the weight: force per length */
+  PetscReal shift;                /* times the weight: a stiffness without force (force per length) */
   PetscBool changed;              /* the scale is another one than that of the last tangent */
 };
 
@@ -281,6 +282,67 @@ PetscErrorCode DofSpringsEnergy(DofSprings s, Vec x, PetscReal *energy)
 }
 
 /*@
+  DofSpringsShift - chooses a stiffness that the tangent has besides, as if the springs were anchored at each iterate.
+
+  Not collective, the same on all ranks
+
+  Input Parameters:
++ s     - the springs
+- shift - times the weights, it is the stiffness (force per length); 0: none
+@*/
+void DofSpringsShift(DofSprings s, PetscReal shift)
+{
+  s->shift = shift;
+}
+
+/*@
+  DofSpringsShiftWork - computes the work against springs with the stiffness of the shift, with the force that they have
+  at the end all the way from the anchor.
+
+  Collective
+
+  Input Parameters:
++ s - the springs
+- x - free displacements (length)
+
+  Output Parameter:
+. work - shift times the sum of the weights times the squared stretch
+@*/
+PetscErrorCode DofSpringsShiftWork(DofSprings s, Vec x, PetscReal *work)
+{
+  PetscScalar squares;
+  Vec         stretch = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(DofSpringsStretch(s, x, &stretch));
+  PetscCall(VecPointwiseMult(stretch, stretch, stretch));
+  PetscCall(VecDot(stretch, s->weight, &squares));
+  *work = s->shift * PetscRealPart(squares);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  DofSpringsStiffen - adds a stiffness to a matrix.
+
+  Collective
+
+  Input Parameters:
++ s     - the springs
+- scale - times the weights, it is the stiffness (force per length)
+
+  Input/Output Parameter:
+. A - the tangent
+@*/
+PetscErrorCode DofSpringsStiffen(DofSprings s, PetscReal scale, Mat A)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecCopy(s->weight, s->work));
+  PetscCall(VecScale(s->work, scale));
+  PetscCall(MatDiagonalSet(A, s->work, ADD_VALUES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   DofSpringsTangent - adds the stiffness to a matrix.
 
   Collective
@@ -294,9 +356,7 @@ PetscErrorCode DofSpringsEnergy(DofSprings s, Vec x, PetscReal *energy)
 PetscErrorCode DofSpringsTangent(DofSprings s, Mat A)
 {
   PetscFunctionBeginUser;
-  if (!s || !(s->scale > 0)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecCopy(s->weight, s->work));
-  PetscCall(VecScale(s->work, s->scale));
-  PetscCall(MatDiagonalSet(A, s->work, ADD_VALUES));
+  if (!s || !(s->scale + s->shift > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DofSpringsStiffen(s, s->scale + s->shift, A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

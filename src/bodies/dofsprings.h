@@ -21,4 +21,7 @@ PetscErrorCode DofSpringsForces(DofSprings, Vec x, Vec *force);
 PetscErrorCode DofSpringsResidual(DofSprings, Vec x, Vec F);
 PetscErrorCode DofSpringsLoad(DofSprings, Vec x, PetscReal *force, PetscReal *energy);
 PetscErrorCode DofSpringsEnergy(DofSprings, Vec x, PetscReal *energy);
+void           DofSpringsShift(DofSprings, PetscReal shift);
+PetscErrorCode DofSpringsShiftWork(DofSprings, Vec x, PetscReal *work);
+PetscErrorCode DofSpringsStiffen(DofSprings, PetscReal scale, Mat A);
 PetscErrorCode DofSpringsTangent(DofSprings, Mat A);

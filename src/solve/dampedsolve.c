@@ -199,3 +199,31 @@ PetscErrorCode ModelSolveDamped(Model model, ModelStage start, ModelStage solve,
   if (!rests && report->result == SOLVE_CONVERGED) report->result = SOLVE_RESTLESS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  ModelSolveShifted - finds a static equilibrium by Newton's method with a shifted tangent.
+
+  Collective
+
+  Input Parameters:
++ model  - without `start`, ModelAnchor() has kept where the bodies start from
+. start  - begins the load step and sets the first iterate; NULL: the bodies start from the anchor
+. solve  - finds the equilibrium of the present problem from the first iterate
+- report - costs and failures are added to it, and the energy that was taken away
+@*/
+PetscErrorCode ModelSolveShifted(Model model, ModelStage start, ModelStage solve, SolveReport *report)
+{
+  const Problem problem = model->problem;
+  Relaxation    r       = {.factor = DAMPED_FACTOR};
+
+  PetscFunctionBeginUser;
+  if (!problem->damping) PetscCall(DampingCreate(model->mesh, model->scene, model->x, &problem->damping));
+  PetscCall(ChooseFirst(model, &r));
+  PetscCall(ModelShiftBegin(model, r.scale, r.mean));
+  if (start) PetscCall((*start)(model, report));
+  if (report->result == SOLVE_CONVERGED) PetscCall((*solve)(model, report));
+  PetscCall(PetscInfo(model->snes, "solve with shifted tangents: %s, energy %g\n", SolveResults[report->result],
+                      (double)model->work->shift.taken));
+  report->damped++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

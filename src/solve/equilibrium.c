@@ -354,7 +354,12 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     work->renewed += work->left;
     if (!first && !work->left) first = ModelLags(model) && work->nearly >= 0 ? before + work->nearly : report->newton;
     PetscCall(ModelLag(model, times, &lag));
-    PetscCall(ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left, lag, &hold));
+    if (work->left && work->shift.on)
+      PetscCall(ModelShiftRenew(model));
+    else
+      PetscCall(
+        ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left, lag, &hold));
+    if (!work->left && !hold) PetscCall(ModelShiftLists(model, model->x, model->problem->expected));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
     if (lost) report->result = SOLVE_LOST;
     if (lost || (hold && !work->loosely)) break;
@@ -629,6 +634,7 @@ static PetscErrorCode ModelStartSlowly(Model model, SolveReport *report)
   PetscFunctionBeginUser;
   PetscCall(ModelDepart(model, model->t));
   PetscCall(VecCopy(model->work->accepted_x, model->x));
+  PetscCall(ModelShiftLists(model, model->x, model->problem->expected));
   PetscCall(ModelAnchor(model));
   PetscCall(ModelPredict(model, report));
   PetscCall(ModelPredictFar(model, report));
@@ -697,7 +703,7 @@ static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly
   PetscFunctionBeginUser;
   if (slowly) {
     model->t = t;
-    PetscCall(ModelSolveDamped(model, ModelStartSlowly, ModelSolveHeld, report));
+    PetscCall(ModelSolveShifted(model, ModelStartSlowly, ModelSolveHeld, report));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(ModelDepart(model, t));
@@ -758,6 +764,8 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
     }
     if (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) PetscCall(ModelSolveOn(model, slowly, report));
   }
+  report->damping = model->work->shift.on ? model->work->shift.taken : report->damping;
+  ModelShiftEnd(model);
   PetscCall(ModelEndSolve(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -259,6 +259,8 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
   if (model->contact) PetscCall(ModelFindStall(model, search));
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
+  PetscCall(SNESLineSearchGetSNES(search, &snes));
+  PetscCall(ModelShiftStep(model, x, F, y));
   if (model->contact && ModelMayRoll(model)) {
     PetscCall(ModelNearEquilibrium(model, F, &near));
     PetscCall(ModelHoldMotion(model, x, F, y, near));
@@ -266,7 +268,6 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
   PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, y));
   if (model->work->objective == OBJECTIVE_RESIDUAL || ContactHasFriction(model->contact))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SNESLineSearchGetSNES(search, &snes));
   if (model->contact && conservative && model->work->energy == 0)
     PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated in this load step */
   PetscCall(VecDotRealPart(F, y, &slope));

@@ -70,6 +70,7 @@ static PetscErrorCode ModelClear(Model m)
   PetscCall(SNESLineSearchDestroy(&m->work->backtracking));
   PetscCall(VecDestroy(&m->work->relaxed.x));
   PetscCall(VecDestroy(&m->work->relaxed.y));
+  PetscCall(VecDestroy(&m->work->shift.lists));
   PetscCall(ModelHeldDestroy(&m->work->hold));
   PetscCall(ContactCycleDestroy(&m->work->watch));
   PetscCall(ExtrapolationDestroy(&m->work->extrapolation));

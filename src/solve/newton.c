@@ -119,6 +119,21 @@ static PetscErrorCode ModelFollow(Model model, Vec x, StressReference *reference
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Chooses the shift of the tangent at x. */
+static PetscErrorCode ModelShift(Model model, Vec x)
+{
+  SNESLineSearch search;
+  PetscInt       iteration;
+  PetscReal      lambda;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetIterationNumber(model->snes, &iteration));
+  PetscCall(SNESGetLineSearch(model->snes, &search));
+  PetscCall(SNESLineSearchGetLambda(search, &lambda));
+  PetscCall(ModelShiftNext(model, x, iteration, lambda));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The Jacobian of SNES: the tangent at x. */
 static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *context)
 {
@@ -131,6 +146,7 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   (void)snes;
   (void)J;
   (void)P;
+  PetscCall(ModelShift(model, x));
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
   extrapolates = (PetscBool)(model->work->extrapolates && !model->work->uphill);
   if (extrapolates) {
@@ -166,7 +182,9 @@ static PetscErrorCode ModelLeaveLists(Model model, SNESConvergedReason *reason)
 
   PetscFunctionBeginUser;
   PetscCall(ContactListsReach(model->contact, &within));
-  if (within || model->work->renewed >= MODEL_MAX_REGATHER) PetscFunctionReturn(PETSC_SUCCESS);
+  within = (PetscBool)(within && !(model->work->shift.on && model->work->shift.wanted > 0));
+  if (within || model->work->renewed >= ModelShiftIterations(model, MODEL_MAX_REGATHER))
+    PetscFunctionReturn(PETSC_SUCCESS);
   model->work->left = PETSC_TRUE;
   *reason           = SNES_CONVERGED_ITS;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -277,8 +295,8 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   else if (model->contact)
     PetscCall(ModelLeaveLists(model, reason));
   if (model->contact && !*reason) PetscCall(ModelBreakCycle(model, fnorm, reason));
-  if (it > 0 && !*reason) PetscCall(ModelStopCrawl(model, reason));
-  if (it > 0 && !*reason) PetscCall(ModelStopUnstable(model, reason));
+  if (it > 0 && !*reason && !model->work->shift.on) PetscCall(ModelStopCrawl(model, reason));
+  if (it > 0 && !*reason && !model->work->shift.on) PetscCall(ModelStopUnstable(model, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -401,14 +419,15 @@ static SolveResult ResultFromReason(SNESConvergedReason reason)
 static PetscErrorCode ModelIterate(Model model)
 {
   PetscReal absolute, relative, step;
-  PetscInt  most, functions;
+  PetscInt  usual, most, functions;
 
   PetscFunctionBeginUser;
-  PetscCall(SNESGetTolerances(model->snes, &absolute, &relative, &step, &most, &functions));
+  PetscCall(SNESGetTolerances(model->snes, &absolute, &relative, &step, &usual, &functions));
+  most = ModelShiftIterations(model, usual);
   PetscCall(
     SNESSetTolerances(model->snes, absolute, relative, step, PetscMax(0, most - model->work->begun), functions));
   PetscCall(SNESSolve(model->snes, NULL, model->x));
-  PetscCall(SNESSetTolerances(model->snes, absolute, relative, step, most, functions));
+  PetscCall(SNESSetTolerances(model->snes, absolute, relative, step, usual, functions));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

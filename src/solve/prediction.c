@@ -36,6 +36,7 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   report->newton++;
   report->krylov += its;
   if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
+  PetscCall(ModelShiftSolve(model, u, model->x, b, dx));
   PetscCall(ModelSolveLinearContact(model, u, carried, t, dx));
   PetscCall(VecAXPY(model->x, -1, dx));
   PetscCall(ModelStepFrom(model, u));

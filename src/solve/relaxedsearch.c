@@ -449,7 +449,7 @@ static PetscErrorCode SearchBalance(const Search *s, PetscReal slope, PetscBool 
 static PetscErrorCode SearchByEnergy(const Search *s, PetscReal slope)
 {
   PetscReal rise;
-  PetscBool taken;
+  PetscBool taken = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(YieldVolumes(s));
@@ -459,7 +459,8 @@ static PetscErrorCode SearchByEnergy(const Search *s, PetscReal slope)
   else if (rise <= -SEARCH_FALL * slope)
     PetscCall(Descend(s, rise));
   else {
-    PetscCall(Relax(s, rise, slope, &taken));
+    PetscCall(PetscInfo(s->snes, "rise %g slope %g\n", (double)rise, (double)slope));
+    if (!s->model->work->shift.on) PetscCall(Relax(s, rise, slope, &taken));
     if (!taken) PetscCall(Shorten(s));
   }
   ElasticityYieldSet(s->model->problem->elasticity, PETSC_FALSE);

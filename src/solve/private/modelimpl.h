@@ -52,6 +52,16 @@ typedef struct {
   Vec       x, y;     /* free displacements at its start, and the whole step (length) */
 } RelaxedStep;
 
+/* The shift of the tangent, see ModelShiftStep() */
+typedef struct {
+  PetscBool on;          /* tangents are shifted */
+  PetscReal mean, scale; /* the elements' mean stiffness, the present shift: see damping.h */
+  PetscReal taken;       /* energy that the steps so far have given away */
+  Vec       lists;       /* free displacements at which contact lists were made (length) */
+  PetscReal reach;       /* motion from there that they are good for (length) */
+  PetscReal wanted;      /* motion that new ones must be good for, as a step leads out of them (length); 0: none does */
+} ShiftedStep;
+
 /* At most so many soft motions are held at a time. A ring rolls in waves around it, and its mesh knows as many of them
    as it has elements there. Each takes a solve with the factor in an iteration; the bound keeps them cheap beside a
    factor.
@@ -140,6 +150,7 @@ typedef struct _n_ModelWork {
   /* One solve by SNES */
   Objective   objective;
   RelaxedStep relaxed;
+  ShiftedStep shift;
   HeldMotion  hold;
   PetscReal   norms[LINE_MEMORY]; /* residuals of the last iterates, where there is friction */
   PetscBool   stalled;            /* with friction: the last LINE_MEMORY iterations have hardly lowered the residual */
@@ -169,6 +180,15 @@ PetscErrorCode ModelLargestTurn(Model, const PetscReal *u, const PetscReal *v, P
 PetscErrorCode ModelDropPressures(Model, Vec from, Vec to);
 PetscErrorCode ModelSoftMotion(Model, Vec y, Vec v, PetscReal *stiffness, PetscReal *part);
 PetscErrorCode ModelSoftPart(Model, Vec y, Vec soft, PetscReal *stiffness);
+/* shiftedstep.c */
+PetscErrorCode ModelShiftBegin(Model, PetscReal first, PetscReal mean);
+void           ModelShiftEnd(Model);
+PetscInt       ModelShiftIterations(Model, PetscInt usual);
+PetscErrorCode ModelShiftNext(Model, Vec x, PetscInt iteration, PetscReal lambda);
+PetscErrorCode ModelShiftLists(Model, Vec x, PetscReal reach);
+PetscErrorCode ModelShiftRenew(Model);
+PetscErrorCode ModelShiftSolve(Model, const PetscReal *u, Vec x, Vec b, Vec y);
+PetscErrorCode ModelShiftStep(Model, Vec x, Vec F, Vec y);
 /* heldspace.c */
 PetscErrorCode ModelHeldDestroy(HeldMotion *);
 PetscErrorCode ModelHeldAdd(Model, Vec start, PetscReal *stiffness, PetscReal *part);
@@ -212,6 +232,7 @@ PetscErrorCode ModelFollowLists(Model, SolveReport *);
 /* dampedsolve.c */
 typedef PetscErrorCode (*ModelStage)(Model, SolveReport *);
 PetscErrorCode ModelAnchor(Model);
+PetscErrorCode ModelSolveShifted(Model, ModelStage start, ModelStage solve, SolveReport *);
 PetscErrorCode ModelSolveDamped(Model, ModelStage start, ModelStage solve, SolveReport *);
 /* penaltyramp.c */
 PetscErrorCode ModelContactOverdone(Model, PetscBool *overdone);
