@@ -112,6 +112,8 @@ typedef struct _n_Model {
   PetscReal     t;
   EnergyBalance balance; /* NULL: no body is plastic, and no step is judged */
   PetscReal most_facing; /* turn (radians) of surfaces opposite each other above which ModelSolve() does not begin */
+  PetscBool doubts; /* the step has failed before, and a restraint may help: ModelSolve() ends where tangents stay
+                       indefinite */
   PetscBool shortens; /* ModelSolve() does not begin where the first linear step goes too far and pieces do not help */
   Certificate          certificate; /* NULL: there is no contact, or the scene switches it off */
   struct _n_ModelWork *work;

@@ -232,15 +232,15 @@ static PetscErrorCode ModelStopCrawl(Model model, SNESConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends a solve that wanders where equilibrium is not stable, if the scene lets a restraint help then. Nodes with
-   pressures have negative eigenvalues of their own. */
+/* Ends a solve that wanders where equilibrium is not stable, if a restraint may help then. Nodes with pressures have
+   negative eigenvalues of their own. */
 static PetscErrorCode ModelStopUnstable(Model model, SNESConvergedReason *reason)
 {
   ModelWork *work = model->work;
   PetscInt   negatives;
 
   PetscFunctionBeginUser;
-  if (!model->scene->stepping.damped || model->mesh->saddle || !ProblemConservative(model->problem))
+  if (!model->doubts || model->mesh->saddle || !ProblemConservative(model->problem))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LinearSolverNegatives(work->solver, &negatives));
   if (negatives >= 0) work->indefinite = negatives ? work->indefinite + 1 : 0;

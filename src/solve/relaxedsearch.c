@@ -536,6 +536,10 @@ PetscErrorCode ModelSearchRelaxed(SNESLineSearch search, void *context)
   if (work->hold.wanted && work->hold.moving) ModelReleaseHeld(s.model);
   if (lambda < 1) work->relaxed.waits = PETSC_FALSE;
   PetscCall(VecDotRealPart(s.F, s.y, &slope));
+  if (work->shift.on && lambda == 1 && work->objective == OBJECTIVE_RESIDUAL) {
+    PetscCall(Take(&s, 1));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (!work->relaxed.waits && (lambda < 1 || work->objective == OBJECTIVE_RESIDUAL || SearchJumps(&s))) {
     if (lambda == 1) PetscCall(SearchClosely(&s, slope, &taken));
     if (lambda == 1 && SearchJumps(&s)) PetscCall(SearchBalance(&s, slope, &taken));

@@ -631,6 +631,7 @@ static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscRe
   const PetscBool slowly = (PetscBool)(*failures >= STEPPER_STATIC);
 
   PetscFunctionBeginUser;
+  stepper->model->doubts   = (PetscBool)(stepper->model->scene->stepping.damped && *failures > 0);
   stepper->model->shortens = (PetscBool)(stepper->shortens && !slowly && STEPPER_CUT * dt >= stepper->size.dt_min);
   if (slowly) {
     PetscCall(ModelSolveSlowly(stepper->model, end, solve));
