@@ -13,6 +13,7 @@
 #define SHIFT_MOST  1
 /* A search that leaves less than this of a step shows that the shift is too small. */
 #define SHIFT_SHORT 0.25
+#define SHIFT_FARTHEST 0.2
 /* Contact lists are made for this multiple of the step that would lead out of the present ones. */
 #define SHIFT_AHEAD 2
 /* Iterations of a shifted solve, in those that solver.max_iterations allows others. On the way down from an equilibrium
@@ -96,6 +97,7 @@ PetscErrorCode ModelShiftNext(Model model, Vec x, PetscInt iteration, PetscReal 
   PetscCall(DofSpringsAnchor(spring, x));
   if (iteration > 0 && lambda >= 1) shift->scale /= SHIFT_LOWER;
   if (iteration > 0 && lambda < SHIFT_SHORT) shift->scale *= SHIFT_RAISE;
+  shift->cut = (PetscBool)(iteration > 0 && lambda < SHIFT_SHORT);
   shift->scale = PetscMin(SHIFT_MOST * shift->mean, PetscMax(SHIFT_LEAST * shift->mean, shift->scale));
   DofSpringsShift(spring, shift->scale);
   PetscCall(LinearSolverRenew(model->work->solver));
@@ -163,7 +165,7 @@ static PetscErrorCode Serves(Model model, const PetscReal *u, Vec x, Vec b, Vec 
   PetscCall(VecWAXPY(end, -1, y, x));
   PetscCall(ProblemDisplacements(model->problem, end, model->t, v));
   PetscCall(ModelLargestTurn(model, u, v, &turn));
-  *serves = (PetscBool)(turn <= MODEL_FARTHEST);
+  *serves = (PetscBool)(turn <= SHIFT_FARTHEST);
   PetscCall(VecDestroy(&end));
   PetscCall(PetscFree(v));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -173,7 +175,7 @@ static PetscErrorCode Serves(Model model, const PetscReal *u, Vec x, Vec b, Vec 
 static PetscErrorCode Reach(Model model, Vec x, Vec y)
 {
   ShiftedStep *shift = &model->work->shift;
-  PetscReal    motion, step;
+  PetscReal    moved, motion, step;
   Vec          way;
 
   PetscFunctionBeginUser;
@@ -181,11 +183,12 @@ static PetscErrorCode Reach(Model model, Vec x, Vec y)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(x, &way));
   PetscCall(VecWAXPY(way, -1, shift->lists, x));
+  PetscCall(VecNorm(way, NORM_INFINITY, &moved));
   PetscCall(VecAXPY(way, -1, y));
   PetscCall(VecNorm(way, NORM_INFINITY, &motion));
   PetscCall(VecNorm(y, NORM_INFINITY, &step));
   PetscCall(VecDestroy(&way));
-  if (motion <= shift->reach) PetscFunctionReturn(PETSC_SUCCESS);
+  if (motion <= shift->reach && !(shift->cut && moved > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   shift->wanted = SHIFT_AHEAD * step;
   PetscCall(VecSet(y, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

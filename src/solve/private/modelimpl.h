@@ -57,6 +57,7 @@ typedef struct {
   PetscBool on;          /* tangents are shifted */
   PetscReal mean, scale; /* the elements' mean stiffness, the present shift: see damping.h */
   PetscReal taken;       /* energy that the steps so far have given away */
+  PetscBool cut;         /* the last step was shortened much */
   Vec       lists;       /* free displacements at which contact lists were made (length) */
   PetscReal reach;       /* motion from there that they are good for (length) */
   PetscReal wanted;      /* motion that new ones must be good for, as a step leads out of them (length); 0: none does */
