@@ -123,7 +123,8 @@ PetscBool DofSpringsChanged(DofSprings s)
 }
 
 /*@
-  DofSpringsMean - finds the scale at which the springs are as stiff as a matrix is, in the mean over the dofs.
+  DofSpringsMean - finds the scale at which the springs are as stiff as a matrix is, in the mean over the dofs that have
+  one.
 
   Collective
 
@@ -136,12 +137,23 @@ PetscBool DofSpringsChanged(DofSprings s)
 @*/
 PetscErrorCode DofSpringsMean(DofSprings s, Vec diagonal, PetscReal *scale)
 {
-  PetscScalar stiffness, weight;
+  const PetscScalar *stiffness, *weight;
+  PetscReal          sum[2] = {0, 0};
+  PetscInt           n;
 
   PetscFunctionBeginUser;
-  PetscCall(VecSum(diagonal, &stiffness));
-  PetscCall(VecSum(s->weight, &weight));
-  *scale = PetscRealPart(stiffness) / PetscRealPart(weight);
+  PetscCall(VecGetLocalSize(diagonal, &n));
+  PetscCall(VecGetArrayRead(diagonal, &stiffness));
+  PetscCall(VecGetArrayRead(s->weight, &weight));
+  for (PetscInt i = 0; i < n; i++) {
+    if (weight[i] == 0) continue;
+    sum[0] += stiffness[i];
+    sum[1] += weight[i];
+  }
+  PetscCall(VecRestoreArrayRead(diagonal, &stiffness));
+  PetscCall(VecRestoreArrayRead(s->weight, &weight));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, PetscObjectComm((PetscObject)diagonal)));
+  *scale = sum[0] / sum[1];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

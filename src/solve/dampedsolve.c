@@ -222,8 +222,7 @@ PetscErrorCode ModelSolveShifted(Model model, ModelStage start, ModelStage solve
   PetscCall(ModelShiftBegin(model, r.scale, r.mean));
   if (start) PetscCall((*start)(model, report));
   if (report->result == SOLVE_CONVERGED) PetscCall((*solve)(model, report));
-  PetscCall(PetscInfo(model->snes, "solve with shifted tangents: %s, energy %g\n", SolveResults[report->result],
-                      (double)model->work->shift.taken));
+  PetscCall(PetscInfo(model->snes, "solve with shifted tangents: %s\n", SolveResults[report->result]));
   report->damped++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

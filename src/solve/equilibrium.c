@@ -764,8 +764,7 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
     }
     if (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) PetscCall(ModelSolveOn(model, slowly, report));
   }
-  report->damping = model->work->shift.on ? model->work->shift.taken : report->damping;
-  ModelShiftEnd(model);
+  PetscCall(ModelShiftEnd(model, &report->damping));
   PetscCall(ModelEndSolve(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,7 @@
 /* Newton's steps with a shifted tangent, where bodies buckle or snap: (K + s V) y = R. */
 #include "base/timing.h"
+#include "mesh/meshdofs.h"
+#include "mesh/pressurenodes.h"
 #include "modelimpl.h"
 
 /* A shift that does not serve is raised by this factor, */
@@ -20,6 +22,26 @@
    that is lost there are many, and none that fails. */
 #define SHIFT_LONGER 10
 
+/* Counts the unknown pressures of nodes. A stable equilibrium has a negative eigenvalue for each. Collective. */
+static PetscErrorCode CountPressures(Model model, PetscInt *pressures)
+{
+  const Mesh     mesh = model->mesh;
+  const PetscInt n    = mesh->n_nodes * mesh->dim;
+  PetscReal     *is, sum;
+  Vec            free;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &is));
+  PetscCall(VecDuplicate(model->x, &free));
+  for (PetscInt i = 0; i < n; i++) is[i] = IsPressureNode(mesh, i / mesh->dim);
+  PetscCall(MeshCollectFree(mesh, is, free));
+  PetscCall(VecSum(free, &sum));
+  *pressures = (PetscInt)(sum + 0.5);
+  PetscCall(VecDestroy(&free));
+  PetscCall(PetscFree(is));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelShiftBegin - lets the tangents of the following solves be shifted.
 
@@ -38,25 +60,59 @@ PetscErrorCode ModelShiftBegin(Model model, PetscReal first, PetscReal mean)
   shift->on    = PETSC_TRUE;
   shift->mean  = mean;
   shift->scale = PetscMax(first, SHIFT_LEAST * mean);
-  shift->taken = 0;
+  shift->works = 0;
+  shift->start = INFINITY;
+  PetscCall(CountPressures(model, &shift->pressures));
   PetscCall(DofSpringsAnchor(model->problem->damping, model->x));
   DofSpringsShift(model->problem->damping, shift->scale);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Potential energy at free displacements; infinite where loads or friction leave none. */
+static PetscErrorCode Potential(Model model, Vec x, PetscReal *energy)
+{
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  *energy = INFINITY;
+  if (!LoadsConservative(model->problem->loads) || ContactHasFriction(model->contact))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ProblemSetTrial(model->problem, x, model->t));
+  PetscCall(ProblemEnergy(model->problem, model->problem->trial, model->t, ENERGY_POTENTIAL, energy, &ok));
+  if (!ok) *energy = INFINITY;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
   ModelShiftEnd - lets the tangents be those of the problem again.
 
-  Not collective, the same on all ranks
+  Collective
 
   Input Parameter:
-. model - the model
+. model - its trial displacements are those of the last iterate
+
+  Output Parameter:
+. taken - energy that the steps have taken away
+
+  Note:
+  That is what the potential has fallen by at the load of the step, or the work against springs that are anchored at
+  each iterate, whichever is less. The first counts what the linear step of the start has put into stiff parts, the
+  second what iterates on the way have.
 @*/
-void ModelShiftEnd(Model model)
+PetscErrorCode ModelShiftEnd(Model model, PetscReal *taken)
 {
-  if (!model->work->shift.on) return;
-  model->work->shift.on = PETSC_FALSE;
+  ShiftedStep *shift = &model->work->shift;
+  PetscReal    end;
+
+  PetscFunctionBeginUser;
+  *taken = 0;
+  if (!shift->on) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Potential(model, model->x, &end));
+  *taken = PetscMax(0, PetscMin(shift->works, shift->start - end));
+  PetscCall(PetscInfo(model->snes, "shifted steps: works %g, fall %g\n", (double)shift->works, (double)(shift->start - end)));
+  shift->on = PETSC_FALSE;
   DofSpringsShift(model->problem->damping, 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -93,7 +149,8 @@ PetscErrorCode ModelShiftNext(Model model, Vec x, PetscInt iteration, PetscReal 
   PetscFunctionBeginUser;
   if (!shift->on) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DofSpringsShiftWork(spring, x, &work));
-  shift->taken += work;
+  shift->works += work;
+  if (PetscIsInfReal(shift->start)) PetscCall(Potential(model, x, &shift->start));
   PetscCall(DofSpringsAnchor(spring, x));
   if (iteration > 0 && lambda >= 1) shift->scale /= SHIFT_LOWER;
   if (iteration > 0 && lambda < SHIFT_SHORT) shift->scale *= SHIFT_RAISE;
@@ -158,7 +215,7 @@ static PetscErrorCode Serves(Model model, const PetscReal *u, Vec x, Vec b, Vec 
   PetscFunctionBeginUser;
   PetscCall(LinearSolverNegatives(model->work->solver, &negatives));
   PetscCall(VecDotRealPart(b, y, &slope));
-  *serves = (PetscBool)((negatives <= 0 || model->mesh->saddle) && slope > 0);
+  *serves = (PetscBool)(negatives <= model->work->shift.pressures && slope > 0);
   if (!*serves) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &v));
   PetscCall(VecDuplicate(x, &end));
@@ -171,26 +228,34 @@ static PetscErrorCode Serves(Model model, const PetscReal *u, Vec x, Vec b, Vec 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds out whether the step from x to x - y leads out of the contact lists. It is not made then: new lists are. */
+/* Finds out whether the step from x to x - y leads out of the contact lists, or the one before was cut since lists were
+   made elsewhere. Then it is not made: new lists are. */
 static PetscErrorCode Reach(Model model, Vec x, Vec y)
 {
-  ShiftedStep *shift = &model->work->shift;
-  PetscReal    moved, motion, step;
-  Vec          way;
+  const Problem   problem = model->problem;
+  const PetscReal t       = model->t;
+  ShiftedStep    *shift   = &model->work->shift;
+  const PetscInt  n       = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal      *from, *to, moved, motion, step;
+  Vec             end;
 
   PetscFunctionBeginUser;
   if (!model->contact || !shift->lists || model->work->renewed >= ModelShiftIterations(model, MODEL_MAX_REGATHER))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDuplicate(x, &way));
-  PetscCall(VecWAXPY(way, -1, shift->lists, x));
-  PetscCall(VecNorm(way, NORM_INFINITY, &moved));
-  PetscCall(VecAXPY(way, -1, y));
-  PetscCall(VecNorm(way, NORM_INFINITY, &motion));
-  PetscCall(VecNorm(y, NORM_INFINITY, &step));
-  PetscCall(VecDestroy(&way));
-  if (motion <= shift->reach && !(shift->cut && moved > 0)) PetscFunctionReturn(PETSC_SUCCESS);
-  shift->wanted = SHIFT_AHEAD * step;
-  PetscCall(VecSet(y, 0));
+  PetscCall(PetscMalloc2(n, &from, n, &to));
+  PetscCall(VecDuplicate(x, &end));
+  PetscCall(VecWAXPY(end, -1, y, x));
+  PetscCall(ProblemDisplacements(problem, shift->lists, t, from));
+  PetscCall(ProblemDisplacements(problem, end, t, to));
+  PetscCall(ProblemMotion(problem, from, t, problem->trial, t, &moved));
+  PetscCall(ProblemMotion(problem, from, t, to, t, &motion));
+  PetscCall(ProblemMotion(problem, problem->trial, t, to, t, &step));
+  if (motion > shift->reach || (shift->cut && moved > 0)) {
+    shift->wanted = SHIFT_AHEAD * step;
+    PetscCall(VecSet(y, 0));
+  }
+  PetscCall(VecDestroy(&end));
+  PetscCall(PetscFree2(from, to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -55,8 +55,10 @@ typedef struct {
 /* The shift of the tangent, see ModelShiftStep() */
 typedef struct {
   PetscBool on;          /* tangents are shifted */
+  PetscInt  pressures;   /* unknowns that are pressures of nodes */
   PetscReal mean, scale; /* the elements' mean stiffness, the present shift: see damping.h */
-  PetscReal taken;       /* energy that the steps so far have given away */
+  PetscReal works;       /* work of the steps so far against springs that are anchored at each iterate */
+  PetscReal start;       /* potential energy at the first iterate; infinite: there is none */
   PetscBool cut;         /* the last step was shortened much */
   Vec       lists;       /* free displacements at which contact lists were made (length) */
   PetscReal reach;       /* motion from there that they are good for (length) */
@@ -183,7 +185,7 @@ PetscErrorCode ModelSoftMotion(Model, Vec y, Vec v, PetscReal *stiffness, PetscR
 PetscErrorCode ModelSoftPart(Model, Vec y, Vec soft, PetscReal *stiffness);
 /* shiftedstep.c */
 PetscErrorCode ModelShiftBegin(Model, PetscReal first, PetscReal mean);
-void           ModelShiftEnd(Model);
+PetscErrorCode ModelShiftEnd(Model, PetscReal *taken);
 PetscInt       ModelShiftIterations(Model, PetscInt usual);
 PetscErrorCode ModelShiftNext(Model, Vec x, PetscInt iteration, PetscReal lambda);
 PetscErrorCode ModelShiftLists(Model, Vec x, PetscReal reach);
