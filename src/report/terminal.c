@@ -10,6 +10,8 @@
 
 /* Damping that took more than this part of the stored energy is warned of. */
 #define TERMINAL_DAMPED 0.01
+/* From this part on, more was lost than is stored: the answer is that of the damping. */
+#define TERMINAL_LOST 1
 /* Ties that hold more than this part of the forces are told with what lowers that. It is a tenth of the error that a
    run without any settings may have. */
 #define TERMINAL_TIED 1e-3
@@ -489,17 +491,32 @@ static void WarnInaccurate(const RunFigures *figures)
           figures->run->message ? "" : "Newton's method converged all the same, but ");
 }
 
-/* Says what a viscous restraint took out of the bodies in steps that failed without it. Warns where that is much. */
+/* The energy that damping took, over what is stored at the end. */
+static PetscReal DampingShare(const RunFigures *figures)
+{
+  const PetscReal taken = figures->run->way->damping;
+
+  if (!(taken > 0)) return 0;
+  return figures->stored > 0 ? taken / figures->stored : PETSC_INFINITY;
+}
+
+/* Says what damping took out of the bodies in steps that failed without it. Warns where that is much. */
 static void PrintDamping(const RunFigures *figures)
 {
-  const StepperReport *report = figures->run->way;
-  const PetscReal      share  = figures->stored > 0 ? report->damping / figures->stored : PETSC_INFINITY;
+  const StepperReport *report    = figures->run->way;
+  const PetscReal      thickness = figures->scene->thickness, share = DampingShare(figures);
 
   if (!report->damped) return;
   printf("damping of steps that failed without it: %lld steps, took an energy of %.4g, %.2g of what is stored; all "
          "steps end in static equilibrium\n",
-         (long long)report->damped, (double)report->damping * figures->scene->thickness, (double)share);
-  if (share > TERMINAL_DAMPED)
+         (long long)report->damped, (double)(report->damping * thickness), (double)share);
+  if (share > TERMINAL_LOST)
+    fprintf(
+      stderr,
+      "burnish: warning: damping took an energy of %.4g, more than the %.4g that is stored at the end: the answer "
+      "is that of the damping. It is no answer to the load until shorter steps (stepping.dt_max) lose less\n",
+      (double)(report->damping * thickness), (double)(figures->stored * thickness));
+  else if (share > TERMINAL_DAMPED)
     fprintf(stderr,
             "burnish: warning: damping took %.3g of the energy that is stored at the end: the bodies went through "
             "states that are no static equilibria, and inertia may bring real parts elsewhere\n",
@@ -531,8 +548,9 @@ static void PrintFreeBodies(const RunFigures *figures)
            (long long)report->relaxed, (double)report->share);
 }
 
-static void PrintLast(Terminal terminal, const RunRecord *run)
+static void PrintLast(Terminal terminal, const RunFigures *figures)
 {
+  const RunRecord     *run    = figures->run;
   const StepperReport *report = run->way;
   char                 text[DURATION_SIZE];
 
@@ -544,7 +562,8 @@ static void PrintLast(Terminal terminal, const RunRecord *run)
   if (report->cycles)
     printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n",
            (long long)report->cycles, (long long)report->cycles_cut, report->cycle);
-  printf("%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status,
+  printf("%s%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status,
+         DampingShare(figures) > TERMINAL_LOST ? ", but damping took more than is stored" : "",
          (long long)report->steps, (long long)report->steps_failed, (long long)report->steps_repeated,
          (long long)report->newton_iterations, DurationText((double)run->wall_s, text), terminal->directory);
   fflush(stdout);
@@ -586,6 +605,6 @@ PetscErrorCode TerminalEnd(Terminal terminal, const TerminalLast *last)
            (long long)counts->solves, (long long)counts->steps);
   WarnInaccurate(figures);
   if (run->message) fprintf(stderr, "burnish: %s: %s\n", run->status, run->message);
-  if (terminal->talks) PrintLast(terminal, run);
+  if (terminal->talks) PrintLast(terminal, figures);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -373,8 +373,8 @@ const SchemaKey SchemaKeys[] = {
            "left, over the larger one of the forces before and now. A step with more is repeated with a smaller dt as "
            "long as that lessens it, down to dt_min. 0: no bound, as without the key where control is fixed"},
   {"stepping.damping", CHOICE, .values = "none | auto", .preset = "none",
-   .help = "auto: where static steps fail, the bodies are followed in pseudo-time, slowed down by a viscous restraint "
-           "that is taken away before the step ends; the last screen says how much energy it took"},
+   .help = "auto: where static steps fail, Newton's method goes on with a tangent that is stiffened as long as it is not "
+           "positive definite; the end is a static equilibrium, and the last screen says how much energy was lost"},
   {"stepping.at", REALS, .range = "(0, 1]", .help = "load parameters at which a step must end"},
   {"stepping.steps", LIST, .range = "[1, inf)",
    .help = "parts of the way from t = 0 to 1, with names that `during` uses. Each may have many load steps, and one ends "

@@ -1,4 +1,4 @@
-/* A viscous restraint of all bodies, see damping.h. */
+/* Springs at the dofs of all bodies, see damping.h. */
 #include "solve/damping.h"
 #include "kernels/elementkernel.h"
 
@@ -19,7 +19,7 @@ static PetscErrorCode NodeVolumes(Mesh mesh, Scene scene, PetscReal *volume)
 }
 
 /*@
-  DampingCreate - makes the restraint, with a scale of 0.
+  DampingCreate - makes the springs, with a scale of 0.
 
   Collective
 

@@ -628,27 +628,15 @@ static PetscErrorCode ModelJudgeTurn(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Begins a load step to model->t by a linear step, with the restraint of the first pseudo-time step. */
+/* Begins a load step to model->t by a linear step with the first shift of the tangent. */
 static PetscErrorCode ModelStartSlowly(Model model, SolveReport *report)
 {
   PetscFunctionBeginUser;
   PetscCall(ModelDepart(model, model->t));
   PetscCall(VecCopy(model->work->accepted_x, model->x));
   PetscCall(ModelShiftLists(model, model->x, model->problem->expected));
-  PetscCall(ModelAnchor(model));
   PetscCall(ModelPredict(model, report));
   PetscCall(ModelPredictFar(model, report));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Solves on after a fluid has moved or penalties have changed. A damped solve slows down what follows, too, where a
-   static solve fails. */
-static PetscErrorCode ModelSolveOn(Model model, PetscBool slowly, SolveReport *report)
-{
-  PetscFunctionBeginUser;
-  if (slowly) PetscCall(ModelAnchor(model));
-  PetscCall(ModelSolveHeld(model, report));
-  if (slowly && report->result != SOLVE_CONVERGED) PetscCall(ModelSolveDamped(model, NULL, ModelSolveHeld, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -703,7 +691,7 @@ static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly
   PetscFunctionBeginUser;
   if (slowly) {
     model->t = t;
-    PetscCall(ModelSolveShifted(model, ModelStartSlowly, ModelSolveHeld, report));
+    PetscCall(ModelSolveDamped(model, ModelStartSlowly, ModelSolveHeld, report));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(ModelDepart(model, t));
@@ -762,7 +750,7 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
       if (window == WINDOW_HOLDS && report->result == SOLVE_CONVERGED)
         PetscCall(ModelBoundDepth(model, report, &window));
     }
-    if (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) PetscCall(ModelSolveOn(model, slowly, report));
+    if (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
   }
   PetscCall(ModelShiftEnd(model, &report->damping));
   PetscCall(ModelEndSolve(model, report));
@@ -801,8 +789,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 }
 
 /*@
-  ModelSolveSlowly - finds equilibrium at a load parameter by following the bodies from the accepted state in
-  pseudo-time, slowed down by a viscous restraint.
+  ModelSolveSlowly - finds equilibrium at a load parameter by Newton's method with shifted tangents.
 
   Collective
 
@@ -811,11 +798,10 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 - t     - load parameter
 
   Output Parameter:
-. report - as ModelSolve() says; report->damping is the energy that the restraint took
+. report - as ModelSolve() says; report->damping is the energy that was taken away
 
   Note:
-  For load steps at which ModelSolve() fails, as where a body snaps through. The solution is an equilibrium without the
-  restraint, see ModelSolveDamped().
+  For load steps at which ModelSolve() fails, as where a body snaps through. See ModelSolveDamped().
 @*/
 PetscErrorCode ModelSolveSlowly(Model model, PetscReal t, SolveReport *report)
 {

@@ -2,8 +2,8 @@
    accepted last, and accepts the new state or takes it back.
 
    ModelCreate(), ModelPlace() and ModelSetUp() are called once, in this order; ModelArchive() with an archive that
-   loads takes the place of ModelSetUp(). ModelSolve() finds equilibrium at t, ModelSolveSlowly() by way of a viscous
-   motion where that fails. ModelAccept() makes it the accepted state, ModelCertify() judges the step to it before.
+   loads takes the place of ModelSetUp(). ModelSolve() finds equilibrium at t, ModelSolveSlowly() with shifted
+   tangents where that fails. ModelAccept() makes it the accepted state, ModelCertify() judges the step to it before.
    ModelRestore() returns to the accepted state. ModelChangeSupports() comes between two steps. The model does not know
    step sizes; src/step chooses them. */
 #pragma once
@@ -79,8 +79,8 @@ typedef struct {
   PetscInt    motions;     /* soft motions that are held */
   PetscInt    cycles;      /* times that the contact set repeated itself and Newton's steps were shortened */
   char        cycle[256];  /* the last repetition: its period and nodes, in gmsh's tags */
-  PetscInt    damped;      /* pseudo-time steps with a viscous restraint; 0: a static solve */
-  PetscReal   damping;     /* energy that the restraint took */
+  PetscInt    damped;      /* 1: tangents were shifted */
+  PetscReal   damping;     /* energy that was taken away then */
   char        jump[256];   /* the node that jumped to another equilibrium, and how far; empty: none did */
   PetscReal   facing;      /* SOLVE_FACING: turn of surfaces that lie opposite each other (radians) */
   PetscReal   far;         /* SOLVE_FAR: turn of cells in the first linear step, over the largest one */
@@ -112,8 +112,8 @@ typedef struct _n_Model {
   PetscReal     t;
   EnergyBalance balance; /* NULL: no body is plastic, and no step is judged */
   PetscReal most_facing; /* turn (radians) of surfaces opposite each other above which ModelSolve() does not begin */
-  PetscBool doubts; /* the step has failed before, and a restraint may help: ModelSolve() ends where tangents stay
-                       indefinite */
+  PetscBool doubts;      /* the step has failed before, and a restraint may help: ModelSolve() ends where tangents stay
+                            indefinite */
   PetscBool shortens; /* ModelSolve() does not begin where the first linear step goes too far and pieces do not help */
   Certificate          certificate; /* NULL: there is no contact, or the scene switches it off */
   struct _n_ModelWork *work;

@@ -240,8 +240,7 @@ static PetscErrorCode ModelStopUnstable(Model model, SNESConvergedReason *reason
   PetscInt   negatives;
 
   PetscFunctionBeginUser;
-  if (!model->doubts || model->mesh->saddle || !ProblemConservative(model->problem))
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!model->doubts || model->mesh->saddle || !ProblemConservative(model->problem)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LinearSolverNegatives(work->solver, &negatives));
   if (negatives >= 0) work->indefinite = negatives ? work->indefinite + 1 : 0;
   if (work->indefinite < NEWTON_UNSTABLE) PetscFunctionReturn(PETSC_SUCCESS);

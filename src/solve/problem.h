@@ -56,7 +56,7 @@ typedef struct _n_Problem {
   FreeModes      modes;   /* rigid motions that supports leave to the bodies */
   FreeBodies     bodies;  /* that contact is to hold; NULL: there are none */
   ContactSprings springs; /* of these bodies; NULL: there are none */
-  DofSprings     damping; /* of solves in pseudo-time; NULL: there was none yet */
+  DofSprings     damping; /* of solves with shifted tangents; NULL: there was none yet */
   PetscBool      tied;    /* other motions are tied than in the last tangent */
   TangentForm    form;
   Mat            A;            /* K + C */

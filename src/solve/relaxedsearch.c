@@ -459,7 +459,6 @@ static PetscErrorCode SearchByEnergy(const Search *s, PetscReal slope)
   else if (rise <= -SEARCH_FALL * slope)
     PetscCall(Descend(s, rise));
   else {
-    PetscCall(PetscInfo(s->snes, "rise %g slope %g\n", (double)rise, (double)slope));
     if (!s->model->work->shift.on) PetscCall(Relax(s, rise, slope, &taken));
     if (!taken) PetscCall(Shorten(s));
   }

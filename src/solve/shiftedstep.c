@@ -15,6 +15,8 @@
 #define SHIFT_MOST  1
 /* A search that leaves less than this of a step shows that the shift is too small. */
 #define SHIFT_SHORT 0.25
+/* A step may turn cells by this much. The way down is bent, and steps as long as MODEL_FARTHEST leave it: of a rubber
+   block with nine holes none of them finds the end of its first jump. */
 #define SHIFT_FARTHEST 0.2
 /* Contact lists are made for this multiple of the step that would lead out of the present ones. */
 #define SHIFT_AHEAD 2
@@ -109,7 +111,8 @@ PetscErrorCode ModelShiftEnd(Model model, PetscReal *taken)
   if (!shift->on) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Potential(model, model->x, &end));
   *taken = PetscMax(0, PetscMin(shift->works, shift->start - end));
-  PetscCall(PetscInfo(model->snes, "shifted steps: works %g, fall %g\n", (double)shift->works, (double)(shift->start - end)));
+  PetscCall(
+    PetscInfo(model->snes, "shifted steps: works %g, fall %g\n", (double)shift->works, (double)(shift->start - end)));
   shift->on = PETSC_FALSE;
   DofSpringsShift(model->problem->damping, 0);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -154,7 +157,7 @@ PetscErrorCode ModelShiftNext(Model model, Vec x, PetscInt iteration, PetscReal 
   PetscCall(DofSpringsAnchor(spring, x));
   if (iteration > 0 && lambda >= 1) shift->scale /= SHIFT_LOWER;
   if (iteration > 0 && lambda < SHIFT_SHORT) shift->scale *= SHIFT_RAISE;
-  shift->cut = (PetscBool)(iteration > 0 && lambda < SHIFT_SHORT);
+  shift->cut   = (PetscBool)(iteration > 0 && lambda < SHIFT_SHORT);
   shift->scale = PetscMin(SHIFT_MOST * shift->mean, PetscMax(SHIFT_LEAST * shift->mean, shift->scale));
   DofSpringsShift(spring, shift->scale);
   PetscCall(LinearSolverRenew(model->work->solver));

@@ -2,13 +2,14 @@
    offers to those above it.
 
    problem.c is below all of them, and freebodies.c and rigidsearch.c below it. tangent.c makes the tangent and prepares
-   its linear solver. softmotion.c finds the softest motion in a linear step, heldmotion.c holds such motions: heldspace.c
+   its linear solver. softmotion.c finds the softest motion in a linear step, shiftedstep.c shifts the tangent
+   where bodies buckle or snap, heldmotion.c holds such motions: heldspace.c
    finds them, heldsolve.c solves with them held, heldfriction.c tells what friction would hold them. linearcontact.c
    finds the contact that is right at the end of a linear step. linecuts.c says why a line search shortened its step.
    slopesearch.c finds how far a step of bodies that yield leads to balance, relaxedsearch.c is the line search,
    linesearch.c chooses what it compares, and corrects steps for contact. newton.c runs SNES once with the present
    contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties, dampedsolve.c
-   follows the bodies in pseudo-time where Newton's method finds no equilibrium. penaltyerror.c estimates what
+   solves with shifted tangents where Newton's method finds no equilibrium. penaltyerror.c estimates what
    penetration leaves of error and stiffens penalties, jump.c tells an equilibrium that was reached by a jump, adjoint.c
    weighs errors of a solution. equilibrium.c goes from an accepted state to the next one. model.c holds the accepted
    state. Each file calls only those named before it. */
@@ -234,8 +235,6 @@ PetscErrorCode ModelPredictFar(Model, SolveReport *);
 PetscErrorCode ModelFollowLists(Model, SolveReport *);
 /* dampedsolve.c */
 typedef PetscErrorCode (*ModelStage)(Model, SolveReport *);
-PetscErrorCode ModelAnchor(Model);
-PetscErrorCode ModelSolveShifted(Model, ModelStage start, ModelStage solve, SolveReport *);
 PetscErrorCode ModelSolveDamped(Model, ModelStage start, ModelStage solve, SolveReport *);
 /* penaltyramp.c */
 PetscErrorCode ModelContactOverdone(Model, PetscBool *overdone);

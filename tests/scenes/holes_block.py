@@ -1,0 +1,16 @@
+"""A rubber block with nine holes jumps aside where its walls buckle. Static steps get no farther than that; damped ones
+do, and the run says what the jump lost."""
+from harness import Check, arguments, run, SCENES
+
+args = arguments()
+check = Check()
+scene = SCENES / "holes_block.yaml"
+
+damped = run(args, scene, out="holes_block", overrides=("stepping.damping=auto", )).summary()
+check.holds("damped: some steps", damped["damping"]["steps"] >= 1, str(damped["damping"]))
+check.holds("damped: jumps", damped["jumps"]["found"] >= 1, str(damped["jumps"]))
+share = damped["damping"]["energy_taken"] / damped["damping"]["stored_energy"]
+check.holds("damped: little is lost", 0 < share < 0.1, f"{share:.3g}")
+check.holds("damped: energies balance", damped["energy"]["apart"] < 0.01 * damped["energy"]["external"],
+            str(damped["energy"]))
+check.finish()
