@@ -52,9 +52,8 @@ typedef struct {
   PetscReal begun;  /* the same of points that begin to flow, times the growth of strain over the elastic one */
 } PlasticPath;
 
-/* States on the way whose multipliers are kept: the one to which a damped solve returns, and the start of a step whose
-   line search is not over */
-typedef enum { VOLUMES_OF_ANCHOR, VOLUMES_OF_SEARCH, VOLUMES_KEPT } VolumesKept;
+/* States on the way whose multipliers are kept: the start of a step whose line search is not over */
+typedef enum { VOLUMES_OF_SEARCH, VOLUMES_KEPT } VolumesKept;
 
 void           ElasticitySetTime(Elasticity, PetscReal t);
 PetscErrorCode ElasticityAcceptPlastic(Elasticity, const PetscReal *u, PetscReal t, PlasticPath *);

@@ -25,7 +25,6 @@ const char *const SolveResults[] = {
   "surfaces that lie opposite each other turn too far in one step",
   "the bodies go too far in one step",
   "a routine of the user's (law: umat) failed",
-  "the bodies came to no rest in pseudo-time",
   "the bodies go far for the load, and the step is too long to say whether they jump to another equilibrium",
   "the tangent stayed indefinite: the bodies leave an equilibrium that is not stable",
   "not-a-number in the residual"};
