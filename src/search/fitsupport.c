@@ -146,6 +146,7 @@ PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const Sea
                             lists->point_hoop};
   for (PetscInt i = 0; i < n && first; i++) FaceSpacing(fit, i);
   PetscCall(NeighbourhoodsCreate(&fit->view, &fit->neighbourhoods));
+  PetscCall(CornerNormalsCreate(&fit->view, &fit->corners));
   if (lists->dim == 3 && !s->fit->global_frame) PetscCall(FaceRowsCreate(&fit->view, fit->neighbourhoods, &fit->rows));
   PetscCall(PetscMalloc7(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier,
                          FIT_MAX_POINTS, &fit->taper,
@@ -169,6 +170,7 @@ PetscErrorCode FitSupportDestroy(FitSupport *fit)
 
   PetscFunctionBeginUser;
   PetscCall(FaceRowsDestroy(&fit->rows));
+  PetscCall(CornerNormalsDestroy(&fit->corners));
   PetscCall(NeighbourhoodsDestroy(&fit->neighbourhoods));
   if (fit->view.first) PetscCall(PetscFree2(fit->view.first, fit->view.count));
   PetscCall(PetscFree5(fit->normals, fit->reference, fit->geometry, facets, x));
@@ -452,14 +454,13 @@ static void KeepFrame(const FitSupport *fit, PetscInt q, FitFoot *at)
 PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q, PetscInt first, ListBuffer *buffer)
 {
   NeighbourLists   lists = fit->lists;
-  const Candidate *best  = &look->candidates[look->best];
   FitFoot          at    = {.facet = look->best, .xi = {look->foot.xi[0], look->foot.xi[1]}, .past = FootPast(look)};
   FitProblem       problem;
   FitResult        result;
 
   PetscFunctionBeginUser;
   /* The foot's own normal may lie along the surface where the foot is on an edge. */
-  for (int d = 0; d < 3; d++) at.outward[d] = best->normal[d];
+  for (int d = 0; d < 3; d++) at.outward[d] = look->normal[d];
   for (int d = 0; d < lists->dim; d++) {
     at.X[d]    = lists->slave_X[q * lists->dim + d];
     at.u[d]    = lists->slave_u[q * lists->dim + d];

@@ -486,7 +486,7 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
     }
   }
   if (n > facing) share *= DeepShare(look, facing, n, found);
-  return share * NeighbourListsOpposed(look->lists, look->q, look->candidates[look->best].normal);
+  return share * NeighbourListsOpposed(look->lists, look->q, look->normal);
 }
 
 /*@

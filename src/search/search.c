@@ -177,6 +177,15 @@ static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes the normal of the master at the slave point's foot. */
+static void TakeNormal(Nearest *look, const FitSupport *fit)
+{
+  if (fit)
+    CornerNormalsAt(fit->corners, look->best, look->foot.xi, look->normal);
+  else
+    for (int d = 0; d < 3; d++) look->normal[d] = look->candidates[look->best].normal[d];
+}
+
 /* Finds the nearest facet of one slave point, lists it with all facets within margin and motion of it, and fits the
    surface there. look gives the slave point, the size of its face and the distance within which it is searched. found
    and ends have room for all candidates. possible: which points may have a partner; NULL: any of them. */
@@ -200,6 +209,7 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   count  = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
   facing = FlankSort(look, &count, found);
   FlankLeaveCorner(look, facing, found);
+  TakeNormal(look, fit);
   lists->share[q] = FlankShare(look, facing, count, found, ends);
   if (lists->share[q] == 0 && !look->one_body) lists->averse[q] = FlankIsBeside(look, facing, count, found);
   lists->kappa[q] = ListCurvature(look, facing, found);

@@ -8,6 +8,7 @@
 #pragma once
 #include "base/boxtree.h"
 #include "boundingbox.h"
+#include "cornernormals.h"
 #include "facerows.h"
 #include "smooth/facethull.h"
 #include "search/search.h"
@@ -101,7 +102,8 @@ typedef struct {
   /* Distance (length) of the nearest candidate of all, or the largest one that is searched. Distances that differ by
      less than tie are equal. */
   PetscReal least, tie;
-  Foot      foot;    /* on the best candidate */
+  Foot      foot;      /* on the best candidate */
+  PetscReal normal[3]; /* of the master there: where there are fits, one that does not jump from facet to facet */
   PetscBool averse;  /* a candidate within a face of the slave does not face the point */
   PetscInt *aversed; /* of every point of the lists: 1 + the last slave point that does not face a facet there */
 } Nearest;
@@ -132,6 +134,7 @@ typedef struct {
   SurfaceView    view;
   Neighbourhoods neighbourhoods;
   FaceRows       rows; /* NULL in 2D and for a single reference plane */
+  CornerNormals  corners;
   PetscReal     *normals, *reference;
   NodeGeometry  *geometry;
   PetscInt      *points; /* of the present slave point, with room for FIT_MAX_POINTS */
