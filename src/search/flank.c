@@ -216,13 +216,31 @@ int FlankSort(const Nearest *look, int *n, int *found)
   return facing;
 }
 
-/* Does the centre of a facet lie in front of the plane of another one? */
-static PetscBool InFront(const Nearest *look, const Candidate *c, const Candidate *o)
+/* Do two facets form a hollow, each with its centre in front of the plane of the other one, as seen across the nearest
+   one along the normal of the slave point? A wall that bends along itself is hollow, too, but leads to no better facet:
+   only what lies in the plane of that normal and that of the nearest facet counts. */
+static PetscBool FormHollow(const Nearest *look, const Candidate *nearest, const Candidate *c)
 {
-  PetscReal height = 0;
+  const int        dim = look->lists->dim;
+  const PetscReal *own = look->outward;
+  PetscReal        across[3] = {0, 0, 0}, way[3] = {0, 0, 0}, along = 0, part[2] = {0, 0}, length = 0;
+  PetscReal        height[2] = {0, 0};
 
-  for (int d = 0; d < look->lists->dim; d++) height += c->normal[d] * (o->centre[d] - c->centre[d]);
-  return (PetscBool)(height > FLANK_BELOW * look->size);
+  for (int d = 0; d < dim; d++) along += nearest->normal[d] * own[d];
+  for (int d = 0; d < dim; d++) across[d] = nearest->normal[d] - along * own[d];
+  for (int d = 0; d < dim; d++) length += PetscSqr(across[d]);
+  for (int d = 0; d < dim; d++) {
+    way[d] = c->centre[d] - nearest->centre[d];
+    part[0] += way[d] * own[d];
+    part[1] += way[d] * across[d] / (length > 0 ? length : 1);
+  }
+  for (int d = 0; d < dim; d++) {
+    const PetscReal there = part[0] * own[d] + part[1] * across[d];
+
+    height[0] += nearest->normal[d] * there;
+    height[1] -= c->normal[d] * there;
+  }
+  return (PetscBool)(PetscMin(height[0], height[1]) > FLANK_BELOW * look->size);
 }
 
 /*@
@@ -252,7 +270,7 @@ void FlankLeaveCorner(Nearest *look, int facing, const int *found)
     PetscReal        away, distance, rank;
     Foot             foot;
 
-    if (!InFront(look, nearest, c) || !InFront(look, c, nearest)) continue;
+    if (!FormHollow(look, nearest, c)) continue;
     away = look->size * (1 - NeighbourListsOpposed(look->lists, look->q, c->normal));
     if (CandidateBoxDistance(look->lists->dim, c, look->x) + away > least + look->tie) continue;
     distance = CandidateFoot(look, c, &foot);
