@@ -30,6 +30,9 @@
 /* The area factor past a free edge is frozen in a solve. A larger change than this makes the step solve again. */
 #define CONTACT_FACTOR_AGREES 1e-2
 
+/* Where the change of a factor is more than this part of that before, its secant does not lead to where it settles. */
+#define FACTOR_SETTLES 0.5
+
 /* Motions that differ by less than this fraction differ by round-off. */
 #define CONTACT_SAME_MOTION 1e-9
 
@@ -138,19 +141,26 @@ static void FactorBracket(const ContactPair *pair, PetscInt q, PetscReal fresh, 
 }
 
 /* Factors follow the solution, and the solution follows the factors. Within a step a factor that would turn back is set
-   between its last two values, where their secant sees no change any more. One that turns back again is set to the
+   between its last two values, where their secant sees no change any more. Once it is known between which two it must
+   be, the secant goes on as long as the change becomes less by FACTOR_SETTLES each time. Else the factor is set to the
    middle: a soft body may answer to a little more or less area by a jump. */
 static void PairDampFactors(ContactPair *pair)
 {
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
     const PetscBool known = (PetscBool)(pair->factor_low[q] >= 0 && pair->factor_high[q] <= 1);
     const PetscReal now = pair->factor[q], change = pair->next_factor[q] - now, before = pair->factor_change[q];
+    const PetscReal secant = now - (change != before ? change * (now - pair->factor_before[q]) / (change - before) : 0);
+    PetscReal       low, high;
 
-    FactorBracket(pair, q, pair->next_factor[q], &pair->factor_low[q], &pair->factor_high[q]);
-    if (known && change != 0 && pair->factor_low[q] >= 0 && pair->factor_high[q] <= 1)
-      pair->next_factor[q] = (pair->factor_low[q] + pair->factor_high[q]) / 2;
+    FactorBracket(pair, q, pair->next_factor[q], &low, &high);
+    pair->factor_low[q]  = low;
+    pair->factor_high[q] = high;
+    if (known && change != 0 && low >= 0 && high <= 1)
+      pair->next_factor[q] = PetscAbsReal(change) < FACTOR_SETTLES * PetscAbsReal(before) && secant > low && secant < high
+                               ? secant
+                               : (low + high) / 2;
     else if (change * before < 0)
-      pair->next_factor[q] = now - change * (now - pair->factor_before[q]) / (change - before);
+      pair->next_factor[q] = secant;
     pair->factor_change[q] = change;
     pair->factor_before[q] = now;
   }
