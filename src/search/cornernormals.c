@@ -124,10 +124,7 @@ static void CornerShares(const Element *e, const double *xi, double N[CORNERS])
     for (int k = 0; k < 2; k++) at[k] /= sum;
   } else
     for (int k = 0; k < e->dim; k++) at[k] = PetscMax(-1, PetscMin(1, xi[k]));
-  ElementShape(e->corners == 2   ? ELEMENT_EDGE2
-               : e->corners == 3 ? ELEMENT_TRI3
-                                 : ELEMENT_QUAD4,
-               at, N, NULL, NULL);
+  ElementShape(e->corners == 2 ? ELEMENT_EDGE2 : e->corners == 3 ? ELEMENT_TRI3 : ELEMENT_QUAD4, at, N, NULL, NULL);
 }
 
 /*@
@@ -145,8 +142,8 @@ static void CornerShares(const Element *e, const double *xi, double N[CORNERS])
 @*/
 void CornerNormalsAt(CornerNormals cn, PetscInt facet, const double *xi, PetscReal normal[3])
 {
-  const Element *e        = ElementGet(cn->view->facets[facet].type);
-  PetscReal      length   = 0;
+  const Element *e      = ElementGet(cn->view->facets[facet].type);
+  PetscReal      length = 0;
   double         N[CORNERS];
 
   CornerShares(e, xi, N);

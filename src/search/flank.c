@@ -221,8 +221,8 @@ int FlankSort(const Nearest *look, int *n, int *found)
    only what lies in the plane of that normal and that of the nearest facet counts. */
 static PetscBool FormHollow(const Nearest *look, const Candidate *nearest, const Candidate *c)
 {
-  const int        dim = look->lists->dim;
-  const PetscReal *own = look->outward;
+  const int        dim       = look->lists->dim;
+  const PetscReal *own       = look->outward;
   PetscReal        across[3] = {0, 0, 0}, way[3] = {0, 0, 0}, along = 0, part[2] = {0, 0}, length = 0;
   PetscReal        height[2] = {0, 0};
 
