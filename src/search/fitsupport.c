@@ -460,7 +460,7 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
 
   PetscFunctionBeginUser;
   /* The foot's own normal may lie along the surface where the foot is on an edge. */
-  for (int d = 0; d < 3; d++) at.outward[d] = look->normal[d];
+  for (int d = 0; d < 3; d++) at.outward[d] = look->candidates[look->best].normal[d];
   for (int d = 0; d < lists->dim; d++) {
     at.X[d]    = lists->slave_X[q * lists->dim + d];
     at.u[d]    = lists->slave_u[q * lists->dim + d];
