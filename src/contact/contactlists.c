@@ -498,8 +498,8 @@ static PetscBool PairDrifts(const ContactPair *pair)
 }
 
 /* Says whether the area factors of a term agree, weighted by its share of the largest pressure. Where its gap may drift
-   it is the area of the whole term that counts, and how far the change of factors moves its gap. Else each point
-   counts. bounded: factors that fresh lists ask for, as far as it is known where they will be. */
+   it is the area of the whole term that counts, and how far the change of factors moves its gap. Else, and with
+   friction, each point counts. bounded: factors that fresh lists ask for, as far as it is known where they will be. */
 static PetscBool TermFactorsAgree(const ContactPair *pair, PetscInt c, const PetscReal *gaps, const PetscReal *bounded,
                                   PetscReal share, PetscReal drift, PetscReal factor_drift)
 {
@@ -512,7 +512,7 @@ static PetscBool TermFactorsAgree(const ContactPair *pair, PetscInt c, const Pet
     sum += pair->term_weight[k] * change;
     area += pair->term_weight[k];
   }
-  if (!PairDrifts(pair)) return (PetscBool)(share * most <= factor_drift);
+  if (!pair->formulation.lags || pair->friction) return (PetscBool)(share * most <= factor_drift);
   return (PetscBool)(share * sum <= factor_drift * area &&
                      PetscAbsReal(ContactTermGap(pair, bounded, gaps, c, NULL) -
                                   ContactTermGap(pair, pair->factor, gaps, c, NULL)) <= drift);
