@@ -497,64 +497,38 @@ static PetscBool PairDrifts(const ContactPair *pair)
   return (PetscBool)(pair->formulation.lags || (pair->friction && pair->fit.fitted));
 }
 
-/* Says whether the area factors of a term agree, weighted by its share of the largest pressure. Where its gap may drift
-   it is the area of the whole term that counts, and how far the change of factors moves its gap. Else, and with
-   friction, each point counts. bounded: factors that fresh lists ask for, as far as it is known where they will be. */
-static PetscBool TermFactorsAgree(const ContactPair *pair, PetscInt c, const PetscReal *gaps, const PetscReal *bounded,
-                                  PetscReal share, PetscReal drift, PetscReal factor_drift)
-{
-  PetscReal most = 0, sum = 0, area = 0;
-
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscReal change = PetscAbsReal(bounded[pair->term_point[k]] - pair->factor[pair->term_point[k]]);
-
-    most = PetscMax(most, change);
-    sum += pair->term_weight[k] * change;
-    area += pair->term_weight[k];
-  }
-  if (!pair->formulation.lags || pair->friction) return (PetscBool)(share * most <= factor_drift);
-  return (PetscBool)(share * sum <= factor_drift * area &&
-                     PetscAbsReal(ContactTermGap(pair, bounded, gaps, c, NULL) -
-                                  ContactTermGap(pair, pair->factor, gaps, c, NULL)) <= drift);
-}
-
-/* What a solution has found with its lists, and what fresh lists find. */
-typedef struct {
-  NeighbourLists   lists;               /* fresh */
-  PetscBool        alike;               /* PointsAlike() of both lists */
-  const PetscReal *gaps;                /* of the points by fresh lists */
-  const PetscReal *factor, *bounded;    /* that fresh lists ask for; as far as it is known where they will be */
-  PetscReal        depth, pressure;     /* largest ones of the pair */
-  PetscReal        drift, factor_drift; /* see TermAgrees() */
-  PetscReal        t;
-} Freshly;
-
 /* Says whether fresh lists find the same of this term as the solve did. An open term must be open. On facets a closed
    gap must agree. On fits the gap changes a little with their frames, so frames and points must agree, and with
    offsets the gap must agree within `drift`. Area factors must agree on both, weighted by the term's pressure over
    the pair's largest one, or be as close to a jump of what the solution asks for: factor_drift. At such a jump fresh
    factors weight the points of a term in another way, or leave it none: closed gaps are compared with the factors in
-   force. depth is the largest penetration of the pair; where the pair is augmented and penetrations go to zero, the
-   bound on them counts instead. */
-static PetscBool TermAgrees(const ContactPair *pair, PetscInt c, const Freshly *fresh)
+   force. gaps are those of the points by fresh lists; alike: PointsAlike() of both lists. depth is the largest
+   penetration of the pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead.
+ */
+static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscBool alike, PetscInt c,
+                            const PetscReal *gaps, const PetscReal *factor, PetscReal t, PetscReal depth,
+                            PetscReal pressure, PetscReal drift, PetscReal factor_drift)
 {
-  const PetscReal gap  = ContactTermGap(pair, fresh->factor, fresh->gaps, c, NULL),
-                  same = ContactTermGap(pair, pair->factor, fresh->gaps, c, NULL),
-                  rest = ContactTermOnsetGap(pair, c, fresh->t), old = pair->now.gap[c],
-                  own   = PetscMax(TermPressure(pair, c, old, fresh->t), TermPressure(pair, c, gap, fresh->t)),
-                  share = fresh->pressure > 0 ? PetscMin(own / fresh->pressure, 1) : 1, drift = fresh->drift;
-  PetscBool fitted = PETSC_TRUE;
+  const PetscReal gap  = ContactTermGap(pair, factor, gaps, c, NULL),
+                  same = ContactTermGap(pair, pair->factor, gaps, c, NULL), rest = ContactTermOnsetGap(pair, c, t),
+                  old = pair->now.gap[c], own = PetscMax(TermPressure(pair, c, old, t), TermPressure(pair, c, gap, t)),
+                  share = pressure > 0 ? PetscMin(own / pressure, 1) : 1;
+  PetscBool fitted      = PETSC_TRUE;
   PetscReal tolerance;
 
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
-    fitted = (PetscBool)(fitted && pair->lists->fit_n[pair->term_point[k]] && fresh->lists->fit_n[pair->term_point[k]]);
-  tolerance = fitted ? PetscMax(CONTACT_FIT_AGREES * PetscMax(fresh->depth, ContactTermBound(pair, c)), drift)
+    fitted = (PetscBool)(fitted && pair->lists->fit_n[pair->term_point[k]] && fresh->fit_n[pair->term_point[k]]);
+  tolerance = fitted ? PetscMax(CONTACT_FIT_AGREES * PetscMax(depth, ContactTermBound(pair, c)), drift)
                      : CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c] + drift;
   if (!(old - rest < 0) && !(gap - rest < (fitted ? -tolerance : 0))) return PETSC_TRUE;
-  if (!TermFactorsAgree(pair, c, fresh->gaps, fresh->bounded, share, drift, fresh->factor_drift)) return PETSC_FALSE;
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
-    if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh->lists, fresh->alike, pair->term_point[k]))
-      return PETSC_FALSE;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt q = pair->term_point[k];
+    PetscReal      low, high;
+
+    FactorBracket(pair, q, factor[q], &low, &high);
+    if (share * PetscMin(PetscAbsReal(factor[q] - pair->factor[q]), high - low) > factor_drift) return PETSC_FALSE;
+    if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, alike, q)) return PETSC_FALSE;
+  }
   if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(same - old) <= tolerance);
   return (PetscBool)(!PetscIsNanReal(same) && (!PairDrifts(pair) || PetscAbsReal(same - old) <= drift));
 }
@@ -569,45 +543,27 @@ static PetscBool TermHasGap(const ContactPair *pair, PetscInt c, const PetscReal
   return has;
 }
 
-/* The factor that fresh lists ask for at slave point q, as far from the one in force as it is known to be at most. */
-static PetscReal BoundedFactor(const ContactPair *pair, PetscInt q)
-{
-  const PetscReal now = pair->factor[q], change = pair->next_factor[q] - now;
-  PetscReal       low, high;
-
-  FactorBracket(pair, q, pair->next_factor[q], &low, &high);
-  return now + PetscMax(low - high, PetscMin(high - low, change));
-}
-
 /* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. */
 static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscReal lag, PetscBool *agrees)
 {
-  const PetscInt n = pair->next->n_slaves;
-  PetscReal     *gaps, *any, *bounded;
-  Freshly        fresh = {.lists        = pair->next,
-                          .alike        = PointsAlike(pair->lists, pair->next),
-                          .factor       = pair->next_factor,
-                          .factor_drift = CONTACT_FACTOR_AGREES,
-                          .t            = t};
+  const PetscBool alike = PointsAlike(pair->lists, pair->next);
+  PetscReal       depth = 0, pressure = 0, drift, factor_drift = CONTACT_FACTOR_AGREES, *gaps, *factor;
 
   PetscFunctionBeginUser;
-  PetscCall(PairDepth(contact, pair, t, &fresh.depth, &fresh.pressure));
-  if (PairDrifts(pair)) fresh.drift = lag * CONTACT_OFFSET_AGREES * fresh.pressure / pair->automatic;
-  if (pair->friction) fresh.factor_drift = PetscMin(fresh.factor_drift, lag * CONTACT_OFFSET_AGREES);
+  PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
+  drift = PairDrifts(pair) ? lag * CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
+  if (pair->friction) factor_drift = PetscMin(factor_drift, lag * CONTACT_OFFSET_AGREES);
   *agrees = PETSC_TRUE;
-  PetscCall(PetscMalloc3(n, &gaps, n, &any, n, &bounded));
-  for (PetscInt q = 0; q < n; q++) {
-    any[q]     = PetscMax(pair->factor[q], pair->next_factor[q]);
-    bounded[q] = BoundedFactor(pair, q);
-  }
-  fresh.gaps    = gaps;
-  fresh.bounded = bounded;
+  PetscCall(PetscMalloc2(pair->next->n_slaves, &gaps, pair->next->n_slaves, &factor));
+  for (PetscInt q = 0; q < pair->next->n_slaves; q++) factor[q] = PetscMax(pair->factor[q], pair->next_factor[q]);
   if (pair->fit.fitted) TimingBegin(TIMING_FIT);
-  PetscCall(ContactPointGaps(pair, pair->next, any, NULL, NULL, gaps, NULL));
+  PetscCall(ContactPointGaps(pair, pair->next, factor, NULL, NULL, gaps, NULL));
   if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
-    if (TermHasGap(pair, c, gaps)) *agrees = TermAgrees(pair, c, &fresh); /* few have where most have no partner */
-  PetscCall(PetscFree3(gaps, any, bounded));
+    if (TermHasGap(pair, c, gaps)) /* few have where most points have no partner */
+      *agrees =
+        TermAgrees(pair, pair->next, alike, c, gaps, pair->next_factor, t, depth, pressure, drift, factor_drift);
+  PetscCall(PetscFree2(gaps, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
