@@ -338,4 +338,16 @@ JOBS = [
     Job("hem", "flange folded over as before hemming", [
         Answer("tip_x", -4.1137, 0.04, "limit"),
     ], steps=20, pairs=2, stiff=["contact.0.initial_overlap=resolve", "stepping.dt_max=0.04"]),
+    # Rubber and plastic with friction
+    Job("ball_hollow", "hollow rubber ball pressed between plates", [
+        Answer("force", 130.736, 0.02, "limit"),
+        Answer("bulge", 3.60036, 0.02, "limit"),
+    ], steps=12, picture=["--mirror", "x"]),
+    Job("clip_snapped", "rod snapped into a plastic clip", [
+        Answer("tip_x", 0.754905, 0.08, "limit"),
+    ], steps=12, picture=["--mirror", "x"]),
+    Job("packer", "packer set between mandrel and casing", [
+        Answer("grip", 4667, 2.6, "limit"),  # it varies by that with the mesh
+        Answer("set", 7985.5, 0.26, "limit"),
+    ], steps=12, pairs=2, picture=["--mirror", "x"]),
 ]
