@@ -168,6 +168,7 @@ void           ContactWatchTools(Contact, PetscReal *hold);
 PetscErrorCode ContactStored(Contact, PetscReal t_0, PetscBool moved, PetscReal *stored, PetscReal *given);
 /* Tangent */
 PetscErrorCode ContactKeepFactors(Contact);
+void           ContactForgetForeseen(Contact);
 PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed);
 PetscErrorCode ContactTangentChanges(Contact, PetscInt *terms);
 PetscErrorCode ContactChangeVectors(Contact, PetscInt rows, PetscInt terms, PetscReal *s, Mat *N);

@@ -424,6 +424,8 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(
     PetscCalloc4(pair->n, &pair->held, pair->n, &pair->predicted, pair->n, &pair->expected, pair->n, &pair->arrived));
   PetscCall(PetscCalloc1(pair->n, &pair->balanced));
+  PetscCall(PetscMalloc1(pair->n, &pair->foreseen));
+  for (PetscInt c = 0; c < pair->n; c++) pair->foreseen[c] = NAN;
   if (friction) PetscCall(FrictionCreate(pair));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
   if (contact->augment) PetscCall(PairCreateMixing(pair));
@@ -473,6 +475,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree(pair->weight));
   PetscCall(PetscFree4(pair->held, pair->predicted, pair->expected, pair->arrived));
   PetscCall(PetscFree(pair->balanced));
+  PetscCall(PetscFree(pair->foreseen));
   PetscCall(FrictionDestroy(&pair->friction));
   PetscCall(PetscFree(pair->carried));
   PetscCall(PetscFree(pair->marks));

@@ -373,6 +373,38 @@ static PetscErrorCode OwnMotion(ContactStep step, const PetscReal *du, PetscReal
 }
 
 /*@
+  ContactStepForesee - notes the pressures at the end of a step, for the tangents to come.
+
+  Collective
+
+  Input Parameters:
++ step   - the step
+. du     - local displacements of the whole step, du[n_nodes*dim] (length), prescribed ones included
+. t      - load parameter where the step begins
+- t_next - load parameter where it ends
+
+  Note:
+  They are those of the linear problem: gaps change to first order. Terms that the step does not reach are not foreseen.
+@*/
+PetscErrorCode ContactStepForesee(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next)
+{
+  PetscReal *travel;
+
+  PetscFunctionBeginUser;
+  ContactForgetForeseen(step->contact);
+  PetscCall(PetscMalloc1(step->mine, &travel));
+  PetscCall(OwnMotion(step, du, t, t_next, travel, NULL));
+  for (PetscInt i = 0; i < step->mine; i++) {
+    const ActiveSetTerm *term = &step->terms[step->place[i]];
+
+    step->contact->pairs[step->pair[i]].foreseen[step->term[i]] =
+      PetscMax(0, -term->penalty * (term->opening + travel[i]));
+  }
+  PetscCall(PetscFree(travel));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactStepTravel - computes how local displacements change the gaps, to first order, and how they move the slave
   against its anchors on the master, where there is friction.
 

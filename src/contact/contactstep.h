@@ -15,6 +15,7 @@ PetscErrorCode ContactStepCreate(Contact, const PetscReal *u, const PetscReal *d
                                  ContactStep *);
 PetscErrorCode ContactStepDestroy(ContactStep *);
 PetscErrorCode ContactStepGetTerms(ContactStep, PetscInt *n, const ActiveSetTerm **);
+PetscErrorCode ContactStepForesee(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next);
 PetscInt       ContactStepParts(ContactStep);
 PetscErrorCode ContactStepTravel(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *travel,
                                  PetscReal *slide);

@@ -1,22 +1,6 @@
 /* The tangent of the contact forces, and its product with a vector. */
 #include "contactimpl.h"
 
-/* Pressure whose turning with the surface counts in a tangent. In a linear step this is the pressure of the accepted
-   state, or of the solution at which the step begins, not what pulls a term to its place. The state before any load is
-   in no equilibrium: its overlaps pull, and their pressure grows with the penalty until the tangent is indefinite. It
-   therefore counts for nothing there. */
-static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
-{
-  const ContactState *accepted = &pair->accepted;
-  LawState            before;
-
-  if (!pair->holding) return value->pressure;
-  if (pair->solved) return pair->balanced[c];
-  if (pair->touching || accepted->status[c] != CONTACT_CLOSED) return 0;
-  before = ContactTermStateIn(pair, c, accepted, t, PETSC_MAX_REAL);
-  return PetscMax(0, before.multiplier + before.penalty * (before.offset - accepted->gap[c]));
-}
-
 /* Finds the stiffness of the terms, 0 where they take no part, and the forces of slave points that turn with the
    surface. */
 static PetscErrorCode PairStiffness(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t)
@@ -31,7 +15,8 @@ static PetscErrorCode PairStiffness(Contact contact, ContactPair *pair, const Pe
     ContactTermLaw(pair, c, t, &value, NULL, &area);
     pair->stiffness_before[c] = pair->stiffness[c];
     pair->stiffness[c]        = value.stiffness;
-    if (value.stiffness > 0) ContactTermPress(pair, c, TermTurningPressure(pair, c, t, &value), pair->point_force);
+    if (value.stiffness > 0)
+      ContactTermPress(pair, c, ContactTermTurningPressure(pair, c, t, &value), pair->point_force);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -387,6 +372,21 @@ PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, 
   PetscCall(BlockMatrixEnd(contact->blocks, C));
   PetscCall(PetscLogEventEnd(contact->event_tangent, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactForgetForeseen - forgets the pressures that the last linear step was to lead to. The next tangent is the
+  derivative of the forces, until another step has been made.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact
+@*/
+void ContactForgetForeseen(Contact contact)
+{
+  for (int p = 0; p < contact->n_pairs; p++)
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++) contact->pairs[p].foreseen[c] = NAN;
 }
 
 /*@

@@ -326,6 +326,39 @@ void ContactTermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *
 }
 
 /*@
+  ContactTermTurningPressure - returns the pressure whose turning with the surface counts in a tangent.
+
+  Not collective
+
+  Input Parameters:
++ pair  - the pair, projected
+. c     - the term
+. t     - load parameter
+- value - what the law says of the term
+
+  Notes:
+  In a linear step this is the pressure of the accepted state, or of the solution at which the step begins, not what
+  pulls a term to its place. The state before any load is in no equilibrium: its overlaps pull, and their pressure grows
+  with the penalty until the tangent is indefinite. It therefore counts for nothing there.
+
+  A linear step along a curved way leaves its surfaces off each other by the square of its length. A stiff penalty makes
+  pressures of this that are several times those at equilibrium, and the tangent would be indefinite. The pressure that
+  the linear step was to lead to has no such part. At a solution both are the same; on the way the lower one counts.
+@*/
+PetscReal ContactTermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
+{
+  const ContactState *accepted = &pair->accepted;
+  LawState            before;
+
+  if (!pair->holding)
+    return PetscIsNanReal(pair->foreseen[c]) ? value->pressure : PetscMin(value->pressure, pair->foreseen[c]);
+  if (pair->solved) return pair->balanced[c];
+  if (pair->touching || accepted->status[c] != CONTACT_CLOSED) return 0;
+  before = ContactTermStateIn(pair, c, accepted, t, PETSC_MAX_REAL);
+  return PetscMax(0, before.multiplier + before.penalty * (before.offset - accepted->gap[c]));
+}
+
+/*@
   ContactTermForce - returns the force that a term's own gap of the last projection causes.
 
   Not collective

@@ -579,7 +579,7 @@ static PetscErrorCode AddTraction(TermBlock *b, PetscInt c, const FrictionTracti
 
 /* Adds the motion over the master of the forces of a term's slave points. Where terms share their points, the forces
    are summed, and FrictionFaceBlock() adds it once for each point. */
-static PetscErrorCode AddTermMotion(TermBlock *b, PetscInt c, const FrictionTraction *out)
+static PetscErrorCode AddTermMotion(TermBlock *b, PetscInt c, const PetscReal traction[3])
 {
   const ContactPair *pair = b->pair;
 
@@ -589,7 +589,7 @@ static PetscErrorCode AddTermMotion(TermBlock *b, PetscInt c, const FrictionTrac
     PetscReal      F[3];
 
     if (!FrictionTermTakes(pair, k)) continue;
-    for (int d = 0; d < 3; d++) F[d] = pair->term_weight[k] * pair->factor[q] * out->traction[d];
+    for (int d = 0; d < 3; d++) F[d] = pair->term_weight[k] * pair->factor[q] * traction[d];
     if (pair->formulation.surface)
       for (int d = 0; d < 3; d++) pair->friction->held[3 * q + d] += F[d];
     else
@@ -598,8 +598,25 @@ static PetscErrorCode AddTermMotion(TermBlock *b, PetscInt c, const FrictionTrac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fills the block: the derivative of the traction, taken to the nodes, and the motion of its forces over the master. */
-static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction *out)
+/* The traction whose motion over the master counts: no more than what sticks at the pressure whose turning counts.
+   Beyond that it would make the tangent of a soft master indefinite. A rigid one has no unknowns that its forces move.
+ */
+static void MovingTraction(const ContactPair *pair, PetscInt c, PetscReal t, const FrictionInput *in,
+                           const FrictionTraction *out, PetscReal moves[3])
+{
+  PetscReal most, length, area;
+  LawValue  value;
+
+  ContactTermLaw(pair, c, t, &value, NULL, &area);
+  most   = FrictionBound(in, ContactTermTurningPressure(pair, c, t, &value));
+  length = PetscSqrtReal(PetscSqr(out->traction[0]) + PetscSqr(out->traction[1]) + PetscSqr(out->traction[2]));
+  if (!pair->master || pair->master->rigid) most = length;
+  for (int d = 0; d < 3; d++) moves[d] = out->traction[d] * (length > most ? most / length : 1);
+}
+
+/* Fills the block: the derivative of the traction, taken to the nodes, and the motion of its forces over the master.
+   moves: the traction whose motion counts. */
+static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction *out, const PetscReal moves[3])
 {
   const ContactPair *pair = b->pair;
   const int          dim  = b->dim;
@@ -617,7 +634,7 @@ static PetscErrorCode FillBlock(TermBlock *b, PetscInt c, const FrictionTraction
     for (int d = 0; d < dim; d++)
       for (PetscInt j = 0; j < b->columns; j++)
         b->value[r * b->columns + j] += b->share[r * dim + d] * b->by_node[d * b->columns + j];
-  PetscCall(AddTermMotion(b, c, out));
+  PetscCall(AddTermMotion(b, c, moves));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -703,14 +720,16 @@ PetscErrorCode FrictionTermBlock(const ContactPair *pair, BlockMatrix blocks, in
   TermBlock        b   = {.pair = pair, .dim = dim, .columns = n * dim};
   FrictionInput    in;
   FrictionTraction out;
+  PetscReal        moves[3];
   PetscBool        acts;
 
   PetscFunctionBeginUser;
   PetscCall(FrictionTerm(pair, c, t, &in, &out, &acts));
   if (!acts) PetscFunctionReturn(PETSC_SUCCESS);
+  MovingTraction(pair, c, t, &in, &out, moves);
   PetscCall(PetscCalloc2(dim * b.columns, &b.by_node, n * dim * dim, &b.share));
   PetscCall(RowsBegin(&b, n));
-  PetscCall(FillBlock(&b, c, &out));
+  PetscCall(FillBlock(&b, c, &out, moves));
   PetscCall(AddBlock(&b, blocks, list, n, nodes, &out));
   PetscCall(PetscFree2(b.by_node, b.share));
   PetscCall(RowsEnd(&b));

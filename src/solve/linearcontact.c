@@ -280,6 +280,16 @@ static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Notes the pressures at the end of the step y, unless PETSc tests tangents against differences. */
+static PetscErrorCode LinearContactForesee(Model model, const PetscReal *carried, PetscReal t, Vec y, LinearContact *s)
+{
+  PetscFunctionBeginUser;
+  if (!model->work->foresees) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LocalChange(model, y, -1, carried, s->du));
+  PetscCall(ContactStepForesee(s->contact, s->du, t, model->t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelSolveLinearContact - changes a linear step so that its contact is right where it ends.
 
@@ -314,7 +324,9 @@ PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const Pe
   PetscFunctionBeginUser;
   model->work->unsettled = PETSC_FALSE;
   PetscCall(ModelHoldInStep(model, y));
-  if (!model->contact || LinearCheckLost(model->linear)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  ContactForgetForeseen(model->contact);
+  if (LinearCheckLost(model->linear)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LinearSolverDirect(model->work->solver, &able));
   if (!able) PetscFunctionReturn(PETSC_SUCCESS);
   TimingBegin(TIMING_ASSEMBLY_CONTACT);
@@ -329,6 +341,7 @@ PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const Pe
   PetscCall(PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s\n", s.n, s.m,
                       converged ? "settled" : "left to the next iteration"));
   PetscCall(PetscFree(which));
+  PetscCall(LinearContactForesee(model, carried, t, y, &s));
   PetscCall(LinearContactEnd(&s));
   TimingEnd(TIMING_ASSEMBLY_CONTACT);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -76,6 +76,7 @@ PetscErrorCode ModelStepFromSolved(Model model, const PetscReal *u)
   PetscCall(ModelStepFrom(model, u));
   if (model->work->extrapolates)
     PetscCall(PetscArraycpy(model->work->solved, u, model->mesh->n_nodes * model->mesh->dim));
+  if (model->contact) ContactForgetForeseen(model->contact);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,6 +169,7 @@ static PetscErrorCode ModelCreateReference(Model model)
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsHasName(NULL, NULL, "-snes_test_jacobian", &test));
+  model->work->foresees = (PetscBool)!test;
   if (test) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ElasticityExtrapolates(model->problem->elasticity, &model->work->extrapolates, &model->work->rubber));
   if (model->work->extrapolates) PetscCall(PetscCalloc2(n, &model->work->solved, n, &model->work->from));

@@ -136,6 +136,7 @@ PetscErrorCode ModelLinearise(Model model, KSP *ksp)
   PetscFunctionBeginUser;
   PetscCall(LinearSolverRenew(model->work->solver));
   PetscCall(LinearSolverSetStart(model->work->solver, 0));
+  if (model->contact) ContactForgetForeseen(model->contact);
   PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
   PetscCall(SNESGetKSP(model->snes, ksp));
   PetscCall(KSPSetOperators(*ksp, model->problem->A, model->problem->P));

@@ -95,6 +95,7 @@ typedef struct {
   PetscBool  solved;                /* it begins at a solution, whose lists may have been replaced since */
   PetscBool *held, *predicted;      /* terms closed where the linear step began; those the prediction counted on */
   PetscReal *balanced;              /* pressures of the terms at the solution where it began, if solved */
+  PetscReal *foreseen;              /* pressures of the terms at the end of the last linear step; NaN: not known */
   PetscBool *expected, *arrived;    /* terms that press at the end of the last linear step; of the one before */
 
   PetscReal   *carried; /* pressure of each term that a fluid carries in the contact's place; NULL: no fluid */
@@ -231,6 +232,7 @@ LawState  ContactTermStateIn(const ContactPair *, PetscInt term, const ContactSt
 void      ContactTermLaw(const ContactPair *, PetscInt term, PetscReal t, LawValue *, PetscReal *gap, PetscReal *area);
 PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term,
                          PetscReal *area);
+PetscReal ContactTermTurningPressure(const ContactPair *, PetscInt term, PetscReal t, const LawValue *);
 PetscReal ContactTermForce(const ContactPair *, PetscInt term);
 PetscReal ContactTermAddedOverlap(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermOverlap(const ContactPair *, PetscInt term, PetscReal t);

@@ -2,17 +2,16 @@
    offers to those above it.
 
    problem.c is below all of them, and freebodies.c and rigidsearch.c below it. tangent.c makes the tangent and prepares
-   its linear solver. softmotion.c finds the softest motion in a linear step, shiftedstep.c shifts the tangent
-   where bodies buckle or snap, heldmotion.c holds such motions: heldspace.c
-   finds them, heldsolve.c solves with them held, heldfriction.c tells what friction would hold them. linearcontact.c
-   finds the contact that is right at the end of a linear step. linecuts.c says why a line search shortened its step.
-   slopesearch.c finds how far a step of bodies that yield leads to balance, relaxedsearch.c is the line search,
-   linesearch.c chooses what it compares, and corrects steps for contact. newton.c runs SNES once with the present
-   contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties, dampedsolve.c
-   solves with shifted tangents where Newton's method finds no equilibrium. penaltyerror.c estimates what
-   penetration leaves of error and stiffens penalties, jump.c tells an equilibrium that was reached by a jump, adjoint.c
-   weighs errors of a solution. equilibrium.c goes from an accepted state to the next one. model.c holds the accepted
-   state. Each file calls only those named before it. */
+   its linear solver. softmotion.c finds the softest motion in a linear step, shiftedstep.c shifts the tangent where
+   bodies buckle or snap, heldmotion.c holds such motions: heldspace.c finds them, heldsolve.c solves with them held,
+   heldfriction.c tells what friction would hold them. linearcontact.c finds the contact that is right at the end of a
+   linear step. linecuts.c says why a line search shortened its step. slopesearch.c finds how far a step of bodies that
+   yield leads to balance, relaxedsearch.c is the line search, linesearch.c chooses what it compares, and corrects steps
+   for contact. newton.c runs SNES once with the present contact lists. prediction.c finds a first iterate,
+   penaltyramp.c improves it on softened penalties, dampedsolve.c solves with shifted tangents where Newton's method
+   finds no equilibrium. penaltyerror.c estimates what penetration leaves of error and stiffens penalties, jump.c tells
+   an equilibrium that was reached by a jump, adjoint.c weighs errors of a solution. equilibrium.c goes from an accepted
+   state to the next one. model.c holds the accepted state. Each file calls only those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "extrapolation.h"
@@ -144,6 +143,7 @@ typedef struct _n_ModelWork {
   PetscBool augmented;    /* multipliers of the volume were changed at the solution from which the next solve starts */
   char      cycle[256];   /* the last repetition in words */
 
+  PetscBool  foresees;     /* tangents turn the pressures that linear steps lead to */
   PetscBool  extrapolates; /* stresses are extrapolated; the same on all ranks, some of which may have no nodes */
   PetscBool  rubber;       /* so are pressures of volumes of bodies that do not yield */
   PetscReal *solved;       /* local displacements (length) at the last equilibrium, where stresses are extrapolated */
