@@ -80,21 +80,30 @@ PetscErrorCode ModelStepFromSolved(Model model, const PetscReal *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gives the number of the present iteration, and the part of the step before it that was taken. */
+static PetscErrorCode ModelLastStep(Model model, PetscInt *iteration, PetscReal *lambda)
+{
+  SNESLineSearch search;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetIterationNumber(model->snes, iteration));
+  PetscCall(SNESGetLineSearch(model->snes, &search));
+  PetscCall(SNESLineSearchGetLambda(search, lambda));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The state from which the tangent at the present iterate extrapolates stresses. It is the iterate before, since
    pressure changes along a full step as the step's linear problem says. Before the first iterate that is where the
    prediction started. A shortened step has left the volumes somewhere; its pressures are those of the last equilibrium.
    *part: of the step, that was taken. */
 static PetscErrorCode ModelReference(Model model, StressReference *reference, PetscReal *part)
 {
-  ModelWork     *work = model->work;
-  SNESLineSearch search;
-  PetscInt       iteration;
-  PetscReal      lambda;
+  ModelWork *work = model->work;
+  PetscInt   iteration;
+  PetscReal  lambda;
 
   PetscFunctionBeginUser;
-  PetscCall(SNESGetIterationNumber(model->snes, &iteration));
-  PetscCall(SNESGetLineSearch(model->snes, &search));
-  PetscCall(SNESLineSearchGetLambda(search, &lambda));
+  PetscCall(ModelLastStep(model, &iteration, &lambda));
   if (iteration > 0) work->shortened = (PetscBool)(lambda < 1 && !work->relaxed.linear);
   *reference = work->shortened ? (StressReference){work->solved, 0, 0} : (StressReference){work->from, 1, 0};
   *part      = iteration > 0 && !work->shortened ? lambda : 1;
@@ -123,14 +132,11 @@ static PetscErrorCode ModelFollow(Model model, Vec x, StressReference *reference
 /* Chooses the shift of the tangent at x. */
 static PetscErrorCode ModelShift(Model model, Vec x)
 {
-  SNESLineSearch search;
-  PetscInt       iteration;
-  PetscReal      lambda;
+  PetscInt  iteration;
+  PetscReal lambda;
 
   PetscFunctionBeginUser;
-  PetscCall(SNESGetIterationNumber(model->snes, &iteration));
-  PetscCall(SNESGetLineSearch(model->snes, &search));
-  PetscCall(SNESLineSearchGetLambda(search, &lambda));
+  PetscCall(ModelLastStep(model, &iteration, &lambda));
   PetscCall(ModelShiftNext(model, x, iteration, lambda));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
