@@ -384,14 +384,14 @@ static PetscErrorCode OwnMotion(ContactStep step, const PetscReal *du, PetscReal
 - t_next - load parameter where it ends
 
   Note:
-  They are those of the linear problem: gaps change to first order. Terms that the step does not reach are not foreseen.
+  They are those of the linear problem: gaps change to first order. Terms that the step does not reach keep what is
+  foreseen of them: nothing after ContactForgetForeseen().
 @*/
 PetscErrorCode ContactStepForesee(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next)
 {
   PetscReal *travel;
 
   PetscFunctionBeginUser;
-  ContactForgetForeseen(step->contact);
   PetscCall(PetscMalloc1(step->mine, &travel));
   PetscCall(OwnMotion(step, du, t, t_next, travel, NULL));
   for (PetscInt i = 0; i < step->mine; i++) {

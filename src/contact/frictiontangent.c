@@ -607,11 +607,12 @@ static void MovingTraction(const ContactPair *pair, PetscInt c, PetscReal t, con
   PetscReal most, length, area;
   LawValue  value;
 
+  for (int d = 0; d < 3; d++) moves[d] = out->traction[d];
+  if (!pair->master || pair->master->rigid) return;
   ContactTermLaw(pair, c, t, &value, NULL, &area);
   most   = FrictionBound(in, ContactTermTurningPressure(pair, c, t, &value));
   length = PetscSqrtReal(PetscSqr(out->traction[0]) + PetscSqr(out->traction[1]) + PetscSqr(out->traction[2]));
-  if (!pair->master || pair->master->rigid) most = length;
-  for (int d = 0; d < 3; d++) moves[d] = out->traction[d] * (length > most ? most / length : 1);
+  for (int d = 0; d < 3 && length > most; d++) moves[d] *= most / length;
 }
 
 /* Fills the block: the derivative of the traction, taken to the nodes, and the motion of its forces over the master.

@@ -50,15 +50,6 @@ static PetscErrorCode Fans(const SurfaceView *view, PetscInt **ptr, PetscInt **f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Do two facets that share a corner continue each other? */
-static PetscBool Continue(const SurfaceView *view, PetscInt f, PetscInt g)
-{
-  PetscReal cosine = 0;
-
-  for (int d = 0; d < 3; d++) cosine += view->reference[3 * f + d] * view->reference[3 * g + d];
-  return (PetscBool)(cosine >= view->feature_cosine);
-}
-
 /*@
   CornerNormalsCreate - finds the mean normals at the corners of all facets. A facet that meets another one sharply does
   not take part in the other one's.
@@ -86,9 +77,10 @@ PetscErrorCode CornerNormalsCreate(const SurfaceView *view, CornerNormals *out)
       const PetscInt  f     = fan[i] / CORNERS;
       const PetscReal angle = AngleAt(view, f, (int)(fan[i] % CORNERS));
 
-      for (PetscInt k = ptr[p]; k < ptr[p + 1]; k++)
-        for (int d = 0; d < 3 && Continue(view, f, fan[k] / CORNERS); d++)
-          cn->normal[3 * fan[k] + d] += angle * view->normals[3 * f + d];
+      for (PetscInt k = ptr[p]; k < ptr[p + 1]; k++) {
+        if (!SurfaceViewContinues(view, f, fan[k] / CORNERS)) continue;
+        for (int d = 0; d < 3; d++) cn->normal[3 * fan[k] + d] += angle * view->normals[3 * f + d];
+      }
     }
   }
   PetscCall(PetscFree2(ptr, fan));

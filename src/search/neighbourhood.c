@@ -65,7 +65,7 @@ static PetscInt LinkFacets(const SurfaceView *view, PetscInt n, const SharedEdge
     for (PetscInt j = i + 1; j < n && edges[j].a == edges[i].a && edges[j].b == edges[i].b; j++) {
       const PetscInt f = edges[i].facet, g = edges[j].facet;
 
-      if (Dot(&view->reference[3 * f], &view->reference[3 * g]) < view->feature_cosine) {
+      if (!SurfaceViewContinues(view, f, g)) {
         sharp[f] = sharp[g] = PETSC_TRUE;
         continue;
       }

@@ -26,9 +26,8 @@
 /* A step stretches to the next landing point if that is at most this many dt away. At sqrt(2) the one longer step
    differs from dt by the same factor as two shorter ones. */
 #define STEPPER_STRETCH 1.4142135623730951
-/* After this many failed static solves of a step, the next solve is damped. Shorter steps
-   are cheaper where they help, and at a limit point no static step does. In the step after a damped one the first
-   failure is enough. */
+/* After this many failed static solves of a step, the next solve is damped. Shorter steps are cheaper where they help,
+   and at a limit point no static step does. In the step after a damped one the first failure is enough. */
 #define STEPPER_STATIC 3
 /* If the landing point is at most this many dt away, the way to it is halved, so that no very short step remains. */
 #define STEPPER_HALVE 2.0

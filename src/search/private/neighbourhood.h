@@ -24,6 +24,14 @@ typedef struct {
   const PetscReal *hoop; /* of each point, for fits of revolution; NULL: none */
 } SurfaceView;
 
+/* Do two facets that meet continue each other, and do not form a sharp edge? */
+static inline PetscBool SurfaceViewContinues(const SurfaceView *view, PetscInt f, PetscInt g)
+{
+  const PetscReal *a = &view->reference[3 * f], *b = &view->reference[3 * g];
+
+  return (PetscBool)(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] >= view->feature_cosine);
+}
+
 /* A support: its metric and how it bends, in space. */
 typedef struct {
   PetscReal metric[9]; /* row-major 3x3, symmetric, inverse squared lengths */
