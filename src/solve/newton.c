@@ -141,6 +141,15 @@ static PetscErrorCode ModelShift(Model model, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Forgets the pressures that the last linear step was to lead to where a motion is held. The body goes along it as far
+   as its search finds right, and terms come and go on the way: what the step foresaw of them is far from where it ends.
+   A coarse O-ring in space (30 %, then 4 MPa of fluid) takes 14 steps, 1 failed, and 343 iterations; with the pressures
+   foreseen, it failed at 1.1 MPa after 985. */
+static void ModelForgetWhereHeld(Model model)
+{
+  if (model->contact && model->work->hold.wanted) ContactForgetForeseen(model->contact);
+}
+
 /* The Jacobian of SNES: the tangent at x. */
 static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *context)
 {
@@ -155,6 +164,7 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   (void)P;
   PetscCall(ModelShift(model, x));
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
+  ModelForgetWhereHeld(model);
   extrapolates = (PetscBool)(model->work->extrapolates && !model->work->uphill);
   if (extrapolates) {
     PetscCall(ModelReference(model, &reference, &part));
