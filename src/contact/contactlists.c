@@ -27,6 +27,11 @@
    penetration that the largest pressure causes at the automatic penalty. */
 #define CONTACT_OFFSET_AGREES 0.1
 
+/* Pressures below this part of the largest one of all pairs count as that part where gaps are compared. A body that lies
+   loosely between others touches them with what rounding leaves of their forces, and its gaps would never agree with
+   themselves: seven loose wires in a barrel that is crimped. */
+#define CONTACT_PRESSURE_COUNTS 1e-6
+
 /* The area factor past a free edge is frozen in a solve. A larger change than this makes the step solve again. */
 #define CONTACT_FACTOR_AGREES 1e-2
 
@@ -278,6 +283,21 @@ static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscR
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   *depth    = most[0];
   *pressure = most[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Largest pressure of all pairs at the last residual, over all ranks. */
+static PetscErrorCode LargestPressure(Contact contact, PetscReal t, PetscReal *most)
+{
+  PetscFunctionBeginUser;
+  *most = 0;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt c = 0; c < pair->n; c++)
+      if (!PetscIsNanReal(pair->now.gap[c])) *most = PetscMax(*most, TermPressure(pair, c, pair->now.gap[c], t));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -543,14 +563,17 @@ static PetscBool TermHasGap(const ContactPair *pair, PetscInt c, const PetscReal
   return has;
 }
 
-/* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. */
-static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscReal lag, PetscBool *agrees)
+/* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. most: largest
+   pressure of all pairs. */
+static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscReal lag, PetscReal most,
+                                     PetscBool *agrees)
 {
   const PetscBool alike = PointsAlike(pair->lists, pair->next);
   PetscReal       depth = 0, pressure = 0, drift, factor_drift = CONTACT_FACTOR_AGREES, *gaps, *factor;
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
+  pressure = PetscMax(pressure, CONTACT_PRESSURE_COUNTS * most);
   drift = PairDrifts(pair) ? lag * CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
   if (pair->friction) factor_drift = PetscMin(factor_drift, lag * CONTACT_OFFSET_AGREES);
   *agrees = PETSC_TRUE;
@@ -657,10 +680,12 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
 PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
                                 PetscReal lag, PetscBool *hold)
 {
-  int agree = 1;
+  PetscReal most;
+  int       agree = 1;
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
+  PetscCall(LargestPressure(contact, t, &most));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = next;
@@ -674,7 +699,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
       PetscCall(ContactNoteLost(pair, t));
       ContactNoteTunnelled(pair, t);
       ContactNoteJumps(pair, motion);
-      PetscCall(PairNextAgrees(contact, pair, t, lag, &agrees));
+      PetscCall(PairNextAgrees(contact, pair, t, lag, most, &agrees));
     }
     pair->fresh = PETSC_FALSE;
     agree       = agree && agrees && !late;
