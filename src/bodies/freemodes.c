@@ -530,18 +530,34 @@ static void MotionText(FreeModes modes, const FreePiece *piece, const double mot
              FREE_TEXT / 4, direction, FREE_TEXT / 4, place);
 }
 
-/* Lists the pairs that would hold a motion if they were closed, as "crown, sole"; empty where there is none. */
+/* Length of the name of a pair, without what the program has added to the name of a list of surfaces. */
+static int ListedNameLength(const SceneContact *contact)
+{
+  return (int)(contact->listed ? strcspn(contact->name, ".") : strlen(contact->name));
+}
+
+/* Lists the pairs that would hold a motion if they were closed, as "crown, sole"; empty where there is none. All pairs
+   of a list of surfaces stand there once, by the name of the list. */
 static void PairsText(FreeModes modes, PetscInt p, int mode, char text[FREE_TEXT])
 {
-  const int n = RIGID_MODES * (int)modes->n_pieces;
-  double    motion[n];
-  size_t    used = 0;
+  const int   n = RIGID_MODES * (int)modes->n_pieces;
+  double      motion[n];
+  size_t      used = 0;
+  const char *last = NULL;
+  int         same = 0;
 
   Embed(modes, p, mode, motion);
   text[0] = '\0';
-  for (int c = 0; c < modes->scene->n_contacts; c++)
-    if (VectorProduct(n, &modes->gram[c * n * n], motion, motion) > PetscSqr(FREE_CONTACT) && used < FREE_TEXT)
-      used += (size_t)snprintf(text + used, FREE_TEXT - used, "%s%s", used ? ", " : "", modes->scene->contacts[c].name);
+  for (int c = 0; c < modes->scene->n_contacts && used < FREE_TEXT; c++) {
+    const SceneContact *contact = &modes->scene->contacts[c];
+    const int           length  = ListedNameLength(contact);
+
+    if (!(VectorProduct(n, &modes->gram[c * n * n], motion, motion) > PetscSqr(FREE_CONTACT))) continue;
+    if (last && length == same && !strncmp(last, contact->name, (size_t)length)) continue;
+    used += (size_t)snprintf(text + used, FREE_TEXT - used, "%s%.*s", used ? ", " : "", length, contact->name);
+    last = contact->name;
+    same = length;
+  }
 }
 
 /* Tells whether a loose motion moves a piece. */

@@ -186,6 +186,20 @@ static PetscErrorCode FollowNames(Walk *walk, const char *path, const GeoTokens 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Refuses a last line of several commands without a line end: gmsh silently reads only the first of them. */
+static void JudgeLastLine(Walk *walk, const char *path, const char *text, size_t size, const GeoTokens *tokens)
+{
+  const int end = tokens->n - 1;
+
+  if (!size || text[size - 1] == '\n' || tokens->wrong || walk->complaint->text[0]) return;
+  for (int i = end - 2; i >= 0 && tokens->token[i].line == tokens->token[end - 1].line; i--)
+    if (GeoTokenIs(&tokens->token[i], ";"))
+      Complain(walk->complaint,
+               "%s:%d: the last line has no line end, and gmsh reads only the first command of such a line; allowed: a "
+               "line end after it",
+               path, tokens->token[i].line);
+}
+
 /* Looks through a file of commands and follows the files that it names. */
 static PetscErrorCode WalkScript(Walk *walk, const char *path, const char *text, size_t size)
 {
@@ -207,6 +221,7 @@ static PetscErrorCode WalkScript(Walk *walk, const char *path, const char *text,
   } else if (tokens.wrong) {
     Judge(walk, path, tokens.token[tokens.n - 1].line, tokens.wrong);
   }
+  JudgeLastLine(walk, path, text, size, &tokens);
   PetscCall(GeoParametersAdd(text, &walk->files->declared));
   PetscCall(GeoDensitiesAdd(&walk->files->densities, &tokens));
   PetscCall(GeoStringsAdd(&walk->found, &tokens));

@@ -351,6 +351,34 @@ static void PrintAdvice(const char *line, void *stream)
   fprintf(stream, "advice   %s\n", line);
 }
 
+/* Does a pair of a list of surfaces touch nothing, and has it not slid before? */
+static PetscBool IsIdle(const PairFigures *pair)
+{
+  return (PetscBool)(pair->scene->listed && !pair->quality.nodes && !pair->quality.averse && !pair->master.nodes &&
+                     !(pair->scene->friction && (pair->friction.slid > 0 || pair->friction.dissipated > 0)));
+}
+
+/* Prints what is known of each pair. Lists of surfaces may have many pairs that touch nothing: they are counted. */
+static void PrintPairs(const RunFigures *figures, FILE *stream)
+{
+  int idle = 0, listed = 0;
+
+  for (int p = 0; p < figures->n_pairs; p++) {
+    idle += IsIdle(&figures->pairs[p]);
+    listed += figures->pairs[p].scene->listed;
+  }
+  for (int p = 0; p < figures->n_pairs; p++) {
+    const PairFigures *pair = &figures->pairs[p];
+
+    if (idle > 1 && IsIdle(pair)) continue;
+    PrintPair(pair, stream);
+    PrintFriction(pair, stream);
+    PrintPenaltyError(pair, stream);
+    PrintSides(pair, stream);
+  }
+  if (idle > 1) fprintf(stream, "contact  %d of the %d pairs of listed surfaces touch nothing\n", idle, listed);
+}
+
 /*@
   EndReportPrint - prints the last screen of a run but for probes and the closing line.
 
@@ -373,12 +401,7 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
           (long long)way->steps, (long long)way->steps_failed, (long long)way->steps_repeated,
           (long long)way->newton_iterations, (long long)way->newton_accepted);
   PrintTime(figures, stream);
-  for (int p = 0; p < figures->n_pairs && figures->last; p++) {
-    PrintPair(&figures->pairs[p], stream);
-    PrintFriction(&figures->pairs[p], stream);
-    PrintPenaltyError(&figures->pairs[p], stream);
-    PrintSides(&figures->pairs[p], stream);
-  }
+  if (figures->last) PrintPairs(figures, stream);
   ProbeErrorsPrint(figures->errors, stream);
   for (int i = 0; i < figures->n_fluids && figures->last; i++) PrintFluid(&figures->fluids[i], stream);
   if (figures->last && (SceneIsPlastic(figures->scene) || figures->certified))

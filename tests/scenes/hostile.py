@@ -96,6 +96,8 @@ for name, (command, pattern) in MAIN.items():
     says(f"{name}: refused", pattern, finished)
     check.holds(f"{name}: exit 1, nothing done", finished.status == 1 and footprint() == before,
                 f"status {finished.status}, new: {set(footprint()) - set(before)}")
+says("a last line that gmsh reads in part: refused", r"unended.geo:\d+: the last line has no line end",
+     scene(write("unended.geo", SQUARE + "h = 1; Point(90) = {9, 9, 0};")))
 geometry = write("beside.geo", SQUARE)
 write("beside.geo.opt", f'SystemCall "{TOUCH}";\n')
 says("options beside the .geo: refused", r"beside.geo.opt:1: 'SystemCall'", scene(geometry))
