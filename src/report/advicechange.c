@@ -43,6 +43,7 @@ typedef enum {
   AXIS_STEP, /* length of the load steps */
   AXIS_PREDICTION,
   AXIS_ITERATIONS,
+  AXIS_DAMPING,
   AXIS_LINE_SEARCH,
   AXIS_WORKSPACE,
   AXIS_OUTPUT,
@@ -477,6 +478,17 @@ static void WriteIterations(const ChangePlace *at, char *text, size_t size)
   snprintf(text, size, "-set solver.max_iterations=%d", CHANGE_MAX_ITERATIONS);
 }
 
+static int IsUndamped(const ChangePlace *at)
+{
+  return !at->figures->scene->stepping.damped;
+}
+
+static void WriteDamping(const ChangePlace *at, char *text, size_t size)
+{
+  (void)at;
+  snprintf(text, size, "-set stepping.damping=auto, where a body snaps or buckles");
+}
+
 static void WriteLineSearch(const ChangePlace *at, char *text, size_t size)
 {
   (void)at;
@@ -564,6 +576,7 @@ static const Change changes[CHANGES] = {
   [CHANGE_LONGER]         = {"stepping", AXIS_STEP, 1, Always, WriteNothing},
   [CHANGE_PREDICTION]     = {"stepping.prediction", AXIS_PREDICTION, 1, PredictsAfterwards, WritePrediction},
   [CHANGE_ITERATIONS]     = {"solver.max_iterations", AXIS_ITERATIONS, 1, HasFewIterations, WriteIterations},
+  [CHANGE_DAMPING]        = {"stepping.damping", AXIS_DAMPING, 1, IsUndamped, WriteDamping},
   [CHANGE_LINE_SEARCH]    = {"PETSc option", AXIS_LINE_SEARCH, 1, Always, WriteLineSearch},
   [CHANGE_WORKSPACE]      = {"PETSc option", AXIS_WORKSPACE, 1, Always, WriteWorkspace},
   [CHANGE_OUTPUT]         = {"output.every", AXIS_OUTPUT, 1, WritesOften, WriteOutput},
