@@ -9,7 +9,7 @@
 
 enum {
   ADVICE_TEXT    = 400, /* characters of a line of advice */
-  ADVICE_CHANGES = 8,   /* changes that one situation may name */
+  ADVICE_CHANGES = 9,   /* changes that one situation may name, with the CHANGE_NONE that ends them */
   ADVICE_LINES   = 64
 };
 
