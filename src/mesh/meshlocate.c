@@ -10,6 +10,12 @@ enum {
 };
 /* Reference coordinates are found when they change by less than this. */
 #define LOCATE_ENOUGH 1e-9
+/* A point on a curved boundary lies outside the cells whose chord stands for it, by up to this part of a cell: the
+   sagitta of an edge of a tenth of a turn is a twelfth of its length. */
+#define LOCATE_NEAR 0.1
+/* A point that is outside by less than this, in reference coordinates, is on the boundary: round-off of the mesh's
+   coordinates. */
+#define LOCATE_TOUCHES 1e-6
 
 /* Solves the dim x dim system a y = b by Cramer's rule. Returns 0 if it is singular. */
 static int SolveSmall(int dim, double (*a)[3], const double *b, double *y)
@@ -31,14 +37,20 @@ static int SolveSmall(int dim, double (*a)[3], const double *b, double *y)
   return 1;
 }
 
-/* Does the cell, shrunk about its centre by `core` in reference coordinates, contain the point? */
-static PetscBool CellContains(ElementType type, const double *X, const double *x, double core)
+static PetscBool IsSimplex(const Element *e)
 {
-  const Element  *e       = ElementGet(type);
-  const PetscBool simplex = (PetscBool)(e->corners == e->dim + 1);
-  const double    centre  = simplex ? 1.0 / e->corners : 0;
-  double          xi[3] = {centre, centre, centre}, last = centre, step = 1;
+  return (PetscBool)(e->corners == e->dim + 1);
+}
 
+/* Reference coordinates xi[dim] of a point in the cell, or beyond it. PETSC_FALSE: Newton's method does not find
+   them. */
+static PetscBool ReferencePoint(ElementType type, const double *X, const double *x, double xi[3])
+{
+  const Element *e      = ElementGet(type);
+  const double   centre = IsSimplex(e) ? 1.0 / e->corners : 0;
+  double         step   = 1;
+
+  for (int d = 0; d < 3; d++) xi[d] = centre;
   for (int k = 0; k < LOCATE_ITERATIONS && step > LOCATE_ENOUGH; k++) {
     double N[ELEMENT_MAX_NODES], dN[ELEMENT_MAX_NODES * 3], a[3][3] = {{0}}, b[3], y[3];
 
@@ -57,15 +69,28 @@ static PetscBool CellContains(ElementType type, const double *X, const double *x
       step = fmax(step, fabs(y[d]));
     }
   }
-  if (!(step <= LOCATE_ENOUGH)) return PETSC_FALSE;
-  if (simplex) {
-    last = 1;
-    for (int d = 0; d < e->dim; d++) last -= xi[d];
-    if (last < centre * (1 - core)) return PETSC_FALSE;
+  return (PetscBool)(step <= LOCATE_ENOUGH);
+}
+
+/* How far a point is outside the cell shrunk about its centre by `core`, in reference coordinates; 0 inside. */
+static double Outside(const Element *e, const double xi[3], double core)
+{
+  const double centre = 1.0 / e->corners;
+  double       last = 1, out = 0;
+
+  for (int d = 0; d < e->dim; d++) {
+    last -= xi[d];
+    out = fmax(out, IsSimplex(e) ? centre * (1 - core) - xi[d] : fabs(xi[d]) - core);
   }
-  for (int d = 0; d < e->dim; d++)
-    if (simplex ? xi[d] < centre * (1 - core) : fabs(xi[d]) > core) return PETSC_FALSE;
-  return PETSC_TRUE;
+  return IsSimplex(e) ? fmax(out, centre * (1 - core) - last) : out;
+}
+
+/* Does the cell, shrunk about its centre by `core` in reference coordinates, contain the point? */
+static PetscBool CellContains(ElementType type, const double *X, const double *x, double core)
+{
+  double xi[3];
+
+  return (PetscBool)(ReferencePoint(type, X, x, xi) && !(Outside(ElementGet(type), xi, core) > 0));
 }
 
 /* The cells of a body on this rank, as the tree's visitor needs them. */
@@ -151,5 +176,73 @@ PetscErrorCode MeshPointsInBody(Mesh mesh, int body, double core, PetscInt n, co
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, (PetscMPIInt)n, MPI_INT, MPI_LOR, mesh->comm));
   for (PetscInt i = 0; i < n; i++) inside[i] = found[i] ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscFree4(cells, lower, upper, found));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Is the point in the box of a cell that is wider by LOCATE_NEAR of its size on every side? */
+static PetscBool NearBox(int dim, int nodes, const double *X, const PetscReal *x)
+{
+  double low[3], high[3], size = 0;
+
+  for (int d = 0; d < dim; d++) {
+    low[d] = high[d] = X[d];
+    for (int k = 1; k < nodes; k++) {
+      low[d]  = fmin(low[d], X[k * dim + d]);
+      high[d] = fmax(high[d], X[k * dim + d]);
+    }
+    size = fmax(size, high[d] - low[d]);
+  }
+  for (int d = 0; d < dim; d++)
+    if (x[d] < low[d] - LOCATE_NEAR * size || x[d] > high[d] + LOCATE_NEAR * size) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/*@
+  MeshLocatePoint - finds the cell of a body in which a point lies in the reference configuration, or beside which it
+  lies by no more than the chord of a curved boundary leaves out.
+
+  Collective
+
+  Input Parameters:
++ mesh - the mesh
+. body - number of the body in the scene
+- x    - x[dim], relative to the mesh's centre (length), the same on all ranks
+
+  Output Parameters:
++ place   - the cell, on the one rank that has it; cell is -1 on the others, and on all ranks if there is none
+- outside - how far the point is outside that cell, in its reference coordinates (no unit), the same on all ranks;
+            PETSC_INFINITY if there is none
+
+  Note:
+  Of several cells the one counts whose inside is nearest, then the one of the lowest rank.
+@*/
+PetscErrorCode MeshLocatePoint(Mesh mesh, int body, const PetscReal *x, CellPlace *place, PetscReal *outside)
+{
+  PetscReal   least;
+  PetscMPIInt rank, first;
+
+  PetscFunctionBeginUser;
+  place->cell = -1;
+  *outside    = PETSC_INFINITY;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const ElementType type = mesh->cell_type[c];
+    double            X[ELEMENT_MAX_NODES * 3], xi[3], out;
+
+    if (mesh->cell_body[c] != body) continue;
+    MeshCellCoordinates(mesh, c, X);
+    if (!NearBox(mesh->dim, ElementGet(type)->nodes, X, x) || !ReferencePoint(type, X, x, xi)) continue;
+    out = Outside(ElementGet(type), xi, 1);
+    if (out < LOCATE_TOUCHES) out = 0;
+    if (!(out <= LOCATE_NEAR && out < *outside)) continue;
+    *outside    = out;
+    place->cell = c;
+    ElementShape(type, xi, place->N, NULL, NULL);
+  }
+  PetscCallMPI(MPI_Allreduce(outside, &least, 1, MPIU_REAL, MPI_MIN, mesh->comm));
+  first = place->cell >= 0 && *outside == least ? rank : PETSC_MPI_INT_MAX;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, mesh->comm));
+  if (first != rank) place->cell = -1;
+  *outside = least;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

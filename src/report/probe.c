@@ -6,14 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A probe's point is at a node if it is within this part of the model's size from it: scene files that are written by
-   hand can be expected to meet this. */
-static const PetscReal POINT_TOLERANCE = 1e-6;
 /* A node that is n face sizes from an edge counts as within n of it, whatever the rounding of the mesh generator: this
    part of a face size is allowed beyond n. */
 static const PetscReal RING_TOLERANCE = 1e-6;
-enum { MESSAGE_SIZE = 2048 /* characters of a list of bodies in a refusal */ };
-
 /* Columns of the table of a pair's slave nodes, which is sorted by node_id */
 enum {
   SLAVE_ID,
@@ -34,165 +29,12 @@ typedef struct {
   PetscErrorCode (*evaluate)(Probes, Probe *, PetscReal *);
 } ProbeType;
 
-/* Writes dim coordinates as "(1, 2, 3)". The text belongs to the caller. */
-static const char *PointText(int dim, const PetscReal *x, char text[128])
-{
-  if (dim == 3)
-    snprintf(text, 128, "(%.9g, %.9g, %.9g)", (double)x[0], (double)x[1], (double)x[2]);
-  else
-    snprintf(text, 128, "(%.9g, %.9g)", (double)x[0], (double)x[1]);
-  return text;
-}
-
-/* Gives all ranks the values that one rank knows of a node. local is the node on its owner, and -1 elsewhere.
-   Collective. */
-static PetscErrorCode ProbesShare(Probes probes, PetscInt local, int n, const PetscReal *mine, PetscReal *shared)
-{
-  PetscFunctionBeginUser;
-  for (int i = 0; i < n; i++) shared[i] = local < 0 ? 0.0 : mine[i];
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, shared, n, MPIU_REAL, MPI_SUM, probes->model->mesh->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Gives the local node of a node_id on the rank that owns it, -1 elsewhere. */
-static PetscErrorCode ProbesLocalNode(Probes probes, PetscInt id, PetscInt *local)
-{
-  const Mesh  mesh = probes->model->mesh;
-  PetscMPIInt rank;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
-  *local = -1;
-  for (PetscInt n = 0; n < mesh->n_nodes; n++)
-    if (mesh->node_id[n] == id && mesh->node_owner[n] == rank) *local = n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Returns the index of the body that a probe names, -1 if it names none. The scene has made sure that there is such a
-   body. */
-static int ProbesFindBody(Probes probes, const Probe *probe)
-{
-  for (int b = 0; probe->scene->body && b < probes->scene->n_bodies; b++)
-    if (!probes->scene->bodies[b].rigid && !strcmp(probes->scene->bodies[b].name, probe->scene->body)) return b;
-  return -1;
-}
-
-/* What this rank, and then all ranks, know of the nodes around a point */
-typedef struct {
-  PetscReal distance; /* of the nearest node */
-  PetscInt  nearest;  /* its node_id; the smallest where several are as near */
-  PetscInt  id;       /* smallest node_id within the tolerance */
-} Nearby;
-
-/* Looks through the local nodes (of a group, or all), of one body or any (-1), for those near a point. at[body] tells
-   which bodies have a node at the point. */
-static void ProbesLookAround(Probes probes, const PetscReal point[3], const MeshGroup *within, int body, Nearby *nearby,
-                             PetscInt *at)
-{
-  const Mesh     mesh = probes->model->mesh;
-  const PetscInt n    = within ? within->n_nodes : mesh->n_body_nodes;
-
-  *nearby = (Nearby){.distance = PETSC_MAX_REAL, .nearest = PETSC_MAX_INT, .id = PETSC_MAX_INT};
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscInt node   = within ? within->nodes[k] : k;
-    PetscReal      square = 0.0, distance;
-
-    if (body >= 0 && probes->node_body[node] != body) continue;
-    for (int i = 0; i < mesh->dim; i++)
-      square += PetscSqr(mesh->coords[node * mesh->dim + i] + mesh->centre[i] - point[i]);
-    distance = PetscSqrtReal(square);
-    if (distance < nearby->distance || (distance == nearby->distance && mesh->node_id[node] < nearby->nearest)) {
-      nearby->distance = distance;
-      nearby->nearest  = mesh->node_id[node];
-    }
-    if (distance > POINT_TOLERANCE * mesh->size) continue;
-    nearby->id = PetscMin(nearby->id, mesh->node_id[node]);
-    if (probes->node_body[node] >= 0) at[probes->node_body[node]] = 1;
-  }
-}
-
-/* Refuses a point without a node and names the nearest one. Returns REFUSED. Collective. */
-static PetscErrorCode ProbesRefusePoint(Probes probes, const Probe *probe, const char *key, const PetscReal point[3],
-                                        const Nearby *nearby)
-{
-  const Mesh mesh    = probes->model->mesh;
-  PetscReal  mine[4] = {0}, shared[4];
-  PetscInt   local;
-  char       asked[128], found[128];
-
-  PetscFunctionBeginUser;
-  PetscCall(ProbesLocalNode(probes, nearby->nearest, &local));
-  if (local >= 0) {
-    for (int i = 0; i < mesh->dim; i++) mine[i] = mesh->coords[local * mesh->dim + i] + mesh->centre[i];
-    mine[3] = (PetscReal)mesh->node_tag[local];
-  }
-  PetscCall(ProbesShare(probes, local, 4, mine, shared));
-  PetscCall(RefuseInput(mesh->comm,
-                        "%s: no node at %s%s; allowed: reference coordinates of a node, to within %g of the model's "
-                        "size; the nearest is node %.0f at %s, %.3g away",
-                        SceneWhere(probes->scene, probe->scene->path, key), PointText(mesh->dim, point, asked),
-                        probe->scene->target ? " on the slave surface" : "", (double)POINT_TOLERANCE, (double)shared[3],
-                        PointText(mesh->dim, shared, found), (double)nearby->distance));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Refuses a point at which two bodies have a node if the scene does not say which is meant. Returns REFUSED.
-   Collective. */
-static PetscErrorCode ProbesRefuseBodies(Probes probes, const Probe *probe, const char *key, const PetscReal point[3],
-                                         const PetscInt *at)
-{
-  char names[MESSAGE_SIZE] = "", asked[128];
-
-  PetscFunctionBeginUser;
-  for (int b = 0; b < probes->scene->n_bodies; b++) {
-    if (!at[b]) continue;
-    PetscCall(PetscStrlcat(names, *names ? ", " : "", sizeof(names)));
-    PetscCall(PetscStrlcat(names, probes->scene->bodies[b].name, sizeof(names)));
-  }
-  PetscCall(RefuseInput(
-    probes->model->mesh->comm, "%s: several bodies have a node at %s; \"body\" must say which; allowed: %s",
-    SceneWhere(probes->scene, probe->scene->path, key), PointText(probes->model->mesh->dim, point, asked), names));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Finds the node at point number `which` of a probe, among all nodes or those of a group. Refuses a point without a
-   node and one where the body is left open. Collective. */
-static PetscErrorCode ProbesFindNode(Probes probes, Probe *probe, const char *key, int which, const MeshGroup *within)
-{
-  const MPI_Comm   comm  = probes->model->mesh->comm;
-  const PetscReal *point = probe->scene->point[which];
-  PetscInt        *at, bodies = 0;
-  PetscErrorCode   code = PETSC_SUCCESS;
-  PetscReal        least;
-  Nearby           nearby;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(probes->scene->n_bodies, &at));
-  ProbesLookAround(probes, point, within, ProbesFindBody(probes, probe), &nearby, at);
-  PetscCallMPI(MPI_Allreduce(&nearby.distance, &least, 1, MPIU_REAL, MPI_MIN, comm));
-  if (nearby.distance > least) nearby.nearest = PETSC_MAX_INT;
-  nearby.distance = least;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &nearby.nearest, 1, MPIU_INT, MPI_MIN, comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &nearby.id, 1, MPIU_INT, MPI_MIN, comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, at, probes->scene->n_bodies, MPIU_INT, MPI_MAX, comm));
-  for (int b = 0; b < probes->scene->n_bodies; b++) bodies += at[b];
-  if (nearby.id == PETSC_MAX_INT)
-    code = ProbesRefusePoint(probes, probe, key, point, &nearby);
-  else if (bodies > 1)
-    code = ProbesRefuseBodies(probes, probe, key, point, at);
-  PetscCall(PetscFree(at));
-  PetscCall(code);
-  probe->id[which] = nearby.id;
-  PetscCall(ProbesLocalNode(probes, nearby.id, &probe->node[which]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Tells whether a reference coordinate is the one that `at` asks for. */
 static PetscBool ProbeIsAt(Probes probes, const Probe *probe, PetscReal coordinate)
 {
   const PetscReal distance = PetscAbsReal(coordinate - probe->scene->at_value);
 
-  return distance <= POINT_TOLERANCE * probes->model->mesh->size ? PETSC_TRUE : PETSC_FALSE;
+  return distance <= PROBE_POINT_TOLERANCE * probes->model->mesh->size ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Refuses a value of `at` that no slave node has, and names the nearest one. Collective. */
@@ -211,7 +53,7 @@ static PetscErrorCode ProbesCheckAt(Probes probes, const Probe *probe)
     sides[x > 0.0] = PetscMin(sides[x > 0.0], PetscAbsReal(x));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sides, 2, MPIU_REAL, MPI_MIN, mesh->comm));
-  if (PetscMin(sides[0], sides[1]) > POINT_TOLERANCE * mesh->size) {
+  if (PetscMin(sides[0], sides[1]) > PROBE_POINT_TOLERANCE * mesh->size) {
     const PetscReal nearest = asked + (sides[0] < sides[1] ? -sides[0] : sides[1]);
 
     PetscCall(RefuseInput(mesh->comm,
@@ -352,11 +194,11 @@ static PetscErrorCode EvaluateBoltShortening(Probes probes, Probe *probe, PetscR
 
 static PetscErrorCode EvaluateDisplacement(Probes probes, Probe *probe, PetscReal *value)
 {
-  const Model model = probes->model;
+  PetscReal u[3];
 
   PetscFunctionBeginUser;
-  PetscCall(ProbesShare(probes, probe->node[0], 1,
-                        &model->u[PetscMax(probe->node[0], 0) * model->mesh->dim + probe->scene->component], value));
+  PetscCall(ProbePointValue(probes, &probe->point[0], probes->model->u, u));
+  *value = u[probe->scene->component];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -368,10 +210,8 @@ static PetscErrorCode EvaluateDistance(Probes probes, Probe *probe, PetscReal *v
 
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) {
-    const PetscInt node = PetscMax(probe->node[k], 0);
-
-    PetscCall(ProbesShare(probes, probe->node[k], dim, &model->mesh->coords[node * dim], X[k]));
-    PetscCall(ProbesShare(probes, probe->node[k], dim, &model->u[node * dim], u[k]));
+    PetscCall(ProbePointValue(probes, &probe->point[k], model->mesh->coords, X[k]));
+    PetscCall(ProbePointValue(probes, &probe->point[k], model->u, u[k]));
   }
   for (int i = 0; i < dim; i++) {
     const PetscReal reference = X[1][i] - X[0][i];
@@ -388,7 +228,7 @@ static PetscErrorCode EvaluateGap(Probes probes, Probe *probe, PetscReal *value)
   const Model model = probes->model;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactGapAt(model->contact, probe->pair, model->u, model->t, probe->id[0], value));
+  PetscCall(ContactGapAt(model->contact, probe->pair, model->u, model->t, probe->point[0].id, value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -679,7 +519,7 @@ static PetscErrorCode ProbesPrepare(Probes probes, Probe *probe)
         FreeEdgesCreate(mesh, probes->scene, &probes->scene->contacts[probe->pair], probe->group, &probe->free_edges));
   }
   for (int i = 0; i < type->points; i++)
-    PetscCall(ProbesFindNode(probes, probe, type->points_key, i, type->names == NAMES_PAIR ? probe->group : NULL));
+    PetscCall(ProbePointFind(probes, probe, type->points_key, i, type->names == NAMES_PAIR ? probe->group : NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -710,8 +550,8 @@ static PetscErrorCode ProbesFindNodeBodies(Probes probes)
 . result - free it with ProbesDestroy()
 
   Note:
-  It refuses surfaces, pairs and volumes that do not exist, points without a node (naming the nearest node),
-  and points where several bodies have a node and none is named.
+  It refuses surfaces, pairs and volumes that do not exist, points outside of the bodies (naming the nearest node),
+  and points of several bodies where none is named.
 @*/
 PetscErrorCode ProbesCreate(Model model, Scene scene, Probes *result)
 {

@@ -71,12 +71,14 @@ static PetscErrorCode VaryContactForce(Probes probes, const Probe *probe, Functi
 
 static PetscErrorCode VaryDisplacement(Probes probes, const Probe *probe, Functional *f, const char **why)
 {
-  const Mesh mesh = probes->model->mesh;
+  const Mesh        mesh  = probes->model->mesh;
+  const ProbePoint *point = &probe->point[0];
 
   PetscFunctionBeginUser;
   (void)why;
   PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->direct));
-  if (probe->node[0] >= 0) f->direct[probe->node[0] * mesh->dim + probe->scene->component] = 1;
+  for (PetscInt a = 0; a < point->n; a++)
+    f->direct[point->node[a] * mesh->dim + probe->scene->component] = point->weight[a];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -85,20 +87,22 @@ static PetscErrorCode VaryDistance(Probes probes, const Probe *probe, Functional
 {
   const Mesh mesh = probes->model->mesh;
   const int  dim  = mesh->dim;
-  PetscReal  x[6] = {0}, length = 0;
+  PetscReal  X[2][3], u[2][3], way[3] = {0, 0, 0}, length = 0;
 
   PetscFunctionBeginUser;
   (void)why;
-  for (int k = 0; k < 2; k++)
-    for (int i = 0; i < dim && probe->node[k] >= 0; i++)
-      x[3 * k + i] = mesh->coords[probe->node[k] * dim + i] + probes->model->u[probe->node[k] * dim + i];
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, x, 6, MPIU_REAL, MPIU_SUM, mesh->comm));
-  for (int i = 0; i < dim; i++) length += PetscSqr(x[3 + i] - x[i]);
+  for (int k = 0; k < 2; k++) {
+    PetscCall(ProbePointValue(probes, &probe->point[k], mesh->coords, X[k]));
+    PetscCall(ProbePointValue(probes, &probe->point[k], probes->model->u, u[k]));
+  }
+  for (int i = 0; i < dim; i++) way[i] = X[1][i] + u[1][i] - X[0][i] - u[0][i];
+  for (int i = 0; i < dim; i++) length += PetscSqr(way[i]);
   length = PetscSqrtReal(length);
   PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->direct));
   for (int k = 0; k < 2; k++)
-    for (int i = 0; i < dim && probe->node[k] >= 0 && length > 0; i++)
-      f->direct[probe->node[k] * dim + i] += (k ? 1 : -1) * (x[3 + i] - x[i]) / length;
+    for (PetscInt a = 0; a < probe->point[k].n && length > 0; a++)
+      for (int i = 0; i < dim; i++)
+        f->direct[probe->point[k].node[a] * dim + i] += (k ? 1 : -1) * probe->point[k].weight[a] * way[i] / length;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
