@@ -11,3 +11,9 @@
 #if PETSC_VERSION_LT(3, 25, 0)
   #define SNES_DIVERGED_FUNCTION_NANORINF SNES_DIVERGED_FNORM_NAN
 #endif
+/* Numbers of ranks that a PetscSF returns. */
+#if PETSC_VERSION_LT(3, 23, 0)
+typedef PetscInt SFCount;
+#else
+typedef PetscMPIInt SFCount;
+#endif

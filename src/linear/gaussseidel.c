@@ -2,6 +2,7 @@
 #include <float.h>
 #include "gaussseidel.h"
 #include "blockrows.h"
+#include "sweeppass.h"
 
 /* Largest pivot, in parts of the block's diagonal, that is taken for zero: what rounding to single precision leaves. */
 #define SWEEP_PIVOT FLT_EPSILON
@@ -18,6 +19,7 @@ typedef enum { FORWARD, BACKWARD, REST_ONLY } Way;
 typedef struct _n_GaussSeidel {
   PetscReal    least, largest; /* eigenvalues that are smoothed */
   SweepOrder   order;
+  SweepPass    pass, rest; /* of x; of what residuals need of the step before */
   BlockRows    rows;
   PetscReal   *inverse;                /* of the blocks on the diagonal, in the order of the sweep, column-major */
   PetscReal   *residual, *step, *fall; /* fall: A times the step */
@@ -143,33 +145,39 @@ static void Sweep(GaussSeidel g, PetscInt from, PetscInt n, Way way)
   }
 }
 
-/* Sweeps once through all nodes. At their borders the ranks take turns, one colour after the other. Inner nodes are
-   swept while other ranks have their turn, or before. */
+/* Sweeps once through all nodes. The ranks take turns at their borders, one colour after the other. */
 static PetscErrorCode SweepAll(GaussSeidel g, Way way)
 {
-  const SweepOrder o            = g->order;
-  const PetscBool  border_first = (PetscBool)((o->interface < o->inner) == (way == FORWARD));
+  const SweepOrder o      = g->order;
+  const SweepWay   passes = way == FORWARD ? SWEEP_FORWARD : SWEEP_BACKWARD;
+  const PetscInt   low = o->border, high = o->n - o->border - o->n_border; /* nodes before the border and after it */
 
   PetscFunctionBeginUser;
-  if (!border_first || !o->sf) Sweep(g, o->inner, o->n_inner, way);
-  for (int turn = 0; o->sf && turn < o->colours; turn++) {
-    const PetscBool mine = (PetscBool)(o->colour == (way == FORWARD ? turn : o->colours - 1 - turn)),
-                    last = (PetscBool)(turn == o->colours - 1);
-
-    if (mine) Sweep(g, o->interface, o->n - o->n_inner, way);
-    if (!last) PetscCall(SweepOrderShareBegin(o, g->x));
-    if (mine && border_first) Sweep(g, o->inner, o->n_inner, way);
-    if (!last) PetscCall(SweepOrderShareEnd(o, g->x));
-  }
+  PetscCall(SweepPassBegin(g->pass, passes, g->x));
+  Sweep(g, way == FORWARD ? 0 : o->n - high, way == FORWARD ? low : high, way);
+  PetscCall(SweepPassAwait(g->rest));
+  PetscCall(SweepPassAwait(g->pass));
+  Sweep(g, o->border, o->n_border, way);
+  PetscCall(SweepPassSend(g->pass, passes, g->x));
+  Sweep(g, way == FORWARD ? o->n - high : 0, way == FORWARD ? high : low, way);
+  PetscCall(SweepPassEnd(g->rest));
+  PetscCall(SweepPassEnd(g->pass));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds z for the residual, which becomes known on the way. */
+/* Finds z for the residual, which becomes known on the way. The residual of a guess needs all ghosts, that of a step
+   only those that are swept before this rank. */
 static PetscErrorCode SweepBothWays(GaussSeidel g)
 {
   PetscFunctionBeginUser;
-  if (g->what != RESIDUAL_KNOWN) PetscCall(SweepOrderShareBegin(g->order, g->other));
-  if (g->what != RESIDUAL_KNOWN) PetscCall(SweepOrderShareEnd(g->order, g->other));
+  if (g->what == RESIDUAL_GUESS) {
+    PetscCall(SweepOrderShareBegin(g->order, g->other));
+    PetscCall(SweepOrderShareEnd(g->order, g->other));
+  }
+  if (g->what == RESIDUAL_STEP) {
+    PetscCall(SweepPassBegin(g->rest, SWEEP_FORWARD, g->other));
+    PetscCall(SweepPassSend(g->rest, SWEEP_FORWARD, g->other));
+  }
   PetscCall(SweepAll(g, FORWARD));
   g->what = RESIDUAL_KNOWN;
   PetscCall(SweepAll(g, BACKWARD));
@@ -201,6 +209,8 @@ static PetscErrorCode CopyTo(GaussSeidel g, const PetscReal *from, Vec to)
 static PetscErrorCode Reset(GaussSeidel g)
 {
   PetscFunctionBeginUser;
+  PetscCall(SweepPassDestroy(&g->pass));
+  PetscCall(SweepPassDestroy(&g->rest));
   PetscCall(SweepOrderDestroy(&g->order));
   PetscCall(BlockRowsDestroy(&g->rows));
   PetscCall(PetscFree(g->inverse));
@@ -221,6 +231,8 @@ static PetscErrorCode GaussSeidelSetUp(PC pc)
   PetscCall(PCGetOperators(pc, NULL, &mat));
   PetscCall(Reset(g));
   PetscCall(SweepOrderCreate(mat, &g->order));
+  PetscCall(SweepPassCreate(g->order, &g->pass));
+  PetscCall(SweepPassCreate(g->order, &g->rest));
   PetscCall(BlockRowsCreate(mat, g->order, &g->rows));
   size  = g->order->size;
   n     = g->order->n;

@@ -95,23 +95,23 @@ static PetscErrorCode FindGhosts(SweepOrder o, Mat mat, const MatrixRows *others
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers the places; nodes without ghosts follow each other. Ranks of even colours sweep their border first, those of
-   odd colours last, so that of two ranks none waits for the other. */
+/* Numbers the places. The other nodes are swept before the border and after it, in shares by which each colour comes to
+   its border when the colour before it has swept its own: no rank waits as long as the border is a small part. */
 static PetscErrorCode PlaceNodes(SweepOrder o, const MatrixRows *others)
 {
-  PetscInt n_border = 0, interface, inner;
+  PetscInt border, inner = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(o->n, &o->node));
   for (PetscInt i = 0; i < o->n; i++) {
     o->place[i] = others->mat && others->ptr[(i + 1) * o->size] > others->ptr[i * o->size];
-    n_border += o->place[i];
+    o->n_border += o->place[i];
   }
-  o->n_inner   = o->n - n_border;
-  o->interface = interface = o->colour % 2 == 0 ? 0 : o->n_inner;
-  o->inner = inner = o->colour % 2 == 0 ? n_border : 0;
+  if (o->colours > 1) o->border = (PetscInt)((PetscInt64)(o->n - o->n_border) * o->colour / (o->colours - 1));
+  border = o->border;
   for (PetscInt i = 0; i < o->n; i++) {
-    o->place[i]          = o->place[i] ? interface++ : inner++;
+    if (inner == o->border) inner += o->n_border;
+    o->place[i]          = o->place[i] ? border++ : inner++;
     o->node[o->place[i]] = i;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -129,7 +129,7 @@ static PetscErrorCode PlaceNodes(SweepOrder o, const MatrixRows *others)
 . order - destroy it with SweepOrderDestroy()
 
   Notes:
-  Inner nodes of a rank come in ascending order, and so do those of its border.
+  The nodes of the border come in ascending order, and so do the others.
 
   Source: Adams, A distributed memory unstructured Gauss-Seidel algorithm for multigrid smoothers, 2001.
 @*/
