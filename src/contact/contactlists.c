@@ -359,6 +359,19 @@ static PetscErrorCode PairTakeOffsets(ContactPair *pair, const PetscReal *u, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Tells, with PETSc's -info, how much contact this rank has to do. */
+static PetscErrorCode PairTellWork(const ContactPair *pair)
+{
+  const NeighbourLists lists = pair->lists;
+  PetscInt             fits  = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt s = 0; s < lists->n_slaves; s++) fits += lists->fit_n[s] > 0;
+  PetscCall(PetscInfo(NULL, "contact '%s': %" PetscInt_FMT " slave points, %" PetscInt_FMT " fits\n", pair->scene->name,
+                      lists->n_slaves, fits));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactGather - makes new lists, with new offsets and area factors, for all pairs.
 
@@ -392,6 +405,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscCall(PairListsServe(pair, u, t, needed, changed, &serve));
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
     if (pair->next || pair->stays) PetscCall(PairTakeNext(pair));
+    PetscCall(PairTellWork(pair));
     PetscCall(PairExtrapolateOffsets(pair, u, t, t_next));
     if (pair->friction) PetscCall(ContactPairProject(contact, pair, u, t));
     if (pair->friction) PetscCall(FrictionBegin(pair, t, t_next));

@@ -1,7 +1,9 @@
 /* Estimates the costs of partitions of a scene's mesh on 2 to 4096 ranks, from the partition alone. One table is for
    partitions that balance cells and contact cells, as in a run, and one for partitions that balance cells alone. A line
    is row, column and value; a line with # begins a table. The arguments are SCENE.yaml KEY=VALUE ... Without arguments
-   the scene is two rings with 1e5 unknowns. */
+   the scene is two rings with 1e5 unknowns. With -write DIR before them the partitions of a run are written for
+   scripts/ranks_table.py: cells.txt (nodes of each cell), nodes.txt (coordinates), slave.txt and master.txt (nodes of
+   each face in contact), parts.txt (number of parts, and the part of each cell). */
 #include <float.h>
 #include "mesh/mesh.h"
 #include "base/boxtree.h"
@@ -201,12 +203,74 @@ static PetscErrorCode PrintPartitions(Study *study, PetscBool two_weights)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Opens a file of a directory. */
+static FILE *Open(const char *directory, const char *name)
+{
+  char path[PETSC_MAX_PATH_LEN];
+
+  snprintf(path, sizeof(path), "%s/%s", directory, name);
+  return fopen(path, "w");
+}
+
+static void WriteCells(const Mesh mesh, FILE *cells, FILE *nodes)
+{
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
+      fprintf(cells, "%" PetscInt_FMT "%s", mesh->cell_nodes[k], k + 1 < mesh->cell_ptr[c + 1] ? " " : "\n");
+  for (PetscInt i = 0; i < mesh->n_nodes * mesh->dim; i++)
+    fprintf(nodes, "%.17g%s", (double)mesh->coords[i], (i + 1) % mesh->dim ? " " : "\n");
+}
+
+static void WriteFaces(const Mesh mesh, const char *name, FILE *file)
+{
+  const MeshGroup *group = &mesh->groups[MeshFindGroup(mesh, mesh->dim - 1, name)];
+
+  for (PetscInt f = 0; f < group->n_faces; f++) {
+    PetscInt  nodes[FACE_MAX_NODES];
+    const int n = ElementGet(MeshFaceNodes(mesh, group, f, nodes))->nodes;
+
+    for (int a = 0; a < n; a++) fprintf(file, "%" PetscInt_FMT "%s", nodes[a], a + 1 < n ? " " : "\n");
+  }
+}
+
+/* Writes the mesh and, for all numbers of parts, the part of each cell. The first pair's surfaces are written. */
+static PetscErrorCode WriteStudy(Scene scene, Study *study, const char *directory)
+{
+  static const char *names[] = {"cells.txt", "nodes.txt", "slave.txt", "master.txt", "parts.txt"};
+  const PetscInt     n       = study->mesh->n_cells;
+  CellLinks          links   = {.n = study->n_slaves};
+  FILE              *file[5];
+  PetscInt           edge_cut;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 5; k++) {
+    file[k] = Open(directory, names[k]);
+    PetscCheck(file[k], PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot write %s/%s", directory, names[k]);
+  }
+  WriteCells(study->mesh, file[0], file[1]);
+  WriteFaces(study->mesh, scene->contacts[0].slave, file[2]);
+  WriteFaces(study->mesh, scene->contacts[0].master, file[3]);
+  PetscCall(PetscMalloc1(2 * links.n, &links.cell));
+  for (PetscInt e = 0; e < 2 * links.n; e++) links.cell[e] = e % 2 ? study->opposite[e / 2] : study->slave[e / 2];
+  for (study->parts = 2; study->parts <= MOST_PARTS && n / study->parts >= LEAST_CELLS; study->parts *= 2) {
+    PetscCall(PartitionGraph(n, study->offsets, study->adjacency, study->contact, &links, study->parts, study->part,
+                             &edge_cut));
+    fprintf(file[4], "%" PetscInt_FMT, study->parts);
+    for (PetscInt c = 0; c < n; c++) fprintf(file[4], " %" PetscInt_FMT, study->part[c]);
+    fprintf(file[4], "\n");
+  }
+  PetscCall(PetscFree(links.cell));
+  for (int k = 0; k < 5; k++) fclose(file[k]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 int main(int argc, char **argv)
 {
   static char *rings[] = {"kinematics=small", "mesh.parameters={n_inner: 48, n_outer: 60, n_len: 16}"};
-  const char  *file    = argc > 1 ? argv[1] : "runs/ring_in_ring_3d.yaml";
-  const int    n_set   = argc > 1 ? argc - 2 : 2;
-  char *const *set     = argc > 1 ? argv + 2 : rings;
+  const char  *write   = argc > 3 && !strcmp(argv[1], "-write") ? argv[2] : NULL;
+  const char  *file    = write ? argv[3] : argc > 1 ? argv[1] : "runs/ring_in_ring_3d.yaml";
+  const int    n_set   = write ? argc - 4 : argc > 1 ? argc - 2 : 2;
+  char *const *set     = write ? argv + 4 : argc > 1 ? argv + 2 : rings;
   char         mesh_file[PETSC_MAX_PATH_LEN];
   PetscReal    seconds;
   PetscInt     n;
@@ -221,7 +285,8 @@ int main(int argc, char **argv)
   PetscCall(AddPairs(scene, &study));
   PetscCall(DMPlexCreatePartitionerGraph(study.mesh->dm, 0, &n, &study.offsets, &study.adjacency, NULL));
   PetscCall(PetscMalloc2(n, &study.part, MOST_PARTS, &study.count));
-  for (int two = 1; two >= 0; two--) {
+  if (write) PetscCall(WriteStudy(scene, &study, write));
+  for (int two = 1; !write && two >= 0; two--) {
     PetscCall(PetscPrintf(
       PETSC_COMM_SELF, "# parts of %s, %" PetscInt_FMT " cells, %s: imbalances (largest over mean), ghosts, messages\n",
       scene->name, n, two ? "cells and contact cells balanced" : "cells alone balanced"));
