@@ -9,32 +9,86 @@
 #include "base/boxtree.h"
 
 /* Largest number of parts, and smallest number of cells in a part. No rank of a run would have as few cells as that. */
-enum { MOST_PARTS = 4096, LEAST_CELLS = 16 };
+enum { MOST_PARTS = 4096, LEAST_CELLS = 32 };
 
 typedef struct {
   Mesh       mesh;
   PetscInt  *offsets, *adjacency; /* graph of the cells */
   PetscBool *contact;             /* whether a cell has a face of a contact surface */
-  /* The cells of the slave faces, and for each the cell of the master face whose centre is nearest to that of the slave
-     face */
+  /* The cells of the slave faces, and for each the cell of a master face whose centre is nearest */
   PetscInt n_slaves, *slave, *opposite;
   PetscInt parts, *part, *count; /* number of parts, part of each cell, count for each part */
 } Study;
 
 /* The mesh */
 
-static PetscErrorCode FaceCentres(Mesh mesh, const MeshGroup *group, PetscReal **centres)
+/* The cells of a surface, ascending, and the centres of their nodes. */
+static PetscErrorCode SurfaceCells(Mesh mesh, const MeshGroup *group, PetscInt *n, PetscInt **cells,
+                                   PetscReal **centres)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(group->n_faces * mesh->dim, centres));
-  for (PetscInt f = 0; f < group->n_faces; f++) {
-    PetscInt  nodes[FACE_MAX_NODES];
-    const int n = ElementGet(MeshFaceNodes(mesh, group, f, nodes))->nodes;
+  *n = group->n_faces;
+  PetscCall(PetscMalloc1(*n, cells));
+  PetscCall(PetscArraycpy(*cells, group->face_cell, *n));
+  PetscCall(PetscSortRemoveDupsInt(n, *cells));
+  PetscCall(PetscCalloc1(*n * mesh->dim, centres));
+  for (PetscInt i = 0; i < *n; i++) {
+    const PetscInt first = mesh->cell_ptr[(*cells)[i]], end = mesh->cell_ptr[(*cells)[i] + 1];
 
-    for (int a = 0; a < n; a++)
-      for (int k = 0; k < mesh->dim; k++) (*centres)[f * mesh->dim + k] += mesh->coords[nodes[a] * mesh->dim + k] / n;
+    for (PetscInt k = first; k < end; k++)
+      for (int d = 0; d < mesh->dim; d++)
+        (*centres)[i * mesh->dim + d] += mesh->coords[mesh->cell_nodes[k] * mesh->dim + d] / (PetscReal)(end - first);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The nodes that two cells share, ascending, and behind them the largest number. */
+static void SharedNodes(const Mesh mesh, PetscInt a, PetscInt b, PetscInt shared[FACE_MAX_NODES])
+{
+  int n = 0;
+
+  for (PetscInt i = mesh->cell_ptr[a]; i < mesh->cell_ptr[a + 1]; i++)
+    for (PetscInt k = mesh->cell_ptr[b]; k < mesh->cell_ptr[b + 1] && n < FACE_MAX_NODES; k++)
+      if (mesh->cell_nodes[i] == mesh->cell_nodes[k]) shared[n++] = mesh->cell_nodes[i];
+  for (int k = n; k < FACE_MAX_NODES; k++) shared[k] = PETSC_MAX_INT;
+  for (int i = 1; i < n; i++) {
+    for (int k = i; k > 0 && shared[k - 1] > shared[k]; k--) {
+      const PetscInt other = shared[k];
+
+      shared[k]     = shared[k - 1];
+      shared[k - 1] = other;
+    }
+  }
+}
+
+static PetscBool IsBefore(const PetscInt a[FACE_MAX_NODES], const PetscInt b[FACE_MAX_NODES])
+{
+  int k = 0;
+
+  while (k + 1 < FACE_MAX_NODES && a[k] == b[k]) k++;
+  return (PetscBool)(a[k] < b[k]);
+}
+
+/* Sorts the neighbours of each cell by the nodes of the faces between them, as a run does: what METIS finds depends on
+   the order. */
+static void SortNeighbours(Study *study)
+{
+  const Mesh mesh = study->mesh;
+
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    for (PetscInt i = study->offsets[c] + 1; i < study->offsets[c + 1]; i++) {
+      for (PetscInt k = i; k > study->offsets[c]; k--) {
+        const PetscInt neighbour = study->adjacency[k];
+        PetscInt       mine[FACE_MAX_NODES], before[FACE_MAX_NODES];
+
+        SharedNodes(mesh, c, neighbour, mine);
+        SharedNodes(mesh, c, study->adjacency[k - 1], before);
+        if (!IsBefore(mine, before)) break;
+        study->adjacency[k]     = study->adjacency[k - 1];
+        study->adjacency[k - 1] = neighbour;
+      }
+    }
+  }
 }
 
 typedef struct {
@@ -49,36 +103,39 @@ static void VisitCentre(void *context, int index, double *bound)
 
   for (int k = 0; k < nearest->dim; k++)
     square += PetscSqr(nearest->centres[index * nearest->dim + k] - nearest->point[k]);
-  if (PetscSqrtReal(square) > *bound) return;
+  if (PetscSqrtReal(square) > *bound || (PetscSqrtReal(square) == *bound && nearest->closest < index)) return;
   *bound           = PetscSqrtReal(square);
   nearest->closest = index;
 }
 
-/* Appends the slave cells of a pair, and the master cells that are opposite to them. */
+/* Appends the slave cells of a pair, and the master cells that are nearest to them. */
 static PetscErrorCode AddPair(Study *study, const MeshGroup *slave, const MeshGroup *master)
 {
   const int  dim = study->mesh->dim;
-  PetscReal *slaves, *masters;
+  PetscInt   n, m, *slaves, *masters;
+  PetscReal *points, *centres;
   BoxTree    tree;
 
   PetscFunctionBeginUser;
-  PetscCall(FaceCentres(study->mesh, slave, &slaves));
-  PetscCall(FaceCentres(study->mesh, master, &masters));
-  PetscCheck(!BoxTreeBuild(dim, (int)master->n_faces, masters, masters, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM,
+  PetscCall(SurfaceCells(study->mesh, slave, &n, &slaves, &points));
+  PetscCall(SurfaceCells(study->mesh, master, &m, &masters, &centres));
+  PetscCheck(!BoxTreeBuild(dim, (int)m, centres, centres, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM,
              "no memory for the tree");
-  for (PetscInt f = 0; f < slave->n_faces; f++) {
-    Nearest nearest = {.dim = dim, .centres = masters, .point = slaves + f * dim};
+  for (PetscInt i = 0; i < n; i++) {
+    Nearest nearest = {.dim = dim, .closest = -1, .centres = centres, .point = points + i * dim};
     double  bound   = DBL_MAX;
 
     BoxTreeClosest(tree, nearest.point, NULL, &bound, VisitCentre, &nearest);
-    study->slave[study->n_slaves]      = slave->face_cell[f];
-    study->opposite[study->n_slaves++] = master->face_cell[nearest.closest];
+    study->slave[study->n_slaves]      = slaves[i];
+    study->opposite[study->n_slaves++] = masters[nearest.closest];
+    study->contact[slaves[i]]          = PETSC_TRUE;
   }
-  for (PetscInt f = 0; f < slave->n_faces; f++) study->contact[slave->face_cell[f]] = PETSC_TRUE;
-  for (PetscInt f = 0; f < master->n_faces; f++) study->contact[master->face_cell[f]] = PETSC_TRUE;
+  for (PetscInt i = 0; i < m; i++) study->contact[masters[i]] = PETSC_TRUE;
   BoxTreeDestroy(&tree);
   PetscCall(PetscFree(slaves));
   PetscCall(PetscFree(masters));
+  PetscCall(PetscFree(points));
+  PetscCall(PetscFree(centres));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -284,6 +341,7 @@ int main(int argc, char **argv)
   PetscCall(MeshCreate(PETSC_COMM_WORLD, scene, mesh_file, &study.mesh));
   PetscCall(AddPairs(scene, &study));
   PetscCall(DMPlexCreatePartitionerGraph(study.mesh->dm, 0, &n, &study.offsets, &study.adjacency, NULL));
+  SortNeighbours(&study);
   PetscCall(PetscMalloc2(n, &study.part, MOST_PARTS, &study.count));
   if (write) PetscCall(WriteStudy(scene, &study, write));
   for (int two = 1; !write && two >= 0; two--) {
