@@ -9,6 +9,7 @@ SEED = 1
 FINE_ROWS, COARSE_ROWS = 3, 6  # of a node; of an aggregate: rigid motions
 LEAST_ROWS = 50  # of an active rank on a coarse level: PETSc's -pc_gamg_process_eq_limit
 SQUARED = 1  # levels whose aggregates are those of the squared graph: PETSc's aggressive coarsening
+SMALL = 0.5  # part of the interface coupled to other ranks from which on parts overlap by two rows (src/linear/multigrid.c)
 COARSEST_ROWS = 50  # no level follows one with fewer: PETSc's -pc_gamg_coarse_eq_limit
 
 
@@ -107,6 +108,27 @@ def exchange(matrix, row_owner, column_owner, ranks):
     return messages.mean(), messages.max(), rows.mean(), rows.max()
 
 
+def across(mesh, owner):
+    """Part of the nodes of the interface that contact couples to other ranks."""
+    coo = mesh.coupled.tocoo()
+    return len(numpy.unique(coo.row[owner[coo.row] != owner[coo.col]])) / len(numpy.unique(coo.row))
+
+
+def turns(graph, owner, ranks):
+    """Colours of the ranks, as src/linear/sweeporder.c finds them, and the part of a rank's nodes at its border: mean and
+    largest."""
+    coo = graph.tocoo()
+    cut = owner[coo.row] != owner[coo.col]
+    pairs = pattern(owner[coo.row[cut]], owner[coo.col[cut]], (ranks, ranks))
+    colour = numpy.full(ranks, -1)
+    for rank in range(ranks):
+        taken = colour[pairs.indices[pairs.indptr[rank]:pairs.indptr[rank + 1]]]
+        colour[rank] = min(set(range(len(taken) + 1)) - set(taken))
+    border = numpy.bincount(owner[numpy.unique(coo.row[cut])], minlength=ranks)
+    border = border / numpy.bincount(owner, minlength=ranks)
+    return {"colours": colour.max() + 1, "border": border.mean(), "most_border": border.max()}
+
+
 def costs(mesh, ranks):
     """Features of a number of ranks."""
     owner = mesh.owners(ranks)
@@ -118,7 +140,11 @@ def costs(mesh, ranks):
     put = lambda name, values: found.update({f"{name}_{k}": v for k, v in
                                              zip(("messages", "most", "rows", "most_rows"), values)})
     put("fine", exchange(mesh.graph, owner, owner, ranks))
-    put("reach", exchange(product(mesh.coupled, mesh.coupled), owner, owner, ranks))
+    found["own_interface"] = len(numpy.unique(mesh.coupled.indices)) / ranks
+    found.update(turns(mesh.graph, owner, ranks))
+    found["across"] = across(mesh, owner)
+    reach = product(mesh.coupled, mesh.coupled) if found["across"] > SMALL else mesh.coupled
+    put("reach", exchange(reach, owner, owner, ranks))
     for k, (roots, smooth, graph) in enumerate(mesh.levels, 1):
         on = active(ranks, COARSE_ROWS * len(roots))
         above, owner = owner, owner[roots] // (ranks // on) * (ranks // on) if on < ranks else owner[roots]

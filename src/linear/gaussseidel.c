@@ -145,21 +145,33 @@ static void Sweep(GaussSeidel g, PetscInt from, PetscInt n, Way way)
   }
 }
 
-/* Sweeps once through all nodes. The ranks take turns at their borders, one colour after the other. */
+/* Sweeps the parts of all nodes from one to another, which comes later in this way. */
+static void SweepParts(GaussSeidel g, Way way, int from, int to)
+{
+  const PetscInt *first = g->order->first;
+
+  if (way == FORWARD)
+    Sweep(g, first[from], first[to + 1] - first[from], way);
+  else
+    Sweep(g, first[to], first[from + 1] - first[to], way);
+}
+
+/* Sweeps once through all nodes. */
 static PetscErrorCode SweepAll(GaussSeidel g, Way way)
 {
-  const SweepOrder o      = g->order;
-  const SweepWay   passes = way == FORWARD ? SWEEP_FORWARD : SWEEP_BACKWARD;
-  const PetscInt   low = o->border, high = o->n - o->border - o->n_border; /* nodes before the border and after it */
+  const PetscBool forward = (PetscBool)(way == FORWARD);
+  const SweepWay  passes  = forward ? SWEEP_FORWARD : SWEEP_BACKWARD;
 
   PetscFunctionBeginUser;
-  PetscCall(SweepPassBegin(g->pass, passes, g->x));
-  Sweep(g, way == FORWARD ? 0 : o->n - high, way == FORWARD ? low : high, way);
-  PetscCall(SweepPassAwait(g->rest));
-  PetscCall(SweepPassAwait(g->pass));
-  Sweep(g, o->border, o->n_border, way);
-  PetscCall(SweepPassSend(g->pass, passes, g->x));
-  Sweep(g, way == FORWARD ? o->n - high : 0, way == FORWARD ? high : low, way);
+  PetscCall(SweepPassBegin(g->pass, passes));
+  SweepParts(g, way, forward ? SWEEP_FIRST : SWEEP_LAST, forward ? SWEEP_FIRST : SWEEP_LAST);
+  PetscCall(SweepPassSend(g->pass, passes, PASS_EARLY, g->x));
+  SweepParts(g, way, forward ? SWEEP_BEFORE : SWEEP_AFTER, forward ? SWEEP_BEFORE : SWEEP_AFTER);
+  PetscCall(SweepPassAwait(g->rest, g->other));
+  PetscCall(SweepPassAwait(g->pass, g->x));
+  SweepParts(g, way, SWEEP_TURN, SWEEP_TURN);
+  PetscCall(SweepPassSend(g->pass, passes, PASS_TURN, g->x));
+  SweepParts(g, way, forward ? SWEEP_AFTER : SWEEP_BEFORE, forward ? SWEEP_LAST : SWEEP_FIRST);
   PetscCall(SweepPassEnd(g->rest));
   PetscCall(SweepPassEnd(g->pass));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -175,8 +187,8 @@ static PetscErrorCode SweepBothWays(GaussSeidel g)
     PetscCall(SweepOrderShareEnd(g->order, g->other));
   }
   if (g->what == RESIDUAL_STEP) {
-    PetscCall(SweepPassBegin(g->rest, SWEEP_FORWARD, g->other));
-    PetscCall(SweepPassSend(g->rest, SWEEP_FORWARD, g->other));
+    PetscCall(SweepPassBegin(g->rest, SWEEP_FORWARD));
+    PetscCall(SweepPassSend(g->rest, SWEEP_FORWARD, PASS_EARLY, g->other));
   }
   PetscCall(SweepAll(g, FORWARD));
   g->what = RESIDUAL_KNOWN;
@@ -231,8 +243,8 @@ static PetscErrorCode GaussSeidelSetUp(PC pc)
   PetscCall(PCGetOperators(pc, NULL, &mat));
   PetscCall(Reset(g));
   PetscCall(SweepOrderCreate(mat, &g->order));
-  PetscCall(SweepPassCreate(g->order, &g->pass));
-  PetscCall(SweepPassCreate(g->order, &g->rest));
+  PetscCall(SweepPassCreate(g->order, PETSC_TRUE, &g->pass));
+  PetscCall(SweepPassCreate(g->order, PETSC_FALSE, &g->rest));
   PetscCall(BlockRowsCreate(mat, g->order, &g->rows));
   size  = g->order->size;
   n     = g->order->n;

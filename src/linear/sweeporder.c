@@ -95,23 +95,46 @@ static PetscErrorCode FindGhosts(SweepOrder o, Mat mat, const MatrixRows *others
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers the places. The other nodes are swept before the border and after it, in shares by which each colour comes to
-   its border when the colour before it has swept its own: no rank waits as long as the border is a small part. */
+/* Finds the part of a node with regard to its ghosts; SWEEP_BEFORE: it has none. */
+static int FindPart(const SweepOrder o, const MatrixRows *others, PetscInt node)
+{
+  PetscBool lower = PETSC_FALSE, higher = PETSC_FALSE;
+
+  if (!others->mat) return SWEEP_BEFORE;
+  for (PetscInt k = others->ptr[node * o->size]; k < others->ptr[(node + 1) * o->size]; k++) {
+    const PetscInt place = o->place[o->n + o->ghost[others->column[k]] / o->size];
+
+    lower  = (PetscBool)(lower || place < 0);
+    higher = (PetscBool)(higher || place >= 0);
+  }
+  if (!lower && !higher) return SWEEP_BEFORE;
+  return lower && higher ? SWEEP_TURN : lower ? SWEEP_LAST : SWEEP_FIRST;
+}
+
+/* Numbers the places. Nodes without ghosts come before the turn and after it in shares by which each colour comes to
+   its turn when the colour before it has had its own: no rank waits as long as its turn is short. */
 static PetscErrorCode PlaceNodes(SweepOrder o, const MatrixRows *others)
 {
-  PetscInt border, inner = 0;
+  PetscInt count[SWEEP_PARTS] = {0}, next[SWEEP_PARTS], inner;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(o->n, &o->node));
   for (PetscInt i = 0; i < o->n; i++) {
-    o->place[i] = others->mat && others->ptr[(i + 1) * o->size] > others->ptr[i * o->size];
-    o->n_border += o->place[i];
+    o->place[i] = FindPart(o, others, i);
+    count[o->place[i]]++;
   }
-  if (o->colours > 1) o->border = (PetscInt)((PetscInt64)(o->n - o->n_border) * o->colour / (o->colours - 1));
-  border = o->border;
+  inner = count[SWEEP_BEFORE];
+  if (o->colours > 1) count[SWEEP_BEFORE] = (PetscInt)((PetscInt64)inner * o->colour / (o->colours - 1));
+  count[SWEEP_AFTER] = inner - count[SWEEP_BEFORE];
+  for (int part = 0; part < SWEEP_PARTS; part++) {
+    next[part]         = o->first[part];
+    o->first[part + 1] = o->first[part] + count[part];
+  }
   for (PetscInt i = 0; i < o->n; i++) {
-    if (inner == o->border) inner += o->n_border;
-    o->place[i]          = o->place[i] ? border++ : inner++;
+    const int part =
+      o->place[i] == SWEEP_BEFORE && next[SWEEP_BEFORE] == o->first[SWEEP_BEFORE + 1] ? SWEEP_AFTER : (int)o->place[i];
+
+    o->place[i]          = next[part]++;
     o->node[o->place[i]] = i;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -129,7 +152,7 @@ static PetscErrorCode PlaceNodes(SweepOrder o, const MatrixRows *others)
 . order - destroy it with SweepOrderDestroy()
 
   Notes:
-  The nodes of the border come in ascending order, and so do the others.
+  The nodes of a part come in ascending order.
 
   Source: Adams, A distributed memory unstructured Gauss-Seidel algorithm for multigrid smoothers, 2001.
 @*/

@@ -1,68 +1,78 @@
 /* Messages between ranks that sweep in turns. */
 #include "sweeppass.h"
 
+/* Rows of an array that go to another rank, or come from there: first those that go early. */
+typedef struct {
+  PetscInt   n, early, *row;
+  PetscReal *value; /* while they are under way */
+} Parcel;
+
 /* A rank that owns ghosts of this one. As the pattern is symmetric, it has ghosts that this rank owns. */
 typedef struct {
   PetscMPIInt rank;
-  PetscBool   before;   /* it is swept forward before this rank */
-  PetscInt    first, n; /* its rows among those of ghosts, which follow each other */
-  PetscInt    own;      /* number of rows of this rank that it needs */
-  PetscInt   *row;      /* these rows */
-  PetscReal  *value;    /* their values while they are sent */
+  PetscBool   before; /* its colour is lower */
+  Parcel      from, to;
 } Neighbour;
 
 struct _n_SweepPass {
   MPI_Comm     comm;
   PetscMPIInt  tag;
-  PetscInt     ghosts; /* first row of ghosts */
   SFCount      n;
   Neighbour   *neighbour;
+  SweepWay     way;                 /* of what is received */
   PetscMPIInt  n_receives, n_sends; /* under way */
   MPI_Request *receive, *send;
 };
 
-/* Sets what a neighbour sends. row: rows of its ghosts, from the first ghost's on */
-static PetscErrorCode SetReceived(SweepOrder o, PetscMPIInt rank, PetscInt n, const PetscInt *row, Neighbour *neighbour)
+/* Sets the rows of a parcel. waits: for each row whether it has a turn; offset: of the rows within the array */
+static PetscErrorCode FillParcel(PetscInt n, const PetscInt *row, PetscInt offset, const PetscInt *waits,
+                                 Parcel *parcel)
 {
+  PetscInt next = 0;
+
   PetscFunctionBeginUser;
-  neighbour->rank   = rank;
-  neighbour->first  = row[0];
-  neighbour->n      = n;
-  neighbour->before = (PetscBool)(o->place[o->n + row[0] / o->size] < 0);
-  PetscCheck(row[n - 1] == row[0] + n - 1, PETSC_COMM_SELF, PETSC_ERR_PLIB, "ghosts of rank %d are apart", rank);
+  parcel->n = n;
+  PetscCall(PetscMalloc2(n, &parcel->row, n, &parcel->value));
+  for (int late = 0; late < 2; late++) {
+    for (PetscInt k = 0; k < n; k++)
+      if ((waits[row[k]] != 0) == late) parcel->row[next++] = offset + row[k];
+    if (!late) parcel->early = next;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sets what a neighbour needs. */
-static PetscErrorCode SetSent(SweepPass pass, PetscMPIInt rank, PetscInt n, const PetscInt *row)
+static Neighbour *FindNeighbour(SweepPass pass, PetscMPIInt rank)
 {
-  Neighbour *neighbour = pass->neighbour, *end = pass->neighbour + pass->n;
-
-  PetscFunctionBeginUser;
-  while (neighbour < end && neighbour->rank != rank) neighbour++;
-  PetscCheck(neighbour < end, PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP, "rank %d needs rows, but has none", rank);
-  neighbour->own = n;
-  PetscCall(PetscMalloc2(n, &neighbour->row, n, &neighbour->value));
-  PetscCall(PetscArraycpy(neighbour->row, row, n));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (SFCount k = 0; k < pass->n; k++)
+    if (pass->neighbour[k].rank == rank) return &pass->neighbour[k];
+  return NULL;
 }
 
-/* Finds the neighbours from what fetches all ghosts. */
-static PetscErrorCode FindNeighbours(SweepPass pass, SweepOrder o)
+/* Finds the neighbours from what fetches all ghosts. own, ghost: for each row whether it has a turn */
+static PetscErrorCode FindNeighbours(SweepPass pass, SweepOrder o, const PetscInt *own, const PetscInt *ghost)
 {
   const PetscMPIInt *rank;
-  const PetscInt    *first, *row, *ghost;
+  const PetscInt    *first, *row;
   SFCount            n;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSFSetUp(o->sf));
-  PetscCall(PetscSFGetRootRanks(o->sf, &pass->n, &rank, &first, &ghost, NULL));
+  PetscCall(PetscSFGetRootRanks(o->sf, &pass->n, &rank, &first, &row, NULL));
   PetscCall(PetscCalloc1(pass->n, &pass->neighbour));
-  for (SFCount k = 0; k < pass->n; k++)
-    PetscCall(SetReceived(o, rank[k], first[k + 1] - first[k], &ghost[first[k]], &pass->neighbour[k]));
+  for (SFCount k = 0; k < pass->n; k++) {
+    Neighbour *neighbour = &pass->neighbour[k];
+
+    neighbour->rank   = rank[k];
+    neighbour->before = (PetscBool)(o->place[o->n + row[first[k]] / o->size] < 0);
+    PetscCall(FillParcel(first[k + 1] - first[k], &row[first[k]], o->n * o->size, ghost, &neighbour->from));
+  }
   PetscCall(PetscSFGetLeafRanks(o->sf, &n, &rank, &first, &row));
-  for (SFCount k = 0; k < n; k++) PetscCall(SetSent(pass, rank[k], first[k + 1] - first[k], &row[first[k]]));
-  PetscCall(PetscMalloc2(pass->n, &pass->receive, pass->n, &pass->send));
+  for (SFCount k = 0; k < n; k++) {
+    Neighbour *neighbour = FindNeighbour(pass, rank[k]);
+
+    PetscCheck(neighbour, PETSC_COMM_SELF, PETSC_ERR_ARG_INCOMP, "rank %d needs rows, but has none", rank[k]);
+    PetscCall(FillParcel(first[k + 1] - first[k], &row[first[k]], 0, own, &neighbour->to));
+  }
+  PetscCall(PetscMalloc2(PASS_STAGES * pass->n, &pass->receive, PASS_STAGES * pass->n, &pass->send));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -71,21 +81,29 @@ static PetscErrorCode FindNeighbours(SweepPass pass, SweepOrder o)
 
   Collective
 
-  Input Parameter:
-. order - the order of the sweeps
+  Input Parameters:
++ order  - the order of the sweeps
+- staged - nodes without a turn are sent early; else all are sent at once, as PASS_EARLY
 
   Output Parameter:
 . pass - destroy it with SweepPassDestroy()
 @*/
-PetscErrorCode SweepPassCreate(SweepOrder order, SweepPass *pass)
+PetscErrorCode SweepPassCreate(SweepOrder order, PetscBool staged, SweepPass *pass)
 {
+  PetscInt *own, *ghost;
+
   PetscFunctionBeginUser;
   PetscCall(PetscNew(pass));
-  (*pass)->ghosts = order->n * order->size;
   if (!order->sf) PetscFunctionReturn(PETSC_SUCCESS);
   (*pass)->comm = PetscObjectComm((PetscObject)order->sf);
   PetscCall(PetscObjectGetNewTag((PetscObject)order->sf, &(*pass)->tag));
-  PetscCall(FindNeighbours(*pass, order));
+  PetscCall(PetscCalloc2(order->n * order->size, &own, order->n_ghosts * order->size, &ghost));
+  for (PetscInt k = order->first[SWEEP_TURN]; staged && k < order->first[SWEEP_TURN + 1]; k++)
+    for (int d = 0; d < order->size; d++) own[order->node[k] * order->size + d] = 1;
+  PetscCall(PetscSFBcastBegin(order->sf, MPIU_INT, own, ghost, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(order->sf, MPIU_INT, own, ghost, MPI_REPLACE));
+  PetscCall(FindNeighbours(*pass, order, own, ghost));
+  PetscCall(PetscFree2(own, ghost));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -101,12 +119,20 @@ PetscErrorCode SweepPassDestroy(SweepPass *pass)
 {
   PetscFunctionBeginUser;
   if (!*pass) PetscFunctionReturn(PETSC_SUCCESS);
-  for (SFCount k = 0; k < (*pass)->n; k++)
-    PetscCall(PetscFree2((*pass)->neighbour[k].row, (*pass)->neighbour[k].value));
+  for (SFCount k = 0; k < (*pass)->n; k++) {
+    PetscCall(PetscFree2((*pass)->neighbour[k].from.row, (*pass)->neighbour[k].from.value));
+    PetscCall(PetscFree2((*pass)->neighbour[k].to.row, (*pass)->neighbour[k].to.value));
+  }
   PetscCall(PetscFree((*pass)->neighbour));
   PetscCall(PetscFree2((*pass)->receive, (*pass)->send));
   PetscCall(PetscFree(*pass));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* First row of a stage of a parcel; of PASS_STAGES: the number of rows. */
+static PetscInt StageRow(const Parcel *parcel, PassStage stage)
+{
+  return stage == PASS_EARLY ? 0 : stage == PASS_TURN ? parcel->early : parcel->n;
 }
 
 /*@
@@ -117,19 +143,22 @@ PetscErrorCode SweepPassDestroy(SweepPass *pass)
   Input Parameters:
 + pass - the pass; nothing is under way
 - way  - of the sweep
-
-  Input and Output Parameter:
-. x - the array of SweepOrderShareBegin(); values of these ghosts are known after SweepPassAwait()
 @*/
-PetscErrorCode SweepPassBegin(SweepPass pass, SweepWay way, PetscReal *x)
+PetscErrorCode SweepPassBegin(SweepPass pass, SweepWay way)
 {
   PetscFunctionBeginUser;
+  pass->way = way;
   for (SFCount k = 0; k < pass->n; k++) {
-    const Neighbour *from = &pass->neighbour[k];
+    const Neighbour *neighbour = &pass->neighbour[k];
 
-    if (from->before == (way == SWEEP_FORWARD))
-      PetscCallMPI(MPI_Irecv(&x[pass->ghosts + from->first], (PetscMPIInt)from->n, MPIU_REAL, from->rank, pass->tag,
-                             pass->comm, &pass->receive[pass->n_receives++]));
+    if (neighbour->before != (way == SWEEP_FORWARD)) continue;
+    for (PassStage stage = PASS_EARLY; stage < PASS_STAGES; stage++) {
+      const PetscInt first = StageRow(&neighbour->from, stage), n = StageRow(&neighbour->from, stage + 1) - first;
+
+      if (n)
+        PetscCallMPI(MPI_Irecv(&neighbour->from.value[first], (PetscMPIInt)n, MPIU_REAL, neighbour->rank, pass->tag,
+                               pass->comm, &pass->receive[pass->n_receives++]));
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -140,13 +169,23 @@ PetscErrorCode SweepPassBegin(SweepPass pass, SweepWay way, PetscReal *x)
   Logically collective
 
   Input Parameter:
-. pass - the pass
+. pass - the pass; nothing happens where nothing was begun
+
+  Input and Output Parameter:
+. x - the array of SweepOrderShareBegin(); gets the values of these ghosts
 @*/
-PetscErrorCode SweepPassAwait(SweepPass pass)
+PetscErrorCode SweepPassAwait(SweepPass pass, PetscReal *x)
 {
   PetscFunctionBeginUser;
+  if (!pass->n_receives) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCallMPI(MPI_Waitall(pass->n_receives, pass->receive, MPI_STATUSES_IGNORE));
   pass->n_receives = 0;
+  for (SFCount k = 0; k < pass->n; k++) {
+    const Parcel *from = &pass->neighbour[k].from;
+
+    if (pass->neighbour[k].before != (pass->way == SWEEP_FORWARD)) continue;
+    for (PetscInt i = 0; i < from->n; i++) x[from->row[i]] = from->value[i];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -156,20 +195,23 @@ PetscErrorCode SweepPassAwait(SweepPass pass)
   Logically collective
 
   Input Parameters:
-+ pass - the pass
-. way  - of the sweep
-- x    - values of this rank's nodes; they may change afterwards
++ pass  - the pass
+. way   - of the sweep
+. stage - PASS_EARLY: nodes without a turn are known; PASS_TURN: those with one are, too
+- x     - values of this rank's nodes; they may change afterwards
 @*/
-PetscErrorCode SweepPassSend(SweepPass pass, SweepWay way, const PetscReal *x)
+PetscErrorCode SweepPassSend(SweepPass pass, SweepWay way, PassStage stage, const PetscReal *x)
 {
   PetscFunctionBeginUser;
   for (SFCount k = 0; k < pass->n; k++) {
-    const Neighbour *to = &pass->neighbour[k];
+    const Neighbour *neighbour = &pass->neighbour[k];
+    const Parcel    *to        = &neighbour->to;
+    const PetscInt   first = StageRow(to, stage), end = StageRow(to, stage + 1);
 
-    if (to->before == (way == SWEEP_FORWARD)) continue;
-    for (PetscInt i = 0; i < to->own; i++) to->value[i] = x[to->row[i]];
-    PetscCallMPI(MPI_Isend(to->value, (PetscMPIInt)to->own, MPIU_REAL, to->rank, pass->tag, pass->comm,
-                           &pass->send[pass->n_sends++]));
+    if (neighbour->before == (way == SWEEP_FORWARD) || first == end) continue;
+    for (PetscInt i = first; i < end; i++) to->value[i] = x[to->row[i]];
+    PetscCallMPI(MPI_Isend(&to->value[first], (PetscMPIInt)(end - first), MPIU_REAL, neighbour->rank, pass->tag,
+                           pass->comm, &pass->send[pass->n_sends++]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

