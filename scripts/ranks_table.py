@@ -18,6 +18,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy
 
+import ranksmodel as model
 from launch import ROOT, command, environment, read_records, read_summary, table_parser
 
 RANKS, FITTED, CHECKED = (1, 2, 4, 8, 16, 32), (2, 4, 8), (16, 32)
@@ -27,15 +28,9 @@ PARTS = ROOT / "runs/records/ranks_parts.csv"
 OVERRIDES = ("kinematics=small", "stepping.initial=1", "output.every=0", "solver.type=iterative",
              "solver.tolerance=1e-10")
 COLUMNS = ("program", "ranks", "dofs", "status", "newton", "krylov", "applied", "tangents", "cpu_s", "wall_s", "setup_s",
-           "krylov_s", "tangent_s", "imbalance_cells", "imbalance_contact", "slave_points", "fits", "messages",
+           "steps_s", "contact_s", "krylov_s", "sweep_s", "interface_s", "imbalance_cells", "imbalance_contact", "slave_points", "fits", "messages",
            "most_messages", "bytes", "most_bytes", "reductions", "sweep_messages", "newton_messages",
            "newton_bytes", "newton_reductions", "mean_pressure", "noise_rms")
-# The network of the model
-LATENCY, BANDWIDTH = 2e-6, 1e9  # seconds of a message; bytes a second of each rank
-WEAK = 30000  # unknowns of each rank where the mesh grows with the ranks
-LAST = 4096
-HALVES, TURNS = 8, 4  # half sweeps of the finest level in an iteration; exchanges of a coarse level
-
 
 def mesh(n):
     return f"mesh.parameters={{n_inner: {n}, n_outer: {5 * n // 4}, n_len: {n // 3}}}"
@@ -73,15 +68,19 @@ def counts(log):
     """Of a Krylov iteration (one application of the preconditioner) and of a Newton iteration beside these."""
     step = "Load steps"
     applied, tangents = (int(log.of(step, event, "Count")[1]) for event in ("PCApply", "KSPSolve"))
-    row = {"applied": applied, "tangents": tangents, "krylov_s": log.of(step, "KSPSolve", "Time")[1],
-           "tangent_s": log.of(step, "PCSetUp", "Time")[1]}
+    grid = "MG Apply"
+    seconds = {name: log.of(stage, event, "Time")[1] for name, stage, event in (
+        ("steps", step, "summary"), ("grid", grid, "summary"), ("apply", step, "PCApply"),
+        ("krylov", step, "KSPSolve"), ("sweep", grid, finest(log)))}
+    row = {"applied": applied, "tangents": tangents, "krylov_s": seconds["krylov"], "sweep_s": seconds["sweep"],
+           "steps_s": seconds["steps"] + seconds["grid"], "interface_s": seconds["apply"] - seconds["grid"]}
     for name, column in (("messages", "Num Messages"), ("bytes", "Message Length"), ("reductions", "Num Reductions")):
         mean, most = log.of(step, "KSPSolve", column)
-        whole = log.of(step, "summary", column)[0] + log.of("MG Apply", "summary", column)[0]
+        whole = log.of(step, "summary", column)[0] + log.of(grid, "summary", column)[0]
         row[name], row[f"newton_{name}"] = mean / applied, (whole - mean) / tangents
         if name != "reductions":
             row[f"most_{name}"] = most / applied
-    row["sweep_messages"] = log.of("MG Apply", finest(log), "Num Messages")[0] / applied
+    row["sweep_messages"] = log.of(grid, finest(log), "Num Messages")[0] / applied
     return row
 
 
@@ -108,7 +107,8 @@ def solve(args, ranks):
     subprocess.run(line, env=environment(args.burnish), capture_output=True, check=True)
     summary = read_summary(folder / "run")
     row = {"program": args.program, "ranks": ranks, "newton": summary["newton_iterations"],
-           "krylov": summary["krylov_iterations"], "setup_s": summary["seconds"]["setup"]}
+           "krylov": summary["krylov_iterations"], "setup_s": summary["seconds"]["setup"],
+           "contact_s": sum(summary["seconds"][name] for name in ("search", "fit", "assembly_contact"))}
     row.update(counts(Log(folder / "log.csv")), **shares(folder, ranks))
     for name in COLUMNS:
         for part in (summary, summary["partition"], summary["probes"]):
@@ -151,6 +151,138 @@ def write_parts(args):
         writer.writerows(rows)
 
 
+# Tables and plot
+
+NAMES = {"messages": "messages of an iteration", "most_messages": "the same, the rank with the most",
+         "bytes": "bytes of an iteration", "most_bytes": "the same, the rank with the most",
+         "reductions": "reductions of an iteration", "newton_messages": "messages of a tangent",
+         "newton_bytes": "bytes of a tangent", "newton_reductions": "reductions of a tangent",
+         "imbalance_cells": "cells, largest over mean", "imbalance_contact": "cells in contact, largest over mean",
+         "slave_points": "slave points, largest over mean", "fits": "fits, largest over mean"}
+
+
+def head(*names):
+    print("| " + " | ".join(names) + " |\n|" + " --- |" * len(names))
+
+
+def load(record):
+    """{(program, ranks): run}, {(size, ranks): part}."""
+    runs = {(row["program"], int(row["ranks"])): model.numbers(row) for row in read_records(record)}
+    parts = {(int(row["size"]), int(row["ranks"])): model.numbers(row) for row in read_records(PARTS)}
+    return runs, parts
+
+
+def fitted(runs, parts):
+    return {name: model.fit(name, [runs["now", p] for p in FITTED], [parts[SIZE, p] for p in FITTED])
+            for name in NAMES}
+
+
+def table_runs(runs):
+    head("program", "ranks", "Newton iterations", "Krylov iterations", "messages of one", "in sweeps", "kB of one",
+         "mean pressure", "its noise, %")
+    for (program, ranks), run in runs.items():
+        print(f"| {program} | {ranks} | {run['newton']:.0f} | {run['krylov']:.0f} | {run['messages']:.1f} | "
+              f"{run['sweep_messages']:.1f} | {run['bytes'] / 1e3:.1f} | {run['mean_pressure']:.8f} | "
+              f"{run['noise_rms']:.6f} |")
+
+
+def table_waiting(parts):
+    """What a rank waits in a sweep for its turn."""
+    print()
+    head("ranks", "colours", "nodes at borders", "nodes with a turn", "waiting in a sweep before", "now")
+    for (size, ranks), part in parts.items():
+        if size == SIZE and ranks in RANKS:
+            print(f"| {ranks} | {part['colours']:.0f} | {100 * part['border']:.0f} % | {100 * part['turn']:.0f} % | "
+                  f"{model.waiting(part, True):.2f} | {model.waiting(part):.2f} |")
+
+
+def table_checks(runs, parts, factors):
+    print()
+    head("of a rank", *(f"{p} ranks" for p in FITTED), *(f"{p} ranks: model" for p in CHECKED))
+    for name, title in NAMES.items():
+        cells = [f"{runs['now', p][name]:.4g}" for p in FITTED]
+        for p in CHECKED:
+            is_, said = runs["now", p][name], model.predict(name, factors, parts[SIZE, p])
+            cells.append(f"{is_:.4g}: {said:.4g} ({100 * (said / is_ - 1):+.1f} %)")
+        print(f"| {title} | {' | '.join(cells)} |")
+
+
+def cases(parts):
+    """(kind, ranks, features, features of one rank, how many times fewer work one rank has)."""
+    large = {ranks: part for (size, ranks), part in parts.items() if size == LARGE}
+    unknowns = {ranks: model.FINE * part["nodes"] / ranks for ranks, part in large.items()}
+    most = max(ranks for ranks in large if unknowns[ranks] > model.WEAK / 2)
+    for ranks, part in large.items():
+        yield "strong", ranks, part, model.alone(part, ranks), ranks
+    for ranks in large:
+        here = min(ranks, most)
+        part = model.scaled(large[here], model.WEAK / unknowns[here])
+        one = model.scaled(model.alone(large[here], here), model.WEAK / unknowns[here] / here)
+        yield "weak", ranks, model.repeated(part, ranks // here), one, 1
+
+
+def times(runs, parts, factors):
+    """{kind: [(ranks, seconds by cause, efficiency of the whole run, of the steps)]}."""
+    rate = model.rates(runs["now", 1])
+    interface = parts[SIZE, 2]["own_interface"] * 2
+    serial = "first rank alone"
+    found = {"strong": [], "weak": []}
+    for kind, ranks, part, one, gain in cases(parts):
+        first, then = (model.seconds(*case, factors, rate, interface) for case in ((one, 1), (part, ranks)))
+        whole = sum(first.values()) / gain / sum(then.values())
+        steps = first["work"] / gain / (sum(then.values()) - then[serial])
+        found[kind].append((ranks, then, whole, steps))
+    return found
+
+
+def table_times(found):
+    for kind, rows in found.items():
+        print()
+        head(f"ranks, {kind}", "s without the first rank's", "efficiency", "lost most by", "then by",
+             "s of the first rank alone", "efficiency of the whole run")
+        for ranks, causes, whole, steps in rows:
+            lost = sorted((cause for cause in causes if cause not in ("work", "first rank alone")),
+                          key=causes.get, reverse=True)[:2]
+            rest = sum(causes.values()) - causes["first rank alone"]
+            print(f"| {ranks} | {rest:.3g} | {100 * steps:.0f} % | " +
+                  " | ".join(f"{cause}, {100 * causes[cause] / rest:.0f} %" for cause in lost) +
+                  f" | {causes['first rank alone']:.2g} | {100 * whole:.0f} % |")
+
+
+def draw(runs, parts, factors, found, path):
+    figure, axes = plt.subplots(1, 3, figsize=(13, 4))
+    large = sorted(p for size, p in parts if size == LARGE)
+    for program, mark in (("before", "s"), ("now", "o")):
+        rows = [(p, run) for (name, p), run in runs.items() if name == program and p > 1]
+        axes[0].loglog([p for p, _ in rows], [run["messages"] * run["applied"] for _, run in rows], mark,
+                       label=f"{program}, counted")
+    iterations = runs["now", 1]["applied"]
+    axes[0].loglog(large, [iterations * model.predict("messages", factors, parts[LARGE, p]) for p in large], "-",
+                   label="model")
+    axes[0].set(title="messages of a rank in all iterations", xlabel="ranks")
+    for axis, kind in zip(axes[1:], found):
+        ranks = [row[0] for row in found[kind]]
+        axis.semilogx(ranks, [100 * row[3] for row in found[kind]], "o-", label="steps")
+        axis.semilogx(ranks, [100 * row[2] for row in found[kind]], "s--", label="with the first rank's own work")
+        axis.set(title=f"{kind} scaling, model", xlabel="ranks", ylabel="efficiency, %", ylim=(0, 105))
+    for axis in axes:
+        axis.legend()
+        axis.grid(alpha=0.3)
+    figure.tight_layout()
+    figure.savefig(path, dpi=80)
+
+
+def show(record):
+    runs, parts = load(record)
+    table_runs(runs)
+    table_waiting(parts)
+    factors = fitted(runs, parts)
+    table_checks(runs, parts, factors)
+    found = times(runs, parts, factors)
+    table_times(found)
+    draw(runs, parts, factors, found, record.with_suffix(".png"))
+
+
 if __name__ == "__main__":
     parser = table_parser(__doc__, "ranks")
     parser.add_argument("--parts", action="store_true", help="finds the parts of the meshes, for the model")
@@ -162,3 +294,5 @@ if __name__ == "__main__":
         write_parts(args)
     elif not args.only_print:
         run(args)
+    if not args.parts and read_records(PARTS):
+        show(args.record)

@@ -114,19 +114,30 @@ def across(mesh, owner):
     return len(numpy.unique(coo.row[owner[coo.row] != owner[coo.col]])) / len(numpy.unique(coo.row))
 
 
-def turns(graph, owner, ranks):
-    """Colours of the ranks, as src/linear/sweeporder.c finds them, and the part of a rank's nodes at its border: mean and
-    largest."""
+def colours(graph, owner, ranks):
+    """Of the ranks, as src/linear/sweeporder.c finds them."""
     coo = graph.tocoo()
-    cut = owner[coo.row] != owner[coo.col]
-    pairs = pattern(owner[coo.row[cut]], owner[coo.col[cut]], (ranks, ranks))
+    pairs = pattern(owner[coo.row], owner[coo.col], (ranks, ranks))
     colour = numpy.full(ranks, -1)
     for rank in range(ranks):
-        taken = colour[pairs.indices[pairs.indptr[rank]:pairs.indptr[rank + 1]]]
-        colour[rank] = min(set(range(len(taken) + 1)) - set(taken))
-    border = numpy.bincount(owner[numpy.unique(coo.row[cut])], minlength=ranks)
-    border = border / numpy.bincount(owner, minlength=ranks)
-    return {"colours": colour.max() + 1, "border": border.mean(), "most_border": border.max()}
+        near = pairs.indices[pairs.indptr[rank]:pairs.indptr[rank + 1]]
+        taken = set(colour[near[near < rank]])
+        colour[rank] = min(set(range(len(taken) + 1)) - taken)
+    return colour
+
+
+def turns(graph, owner, ranks):
+    """Colours; the part of a rank's nodes that has turns, and that is at its border; and messages in which their values
+    and those of the other nodes at borders go to all neighbours once: means over the ranks."""
+    coo, colour = graph.tocoo(), colours(graph, owner, ranks)
+    mine, other = owner[coo.row], owner[coo.col]
+    lower, higher = (numpy.zeros(graph.shape[0], dtype=bool) for _ in range(2))
+    lower[coo.row[colour[other] < colour[mine]]] = True
+    higher[coo.row[colour[other] > colour[mine]]] = True
+    cut, late = mine != other, (lower & higher)[coo.col]
+    sent = [len(numpy.unique(mine[kind] * ranks + other[kind])) / ranks for kind in (cut & ~late, cut & late)]
+    return {"colours": colour.max() + 1, "turn": (lower & higher).mean(), "border": (lower | higher).mean(),
+            "early_messages": sent[0], "turn_messages": sent[1]}
 
 
 def costs(mesh, ranks):

@@ -154,6 +154,7 @@ FULL = {
     f"{PYTHON} scripts/overhead_table.py --record runs/records/all_overhead.csv": printed("overhead_table",
                                                                                       "all_overhead"),
     f"{PYTHON} scripts/search_table.py --record runs/records/search.csv": printed("search_table", "search"),
+    f"{PYTHON} scripts/ranks_table.py --record runs/records/ranks.csv": printed("ranks_table", "ranks"),
     f"{PYTHON} tests/hard/run.py --group guards":
     f"{PYTHON} tests/hard/run.py {BURNISH} --out $WORK/out/hard --case 'corner of two walls' --ranks 1",
     f"{PYTHON} tests/hard/run.py --record runs/records/hard.csv":
