@@ -211,7 +211,7 @@ def cases(parts):
     """(kind, ranks, features, features of one rank, how many times fewer work one rank has)."""
     large = {ranks: part for (size, ranks), part in parts.items() if size == LARGE}
     unknowns = {ranks: model.FINE * part["nodes"] / ranks for ranks, part in large.items()}
-    most = max(ranks for ranks in large if unknowns[ranks] > model.WEAK / 2)
+    most = max(ranks for ranks in large if unknowns[ranks] >= model.WEAK)
     for ranks, part in large.items():
         yield "strong", ranks, part, model.alone(part, ranks), ranks
     for ranks in large:
@@ -251,14 +251,16 @@ def table_times(found):
 
 def draw(runs, parts, factors, found, path):
     figure, axes = plt.subplots(1, 3, figsize=(13, 4))
-    large = sorted(p for size, p in parts if size == LARGE)
     for program, mark in (("before", "s"), ("now", "o")):
         rows = [(p, run) for (name, p), run in runs.items() if name == program and p > 1]
         axes[0].loglog([p for p, _ in rows], [run["messages"] * run["applied"] for _, run in rows], mark,
                        label=f"{program}, counted")
     iterations = runs["now", 1]["applied"]
-    axes[0].loglog(large, [iterations * model.predict("messages", factors, parts[LARGE, p]) for p in large], "-",
-                   label="model")
+    for size, line in ((SIZE, "-"), (LARGE, "--")):
+        some = sorted(p for s, p in parts if s == size)
+        unknowns = model.FINE * parts[size, some[0]]["nodes"]
+        axes[0].loglog(some, [iterations * model.predict("messages", factors, parts[size, p]) for p in some], line,
+                       label=f"model, {unknowns:.1g} unknowns")
     axes[0].set(title="messages of a rank in all iterations", xlabel="ranks")
     for axis, kind in zip(axes[1:], found):
         ranks = [row[0] for row in found[kind]]
