@@ -110,6 +110,24 @@ PetscReal PartitionImbalance(PetscInt n, const PetscInt part[], const PetscBool 
   return total ? (PetscReal)largest * parts / (PetscReal)total : 1;
 }
 
+/* Has METIS find the part of each cell, with one weight or with the weight of contact besides. weights: room for two */
+static int PartitionFind(idx_t n, idx_t n_weights, const PetscBool contact[], Graph *graph, idx_t parts,
+                         idx_t weights[], idx_t found[])
+{
+  idx_t  options[METIS_NOPTIONS], cut;
+  real_t tolerance[2] = {CELL_TOLERANCE, CONTACT_TOLERANCE};
+
+  for (idx_t c = 0; c < n; c++) {
+    weights[c * n_weights] = 1;
+    if (n_weights == 2) weights[c * n_weights + 1] = contact[c] ? 1 : 0;
+  }
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_SEED]      = METIS_SEED;
+  options[METIS_OPTION_NUMBERING] = 0;
+  return METIS_PartGraphKway(&n, &n_weights, graph->offsets, graph->neighbours, weights, NULL, graph->weights, &parts,
+                             NULL, tolerance, options, &cut, found);
+}
+
 /*@
   PartitionGraph - partitions a graph of cells with METIS' k-way method.
 
@@ -126,32 +144,28 @@ PetscReal PartitionImbalance(PetscInt n, const PetscInt part[], const PetscBool 
   Output Parameters:
 + part     - part of each cell [n]
 - edge_cut - pairs of neighbours in different parts
+
+  Note:
+  METIS gives up where parts are too small to be balanced by both weights; then cells alone are balanced.
 @*/
 PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[],
                               const PetscBool contact[], const CellLinks *links, PetscInt parts, PetscInt part[],
                               PetscInt *edge_cut)
 {
   Graph  graph;
-  idx_t *weights, *found, options[METIS_NOPTIONS], n_vertices, n_constraints = 1, n_parts, cut = 0;
-  real_t tolerance[2] = {CELL_TOLERANCE, CONTACT_TOLERANCE};
+  idx_t *weights, *found, n_vertices, n_weights = 1, n_parts;
   int    status;
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; contact && c < n; c++)
-    if (contact[c]) n_constraints = 2; /* METIS cannot balance weights that are all zero */
+    if (contact[c]) n_weights = 2; /* METIS cannot balance weights that are all zero */
   PetscCall(IndexCast(n, &n_vertices));
   PetscCall(IndexCast(parts, &n_parts));
   PetscCall(GraphCreate(n, offsets, adjacency, links, &graph));
-  PetscCall(PetscMalloc2(n * n_constraints, &weights, n, &found));
-  for (PetscInt c = 0; c < n; c++) {
-    weights[c * n_constraints] = 1;
-    if (n_constraints == 2) weights[c * n_constraints + 1] = contact[c] ? 1 : 0;
-  }
-  METIS_SetDefaultOptions(options);
-  options[METIS_OPTION_SEED]      = METIS_SEED;
-  options[METIS_OPTION_NUMBERING] = 0;
-  status = METIS_PartGraphKway(&n_vertices, &n_constraints, graph.offsets, graph.neighbours, weights, NULL,
-                               graph.weights, &n_parts, NULL, tolerance, options, &cut, found);
+  PetscCall(PetscMalloc2(n * n_weights, &weights, n, &found));
+  status = PartitionFind(n_vertices, n_weights, contact, &graph, n_parts, weights, found);
+  if (status != METIS_OK && n_weights == 2)
+    status = PartitionFind(n_vertices, 1, NULL, &graph, n_parts, weights, found);
   PetscCheck(status == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS failed with status %d", status);
   for (PetscInt c = 0; c < n; c++) part[c] = (PetscInt)found[c];
   *edge_cut = CountCut(n, offsets, adjacency, part);

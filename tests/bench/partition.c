@@ -9,7 +9,7 @@
 #include "base/boxtree.h"
 
 /* Largest number of parts, and smallest number of cells in a part. No rank of a run would have as few cells as that. */
-enum { MOST_PARTS = 4096, LEAST_CELLS = 32 };
+enum { MOST_PARTS = 4096, LEAST_CELLS = 16 };
 
 typedef struct {
   Mesh       mesh;

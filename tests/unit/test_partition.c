@@ -1,5 +1,5 @@
 /* Partition: two strips of cells that face each other across contact are cut across both strips, not separated from
-   each other. The number of faces that are cut does not include links. */
+   each other. The number of faces that are cut does not include links. Parts of few cells are found, too. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -63,9 +63,26 @@ static void test_links_are_not_cut(void **state)
   assert_true(faces_cut >= STRIPS * WIDTH && faces_cut <= 2 * STRIPS * WIDTH);
 }
 
+/* Parts of two or three cells, of which some should have one in contact: there is a partition all the same. */
+static void test_small_parts(void **state)
+{
+  enum { PARTS = CELLS / 2 };
+  PetscInt  offsets[CELLS + 1], adjacency[4 * CELLS], part[CELLS], count[PARTS], faces_cut;
+  PetscBool contact[CELLS];
+  CellLinks links = {0};
+
+  (void)state;
+  Strips(offsets, adjacency);
+  for (int s = 0; s < STRIPS; s++)
+    for (int i = 0; i < LENGTH; i++)
+      for (int j = 0; j < WIDTH; j++) contact[Cell(s, i, j)] = (PetscBool)(j == (s ? 0 : WIDTH - 1));
+  assert_int_equal(PartitionGraph(CELLS, offsets, adjacency, contact, &links, PARTS, part, &faces_cut), 0);
+  assert_true(PartitionImbalance(CELLS, part, NULL, PARTS, count) <= 4);
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_links_are_not_cut)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_links_are_not_cut), cmocka_unit_test(test_small_parts)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
