@@ -27,10 +27,11 @@ SUPPORT = 40  # master nodes to which a slave node is coupled with a smooth surf
 PARTS = ROOT / "runs/records/ranks_parts.csv"
 OVERRIDES = ("kinematics=small", "stepping.initial=1", "output.every=0", "solver.type=iterative",
              "solver.tolerance=1e-10")
-COLUMNS = ("program", "ranks", "dofs", "status", "newton", "krylov", "applied", "tangents", "cpu_s", "wall_s", "setup_s",
-           "steps_s", "contact_s", "krylov_s", "sweep_s", "interface_s", "imbalance_cells", "imbalance_contact", "slave_points", "fits", "messages",
-           "most_messages", "bytes", "most_bytes", "reductions", "sweep_messages", "newton_messages",
-           "newton_bytes", "newton_reductions", "mean_pressure", "noise_rms")
+COLUMNS = ("program", "ranks", "dofs", "status", "newton", "krylov", "applied", "tangents", "cpu_s", "wall_s",
+           "setup_s", "steps_s", "contact_s", "krylov_s", "sweep_s", "interface_s", "imbalance_cells",
+           "imbalance_contact", "slave_points", "fits", "messages", "most_messages", "bytes", "most_bytes",
+           "reductions", "sweep_messages", "newton_messages", "newton_bytes", "newton_reductions", "mean_pressure",
+           "noise_rms")
 
 def mesh(n):
     return f"mesh.parameters={{n_inner: {n}, n_outer: {5 * n // 4}, n_len: {n // 3}}}"
@@ -121,7 +122,8 @@ def run(args):
     """Runs the ranks asked for; other rows of the record stay."""
     for ranks in args.only:
         row = solve(args, ranks)
-        rows = [old for old in read_records(args.record) if (old["program"], int(old["ranks"])) != (args.program, ranks)]
+        here = args.program, str(ranks)
+        rows = [old for old in read_records(args.record) if (old["program"], old["ranks"]) != here]
         with open(args.record, "w", newline="") as file:
             writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
             writer.writeheader()

@@ -9,7 +9,8 @@ SEED = 1
 FINE_ROWS, COARSE_ROWS = 3, 6  # of a node; of an aggregate: rigid motions
 LEAST_ROWS = 50  # of an active rank on a coarse level: PETSc's -pc_gamg_process_eq_limit
 SQUARED = 1  # levels whose aggregates are those of the squared graph: PETSc's aggressive coarsening
-SMALL = 0.5  # part of the interface coupled to other ranks from which on parts overlap by two rows (src/linear/multigrid.c)
+# Part of the interface coupled to other ranks from which on parts overlap by two rows (src/linear/multigrid.c)
+SMALL = 0.5
 COARSEST_ROWS = 50  # no level follows one with fewer: PETSc's -pc_gamg_coarse_eq_limit
 
 

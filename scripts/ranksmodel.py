@@ -1,6 +1,6 @@
 """The model of scripts/ranks_table.py. What an iteration exchanges is a multiple of what the parts of the mesh have to
-exchange (scripts/rankscosts.py); the factors are fitted on few ranks. How long it then takes follows from the seconds of
-one rank and from a network that is stated."""
+exchange (scripts/rankscosts.py); the factors are fitted on few ranks. How long it then takes follows from the seconds
+of one rank and from a network that is stated."""
 import math
 
 import numpy
@@ -9,7 +9,8 @@ from scipy.optimize import nnls
 DOUBLE = 8  # bytes
 FINE, COARSE = 3, 6  # rows of a node; of an aggregate
 # An iteration smooths the finest level with four sweeps both ways, in which early values and those of turns go to each
-# neighbour once; two of them begin with values of the step before, one with those of a guess, and once there is a residual
+# neighbour once; two of them begin with values of the step before, one with those of a guess, and once there is a
+# residual
 SWEEPS, SHARES = 4, 3
 PRODUCTS = 4  # of a coarse level; its values are restricted and prolonged besides
 HALVES = 8  # sweeps one way
@@ -88,7 +89,7 @@ def waiting(part, before=False):
 
 
 def scaled(part, factor):
-    """The features where the mesh has `factor` times the nodes: the neighbours stay, surfaces grow less than volumes."""
+    """The features where the mesh has `factor` times the nodes: neighbours stay, surfaces grow less than volumes."""
     grown = {name: value * factor**(2 / 3) if name.endswith("_rows") else value for name, value in part.items()}
     for name, power in (("nodes", 1), ("own_interface", 2 / 3), ("turn", -2 / 3), ("border", -1 / 3)):
         if name in part:
