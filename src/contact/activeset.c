@@ -5,8 +5,9 @@
    Sets that have not converged by then repeat themselves. */
 #define ACTIVE_SET_MAX_SETS 30
 
-/* With friction sets that repeat themselves are left for relaxation: so many rounds of so many sweeps, after each of
-   which this number of sets is tried. */
+/* With friction sets that repeat themselves are left for so many damped ones from where the step begins. Then follows
+   relaxation: so many rounds of so many sweeps, after each of which this number of sets is tried. */
+#define ACTIVE_SET_DAMPED       20
 #define ACTIVE_SET_RELAX_ROUNDS 4
 #define ACTIVE_SET_RELAX_SWEEPS 200
 #define ACTIVE_SET_RELAX_SETS   10
@@ -126,8 +127,26 @@ PetscErrorCode ActiveSetAddColumns(ActiveSet p, PetscInt m, const PetscInt *whic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After sets with friction that have repeated themselves: relaxes the terms, and follows the sets from where that leads
-   to. *converged as ActiveSetSolve() says. */
+/* Follows damped sets from the step as it is: it was rounding that chose where undamped ones have wandered to.
+ *converged as ActiveSetSolve() says. */
+static PetscErrorCode BeginAgain(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool *converged)
+{
+  PetscBool regular, changed;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(p->excess, p->m));
+  (void)ActiveSetFollow(p);
+  for (PetscInt i = 0; i < p->n; i++) p->slipped[i] = p->sticks[i] = PETSC_FALSE;
+  p->damped = PETSC_TRUE;
+  PetscCall(ActiveSetFollowSets(p, ACTIVE_SET_DAMPED, m, which, &regular, &changed));
+  p->damped  = PETSC_FALSE;
+  *converged = (PetscBool)(!*m && regular && !changed);
+  for (PetscInt i = 0; i < p->n; i++) p->sticks[i] = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After damped sets that have repeated themselves: relaxes the terms, and follows the sets from where that leads to.
+ *converged as ActiveSetSolve() says. */
 static PetscErrorCode Relax(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool *converged)
 {
   PetscBool settled = PETSC_FALSE, regular, changed;
@@ -147,6 +166,16 @@ static PetscErrorCode Relax(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool
     *converged = (PetscBool)(!*m && regular && !changed);
     for (PetscInt i = 0; i < p->n; i++) p->sticks[i] = PETSC_FALSE;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After sets with friction that have repeated themselves: tries damped ones, then relaxation. */
+static PetscErrorCode LeaveCycle(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool *converged)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BeginAgain(p, m, which, converged));
+  if (!*m && !*converged) PetscCall(Relax(p, m, which, converged));
+  if (!*m && *converged) *m = ActiveSetMissingFriction(p, which);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -222,7 +251,9 @@ PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBo
 
   PetscFunctionBeginUser;
   do {
-    const PetscInt most = p->searches ? ACTIVE_SET_MAX_SEARCHES : ACTIVE_SET_MAX_SETS;
+    const PetscInt most = p->searches    ? ACTIVE_SET_MAX_SEARCHES
+                          : p->parts > 1 ? ACTIVE_SET_UNDAMPED
+                                         : ACTIVE_SET_MAX_SETS;
 
     if (!p->on_path) {
       PetscCall(ActiveSetFollowSets(p, most, m, which, &regular, &changed));
@@ -230,7 +261,7 @@ PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBo
       if (*m || !p->m) PetscFunctionReturn(PETSC_SUCCESS);
       for (PetscInt i = 0; i < p->n && p->parts > 1; i++) p->sticks[i] = PETSC_FALSE;
       if (regular) *m = ActiveSetMissingFriction(p, which);
-      if (!*m && !*converged && p->parts > 1 && !p->unrelaxed) PetscCall(Relax(p, m, which, converged));
+      if (!*m && !*converged && p->parts > 1 && !p->unrelaxed) PetscCall(LeaveCycle(p, m, which, converged));
     }
     if (p->on_path || (!*m && !*converged && p->partial && !p->left_path)) {
       PetscCall(ActiveSetFollowPath(p, m, which, converged));

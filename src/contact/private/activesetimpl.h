@@ -2,6 +2,10 @@
 #pragma once
 #include "contact/activeset.h"
 
+/* With friction so many sets follow each other undamped. Most steps have found theirs by then, and undamped sets that
+   have not wander to where rounding leads them: of 5000 small bodies with large friction 121 found no set. */
+#define ACTIVE_SET_UNDAMPED 12
+
 struct _n_Pressing {
   PetscInt       n, parts, m, most;
   ActiveSetTerm *terms;
@@ -15,8 +19,9 @@ struct _n_Pressing {
   PetscBool     *slipped;      /* n: the term slipped where friction was looked at last */
   PetscBool     *sticks;       /* n: its slip has turned round since, so that it is to stick in the next set */
   PetscReal     *slip;         /* 2*n: its slip there (length) */
-  PetscBool      unrelaxed;    /* sets with friction that repeat themselves are not relaxed */
-  PetscBool      plain;        /* friction stays as residual and tangent have it */
+  PetscBool      damped;    /* sets with friction have repeated themselves: changes are shortened from the first on */
+  PetscBool      unrelaxed; /* sets with friction that repeat themselves are not relaxed */
+  PetscBool      plain;     /* friction stays as residual and tangent have it */
 
   /* The way by parts of the step */
   PetscBool  partial;            /* the step may end at a part of itself */
