@@ -395,11 +395,12 @@ static double Random(unsigned *seed)
   return (*seed >> 8) / (double)(1 << 23) - 1;
 }
 
-/* Largest force that is out of balance at the end of the step, over the largest bound of a term; *settled: the set says
-   that it is right. */
-static double RubTogether(const double elastic[N][N], const double *load, const ActiveSetTerm *term, PetscBool *settled)
+/* Largest force that is out of balance at the end x[N] of the step, over the largest bound of a term; *settled: the set
+   says that it is right. */
+static double RubTogether(const double elastic[N][N], const double *load, const ActiveSetTerm *term, double *x,
+                          PetscBool *settled)
 {
-  double           x[N], b[N], column[N][N], G[N], force, most = 0, worst = 0;
+  double           b[N], column[N][N], G[N], force, most = 0, worst = 0;
   PetscInt         which[N], m, n = 0;
   const PetscReal *excess;
   const PetscBool *pressed;
@@ -435,38 +436,54 @@ static double RubTogether(const double elastic[N][N], const double *load, const 
   return most > 0 ? worst / most : 0;
 }
 
-/* In some of many bodies sets of terms with large friction repeat themselves. Relaxed, they end in equilibrium: these
-   are bodies of which that is known. The first two and the last one need sets that are damped, too. */
-static void test_friction_relaxed(void **state)
+/* The next one of many bodies with large friction. */
+static void RubBody(unsigned *seed, double elastic[N][N], double *load, ActiveSetTerm *term)
 {
-  static const int repeated[] = {57, 145, 415, 436, 623, 746};
-  unsigned         seed       = 1;
-  int              next       = 0;
+  double half[N][N];
+
+  for (int i = 0; i < N; i++)
+    for (int j = 0; j < N; j++) half[i][j] = Random(seed);
+  for (int i = 0; i < N; i++)
+    for (int j = 0; j < N; j++) {
+      elastic[i][j] = i == j ? 0.3 : 0;
+      for (int l = 0; l < N; l++) elastic[i][j] += 2 * half[i][l] * half[j][l];
+    }
+  for (int i = 0; i < N; i++) load[i] = i < N_RUB ? -2 - Random(seed) : 3 * Random(seed);
+  for (int i = 0; i < N_RUB; i++)
+    term[i] = (ActiveSetTerm){
+      .opening  = 0.02 * Random(seed),
+      .penalty  = 500,
+      .area     = 1,
+      .friction = {.law = {.coefficient = 1.5, .stiffness = 300, .normal = {0, 0, 1}, .along = {1, 0, 0}}}};
+}
+
+/* In some of many bodies sets of terms with large friction repeat themselves. Damped from where the step begins, or
+   relaxed, they end in equilibrium: these are bodies of which that is known. The fourth, fifth, and seventh need
+   relaxation. Rounding does not decide where they end. */
+static void test_friction_repeated(void **state)
+{
+  static const int repeated[] = {57, 415, 436, 459, 581, 623, 698, 746};
+  enum { N_REPEATED = sizeof(repeated) / sizeof(*repeated) };
+  unsigned seed = 1, noise = 2;
+  int      next = 0;
 
   (void)state;
-  for (int k = 0; k <= repeated[5]; k++) {
+  for (int k = 0; k <= repeated[N_REPEATED - 1]; k++) {
     ActiveSetTerm term[N_RUB];
-    double        elastic[N][N], load[N], half[N][N];
+    double        elastic[N][N], load[N], x[N], noisy[N];
     PetscBool     settled;
 
-    for (int i = 0; i < N; i++)
-      for (int j = 0; j < N; j++) half[i][j] = Random(&seed);
-    for (int i = 0; i < N; i++)
-      for (int j = 0; j < N; j++) {
-        elastic[i][j] = i == j ? 0.3 : 0;
-        for (int l = 0; l < N; l++) elastic[i][j] += 2 * half[i][l] * half[j][l];
-      }
-    for (int i = 0; i < N; i++) load[i] = i < N_RUB ? -2 - Random(&seed) : 3 * Random(&seed);
-    for (int i = 0; i < N_RUB; i++)
-      term[i] = (ActiveSetTerm){
-        .opening  = 0.02 * Random(&seed),
-        .penalty  = 500,
-        .area     = 1,
-        .friction = {.law = {.coefficient = 1.5, .stiffness = 300, .normal = {0, 0, 1}, .along = {1, 0, 0}}}};
+    RubBody(&seed, elastic, load, term);
     if (k != repeated[next]) continue;
     next++;
-    assert_true(RubTogether(elastic, load, term, &settled) < 0.01);
+    assert_true(RubTogether(elastic, load, term, x, &settled) < 0.01);
     assert_true(settled);
+    for (int times = 0; times < 5; times++) {
+      for (int i = 0; i < N; i++) load[i] *= 1 + 1e-12 * Random(&noise);
+      for (int i = 0; i < N_RUB; i++) term[i].opening *= 1 + 1e-12 * Random(&noise);
+      assert_true(RubTogether(elastic, load, term, noisy, &settled) < 0.01);
+      for (int i = 0; i < N; i++) assert_true(PetscAbsReal(noisy[i] - x[i]) < 1e-8);
+    }
   }
 }
 
@@ -508,7 +525,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_ends_in_equilibrium),    cmocka_unit_test(test_right_set_needs_nothing),
     cmocka_unit_test(test_repeated_sets_are_left), cmocka_unit_test(test_loose_body_is_left_alone),
-    cmocka_unit_test(test_friction_at_the_end),    cmocka_unit_test(test_friction_relaxed),
+    cmocka_unit_test(test_friction_at_the_end),    cmocka_unit_test(test_friction_repeated),
     cmocka_unit_test(test_sweeps_astray),
   };
   int failed;
