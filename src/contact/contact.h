@@ -153,7 +153,7 @@ PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal
 PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
-                                PetscReal lag, PetscBool *hold);
+                                PetscReal lag, PetscBool passing, PetscBool *hold);
 PetscErrorCode ContactTakeOffsetsPart(Contact, const PetscReal *u, PetscReal t, PetscReal part, PetscBool *any);
 void           ContactForgetLost(Contact);
 void           ContactWatchOuter(Contact, PetscReal *outer);

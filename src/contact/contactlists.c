@@ -531,38 +531,89 @@ static PetscBool PairDrifts(const ContactPair *pair)
   return (PetscBool)(pair->formulation.lags || (pair->friction && pair->fit.fitted));
 }
 
+/* What fresh lists find at a solution. */
+typedef struct {
+  NeighbourLists   lists;
+  PetscBool        alike;               /* PointsAlike() with the lists of the solution */
+  PetscBool        lags;                /* factors and fits may lag as offsets do */
+  const PetscReal *gaps, *factor;       /* of the points */
+  PetscReal        depth, pressure;     /* largest ones of the pair */
+  PetscReal        drift, factor_drift; /* see TermAgrees() */
+  PetscReal        t;
+} Freshly;
+
+/* By how much the factor that fresh lists ask for at slave point q differs from the one in force, or as far as it is
+   known to be at most. */
+static PetscReal FactorChange(const ContactPair *pair, PetscInt q, PetscReal fresh)
+{
+  PetscReal low, high;
+
+  FactorBracket(pair, q, fresh, &low, &high);
+  return PetscClipInterval(fresh - pair->factor[q], low - high, high - low);
+}
+
+/* Says whether fresh factors change neither the area of a term, weighted by its share of the largest pressure, nor its
+   gap by more than offsets may. */
+static PetscBool TermFactorsLag(const ContactPair *pair, PetscInt c, const Freshly *fresh, PetscReal share)
+{
+  PetscReal change = 0, whole = 0, area = 0, added = 0, moment = 0, shifted = 0;
+
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt  q      = pair->term_point[k];
+    const PetscReal weight = pair->term_weight[k], more = weight * FactorChange(pair, q, fresh->factor[q]);
+
+    change += PetscAbsReal(more);
+    whole += weight;
+    if (PetscIsNanReal(fresh->gaps[q])) continue;
+    area += weight * pair->factor[q];
+    added += more;
+    moment += weight * pair->factor[q] * fresh->gaps[q];
+    shifted += more * fresh->gaps[q];
+  }
+  if (share * change > CONTACT_OFFSET_AGREES * whole) return PETSC_FALSE;
+  return (PetscBool)(PetscAbsReal(shifted * area - added * moment) <= fresh->drift * area * (area + added));
+}
+
+/* Says whether area factors of a term agree, point by point and weighted by its share of the largest pressure, or are
+   as close to a jump of what the solution asks for. */
+static PetscBool TermFactorsAgree(const ContactPair *pair, PetscInt c, const Freshly *fresh, PetscReal share)
+{
+  if (fresh->lags) return TermFactorsLag(pair, c, fresh, share);
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt q = pair->term_point[k];
+
+    if (share * PetscAbsReal(FactorChange(pair, q, fresh->factor[q])) > fresh->factor_drift) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
 /* Says whether fresh lists find the same of this term as the solve did. An open term must be open. On facets a closed
    gap must agree. On fits the gap changes a little with their frames, so frames and points must agree, and with
-   offsets the gap must agree within `drift`. Area factors must agree on both, weighted by the term's pressure over
-   the pair's largest one, or be as close to a jump of what the solution asks for: factor_drift. At such a jump fresh
-   factors weight the points of a term in another way, or leave it none: closed gaps are compared with the factors in
-   force. gaps are those of the points by fresh lists; alike: PointsAlike() of both lists. depth is the largest
-   penetration of the pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead.
- */
-static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscBool alike, PetscInt c,
-                            const PetscReal *gaps, const PetscReal *factor, PetscReal t, PetscReal depth,
-                            PetscReal pressure, PetscReal drift, PetscReal factor_drift)
+   offsets the gap must agree within `drift`. Area factors must agree on both, by factor_drift. At a jump of what the
+   solution asks for, fresh factors weight the points of a term in another way, or leave it none: closed gaps are
+   compared with the factors in force. Where all may lag, fresh fits may have other frames and points, since they say by
+   how much the gap is wrong. depth is the largest penetration of the pair; where the pair is augmented and penetrations
+   go to zero, the bound on them counts instead. */
+static PetscBool TermAgrees(const ContactPair *pair, PetscInt c, const Freshly *fresh)
 {
-  const PetscReal gap  = ContactTermGap(pair, factor, gaps, c, NULL),
-                  same = ContactTermGap(pair, pair->factor, gaps, c, NULL), rest = ContactTermOnsetGap(pair, c, t),
-                  old = pair->now.gap[c], own = PetscMax(TermPressure(pair, c, old, t), TermPressure(pair, c, gap, t)),
-                  share = pressure > 0 ? PetscMin(own / pressure, 1) : 1;
-  PetscBool fitted      = PETSC_TRUE;
+  const PetscReal gap  = ContactTermGap(pair, fresh->factor, fresh->gaps, c, NULL),
+                  same = ContactTermGap(pair, pair->factor, fresh->gaps, c, NULL),
+                  rest = ContactTermOnsetGap(pair, c, fresh->t), old = pair->now.gap[c],
+                  own   = PetscMax(TermPressure(pair, c, old, fresh->t), TermPressure(pair, c, gap, fresh->t)),
+                  share = fresh->pressure > 0 ? PetscMin(own / fresh->pressure, 1) : 1, drift = fresh->drift;
+  PetscBool fitted = PETSC_TRUE, holds = PETSC_TRUE;
   PetscReal tolerance;
 
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
-    fitted = (PetscBool)(fitted && pair->lists->fit_n[pair->term_point[k]] && fresh->fit_n[pair->term_point[k]]);
-  tolerance = fitted ? PetscMax(CONTACT_FIT_AGREES * PetscMax(depth, ContactTermBound(pair, c)), drift)
+    fitted = (PetscBool)(fitted && pair->lists->fit_n[pair->term_point[k]] && fresh->lists->fit_n[pair->term_point[k]]);
+  tolerance = fitted ? PetscMax(CONTACT_FIT_AGREES * PetscMax(fresh->depth, ContactTermBound(pair, c)), drift)
                      : CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c] + drift;
   if (!(old - rest < 0) && !(gap - rest < (fitted ? -tolerance : 0))) return PETSC_TRUE;
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt q = pair->term_point[k];
-    PetscReal      low, high;
-
-    FactorBracket(pair, q, factor[q], &low, &high);
-    if (share * PetscMin(PetscAbsReal(factor[q] - pair->factor[q]), high - low) > factor_drift) return PETSC_FALSE;
-    if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, alike, q)) return PETSC_FALSE;
-  }
+  if (!TermFactorsAgree(pair, c, fresh, share)) return PETSC_FALSE;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && holds; k++)
+    if (fitted && old - rest < 0 && !fresh->lags)
+      holds = FitHolds(pair->lists, fresh->lists, fresh->alike, pair->term_point[k]);
+  if (!holds) return PETSC_FALSE;
   if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(same - old) <= tolerance);
   return (PetscBool)(!PetscIsNanReal(same) && (!PairDrifts(pair) || PetscAbsReal(same - old) <= drift));
 }
@@ -580,26 +631,30 @@ static PetscBool TermHasGap(const ContactPair *pair, PetscInt c, const PetscReal
 /* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. most: largest
    pressure of all pairs. */
 static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscReal lag, PetscReal most,
-                                     PetscBool *agrees)
+                                     PetscBool passing, PetscBool *agrees)
 {
-  const PetscBool alike = PointsAlike(pair->lists, pair->next);
-  PetscReal       depth = 0, pressure = 0, drift, factor_drift = CONTACT_FACTOR_AGREES, *gaps, *factor;
+  PetscReal *gaps, *factor;
+  Freshly    fresh = {.lists        = pair->next,
+                      .alike        = PointsAlike(pair->lists, pair->next),
+                      .lags         = (PetscBool)(passing && pair->formulation.lags && !pair->friction),
+                      .factor       = pair->next_factor,
+                      .factor_drift = CONTACT_FACTOR_AGREES,
+                      .t            = t};
 
   PetscFunctionBeginUser;
-  PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
-  pressure = PetscMax(pressure, CONTACT_PRESSURE_COUNTS * most);
-  drift = PairDrifts(pair) ? lag * CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
-  if (pair->friction) factor_drift = PetscMin(factor_drift, lag * CONTACT_OFFSET_AGREES);
+  PetscCall(PairDepth(contact, pair, t, &fresh.depth, &fresh.pressure));
+  fresh.pressure = PetscMax(fresh.pressure, CONTACT_PRESSURE_COUNTS * most);
+  fresh.drift    = PairDrifts(pair) ? lag * CONTACT_OFFSET_AGREES * fresh.pressure / pair->automatic : 0;
+  if (pair->friction) fresh.factor_drift = PetscMin(fresh.factor_drift, lag * CONTACT_OFFSET_AGREES);
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc2(pair->next->n_slaves, &gaps, pair->next->n_slaves, &factor));
   for (PetscInt q = 0; q < pair->next->n_slaves; q++) factor[q] = PetscMax(pair->factor[q], pair->next_factor[q]);
+  fresh.gaps = gaps;
   if (pair->fit.fitted) TimingBegin(TIMING_FIT);
   PetscCall(ContactPointGaps(pair, pair->next, factor, NULL, NULL, gaps, NULL));
   if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
-    if (TermHasGap(pair, c, gaps)) /* few have where most points have no partner */
-      *agrees =
-        TermAgrees(pair, pair->next, alike, c, gaps, pair->next_factor, t, depth, pressure, drift, factor_drift);
+    if (TermHasGap(pair, c, gaps)) *agrees = TermAgrees(pair, c, &fresh); /* few have where most have no partner */
   PetscCall(PetscFree2(gaps, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -682,17 +737,21 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
 . motion         - largest motion since the accepted state (length)
 . next           - motion that the fresh lists must be good for, as ContactGather() may take them for the next step
                    (length)
-- lag            - part of the usual drift by which offsets may lag (no unit)
+. lag            - part of the usual drift by which offsets may lag (no unit)
+- passing        - no answers are asked for at t, so that without friction area factors and fits may lag by as much
 
   Output Parameter:
 . hold - the same on all ranks
 
-  Note:
+  Notes:
+  Near an edge of the master, or on a fillet that is smaller than faces of the slave, area factors and fits follow the
+  solution, and the solution follows them. Rubber that rolls there would take as many lists as are allowed in each step.
+
   Where hold is PETSC_FALSE, the fresh lists of all pairs and fresh offsets have replaced the old ones, and the
   problem must be solved again.
 @*/
 PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
-                                PetscReal lag, PetscBool *hold)
+                                PetscReal lag, PetscBool passing, PetscBool *hold)
 {
   PetscReal most;
   int       agree = 1;
@@ -713,7 +772,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
       PetscCall(ContactNoteLost(pair, t));
       ContactNoteTunnelled(pair, t);
       ContactNoteJumps(pair, motion);
-      PetscCall(PairNextAgrees(contact, pair, t, lag, most, &agrees));
+      PetscCall(PairNextAgrees(contact, pair, t, lag, most, passing, &agrees));
     }
     pair->fresh = PETSC_FALSE;
     agree       = agree && agrees && !late;

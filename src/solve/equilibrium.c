@@ -357,8 +357,8 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     if (work->left && work->shift.on)
       PetscCall(ModelShiftRenew(model));
     else
-      PetscCall(
-        ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left, lag, &hold));
+      PetscCall(ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left, lag,
+                                  (PetscBool)(model->t < 1 && !ModelAsked(model, model->t)), &hold));
     if (!work->left && !hold) PetscCall(ModelShiftLists(model, model->x, model->problem->expected));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
     if (lost) report->result = SOLVE_LOST;

@@ -544,7 +544,8 @@ PetscErrorCode ProblemGatherLists(Problem problem, const PetscReal *u, PetscReal
 . t_0            - load parameter of the accepted state
 . t              - load parameter of the trial displacements
 . left           - the solve ended because a slave point left its lists; new ones are made without a check
-- lag            - part of the usual drift by which offsets may lag before lists count as ones that do not hold
+. lag            - part of the usual drift by which offsets may lag before lists count as ones that do not hold
+- passing        - no answers are asked for at t, see ContactListsHold()
 
   Output Parameter:
 . hold - a new search finds the same gaps; the old lists were right
@@ -555,7 +556,7 @@ PetscErrorCode ProblemGatherLists(Problem problem, const PetscReal *u, PetscReal
   for PROBLEM_MOTION_SAFETY times the motion, so that they serve a next step of the same length.
 @*/
 PetscErrorCode ProblemRenewLists(Problem problem, const PetscReal *u_0, PetscReal t_0, PetscReal t, PetscBool left,
-                                 PetscReal lag, PetscBool *hold)
+                                 PetscReal lag, PetscBool passing, PetscBool *hold)
 {
   PetscReal motion, next;
 
@@ -568,7 +569,8 @@ PetscErrorCode ProblemRenewLists(Problem problem, const PetscReal *u_0, PetscRea
   if (left)
     PetscCall(ContactListsRenew(problem->contact, problem->trial, t, motion));
   else
-    PetscCall(ContactListsHold(problem->contact, problem->trial, t, motion, PetscMax(motion, next), lag, hold));
+    PetscCall(
+      ContactListsHold(problem->contact, problem->trial, t, motion, PetscMax(motion, next), lag, passing, hold));
   TimingEnd(TIMING_SEARCH);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
