@@ -154,7 +154,7 @@ PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
                                 PetscReal lag, PetscBool passing, PetscBool *hold);
-PetscErrorCode ContactTakeOffsetsPart(Contact, const PetscReal *u, PetscReal t, PetscReal part, PetscBool *any);
+PetscErrorCode ContactTakeOffsetsPart(Contact, PetscReal part, PetscBool *any);
 void           ContactForgetLost(Contact);
 void           ContactWatchOuter(Contact, PetscReal *outer);
 PetscErrorCode ContactLocateLost(Contact, PetscBool *lost, char *text, size_t size);

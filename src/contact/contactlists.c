@@ -172,18 +172,6 @@ static void PairDampFactors(ContactPair *pair)
   }
 }
 
-/* Where solutions turn the offsets of a pair to and fro, the next lists are made with damped ones. */
-static PetscErrorCode PairDampOffsets(ContactPair *pair, const PetscReal *u, PetscReal t)
-{
-  PetscBool slave = PETSC_FALSE, master = PETSC_FALSE;
-
-  PetscFunctionBeginUser;
-  if (pair->slave_offsets) PetscCall(OffsetsDamp(pair->slave_offsets, &slave));
-  if (pair->master_offsets) PetscCall(OffsetsDamp(pair->master_offsets, &master));
-  if (slave || master) PetscCall(PairSearch(pair, u, t, pair->next_motion));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Rung on which the fit of a slave point stands; RUNGS: it has none. */
 static int FitRung(NeighbourLists lists, PetscInt q)
 {
@@ -633,13 +621,14 @@ static PetscBool TermHasGap(const ContactPair *pair, PetscInt c, const PetscReal
 static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscReal lag, PetscReal most,
                                      PetscBool passing, PetscBool *agrees)
 {
-  PetscReal *gaps, *factor;
-  Freshly    fresh = {.lists        = pair->next,
-                      .alike        = PointsAlike(pair->lists, pair->next),
-                      .lags         = (PetscBool)(passing && pair->formulation.lags && !pair->friction),
-                      .factor       = pair->next_factor,
-                      .factor_drift = CONTACT_FACTOR_AGREES,
-                      .t            = t};
+  const PetscInt n = pair->next->n_slaves;
+  PetscReal     *gaps, *factor;
+  Freshly        fresh = {.lists        = pair->next,
+                          .alike        = PointsAlike(pair->lists, pair->next),
+                          .lags         = (PetscBool)(passing && pair->formulation.lags && !pair->friction),
+                          .factor       = pair->next_factor,
+                          .factor_drift = CONTACT_FACTOR_AGREES,
+                          .t            = t};
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &fresh.depth, &fresh.pressure));
@@ -647,8 +636,8 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   fresh.drift    = PairDrifts(pair) ? lag * CONTACT_OFFSET_AGREES * fresh.pressure / pair->automatic : 0;
   if (pair->friction) fresh.factor_drift = PetscMin(fresh.factor_drift, lag * CONTACT_OFFSET_AGREES);
   *agrees = PETSC_TRUE;
-  PetscCall(PetscMalloc2(pair->next->n_slaves, &gaps, pair->next->n_slaves, &factor));
-  for (PetscInt q = 0; q < pair->next->n_slaves; q++) factor[q] = PetscMax(pair->factor[q], pair->next_factor[q]);
+  PetscCall(PetscMalloc2(n, &gaps, n, &factor));
+  for (PetscInt q = 0; q < n; q++) factor[q] = PetscMax(pair->factor[q], pair->next_factor[q]);
   fresh.gaps = gaps;
   if (pair->fit.fitted) TimingBegin(TIMING_FIT);
   PetscCall(ContactPointGaps(pair, pair->next, factor, NULL, NULL, gaps, NULL));
@@ -656,6 +645,31 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
     if (TermHasGap(pair, c, gaps)) *agrees = TermAgrees(pair, c, &fresh); /* few have where most have no partner */
   PetscCall(PetscFree2(gaps, factor));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives the lists in force the present offsets. */
+static PetscErrorCode PairListsTakeOffsets(ContactPair *pair, PetscBool *changed)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PairSetOffsets(pair));
+  PetscCall(NeighbourListsTakeOffsets(pair->search, pair->lists, changed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The next lists, which find something else, replace those in force. Where solutions turn the offsets to and fro, they
+   go on with damped ones. */
+static PetscErrorCode PairGoOn(ContactPair *pair)
+{
+  PetscBool slave = PETSC_FALSE, master = PETSC_FALSE, changed = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (pair->slave_offsets) PetscCall(OffsetsDamp(pair->slave_offsets, &slave));
+  if (pair->master_offsets) PetscCall(OffsetsDamp(pair->master_offsets, &master));
+  PairDamp(pair);
+  PetscCall(PairTakeNext(pair));
+  if ((slave || master) && !pair->lists->empty) PetscCall(PairListsTakeOffsets(pair, &changed));
+  if (changed) pair->projected = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -762,12 +776,13 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = next;
-    PetscBool    agrees = PETSC_TRUE, late = PETSC_FALSE;
+    PetscBool    agrees = PETSC_TRUE, late = PETSC_FALSE, serve = PETSC_FALSE;
 
     if (pair->friction) PetscCall(FrictionAnchorLate(pair, t, &late));
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     PetscCall(PairTakeOffsets(pair, u, t, needed, PETSC_FALSE));
-    PetscCall(PairSearch(pair, u, t, needed));
+    if (pair->next) PetscCall(PairListsServe(pair, u, t, needed, PETSC_FALSE, &serve));
+    if (!serve) PetscCall(PairSearch(pair, u, t, needed));
     if (!pair->stays) {
       PetscCall(ContactNoteLost(pair, t));
       ContactNoteTunnelled(pair, t);
@@ -779,45 +794,40 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;
-  for (int p = 0; p < contact->n_pairs && !agree; p++) {
-    PetscCall(PairDampOffsets(&contact->pairs[p], u, t));
-    PairDamp(&contact->pairs[p]);
-    PetscCall(PairTakeNext(&contact->pairs[p]));
-  }
+  for (int p = 0; p < contact->n_pairs && !agree; p++) PetscCall(PairGoOn(&contact->pairs[p]));
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ContactTakeOffsetsPart - goes back to a part of the change of the offsets that ContactListsHold() has made, and makes
-  lists with those.
+  ContactTakeOffsetsPart - goes back to a part of the change of the offsets that ContactListsHold() has made. The lists
+  go on with those.
 
   Collective
 
   Input Parameters:
 + contact - the contact, after ContactListsHold() said that lists do not hold
-. u       - local displacements of the solution, u[n_nodes*dim] (length), ghosts included
-. t       - its load parameter
 - part    - of the change, from 0 to 1
 
   Output Parameter:
 . any - there are offsets that change; else nothing was done
 @*/
-PetscErrorCode ContactTakeOffsetsPart(Contact contact, const PetscReal *u, PetscReal t, PetscReal part, PetscBool *any)
+PetscErrorCode ContactTakeOffsetsPart(Contact contact, PetscReal part, PetscBool *any)
 {
   PetscFunctionBeginUser;
   *any = PETSC_FALSE;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   for (int p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
+    ContactPair *pair    = &contact->pairs[p];
+    PetscBool    changed = PETSC_FALSE;
 
     if (!pair->formulation.lags) continue;
     *any = PETSC_TRUE;
     if (pair->slave_offsets) OffsetsTakePart(pair->slave_offsets, part);
     if (pair->master_offsets) OffsetsTakePart(pair->master_offsets, part);
-    PetscCall(PairSearch(pair, u, t, pair->motion));
-    if (!pair->stays) PetscCall(PetscArraycpy(pair->next_factor, pair->factor, pair->next->n_slaves)); /* damped */
-    PetscCall(PairTakeNext(pair));
+    if (pair->lists->empty) continue;
+    PetscCall(PairListsTakeOffsets(pair, &changed));
+    if (changed) pair->projected = PETSC_FALSE;
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

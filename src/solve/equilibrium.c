@@ -369,7 +369,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
       continue;
     }
     report->regathered++;
-    work->held = PETSC_FALSE;
+    if (!work->left) work->held = PETSC_FALSE;
     if (!work->left && times++ == EQUILIBRIUM_MAX_LISTS) report->result = SOLVE_LISTS;
     if (!work->left && report->result == SOLVE_CONVERGED) PetscCall(ModelFollowLists(model, report));
   }

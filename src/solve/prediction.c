@@ -431,7 +431,7 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
   for (int k = 0; rolls && report->result == SOLVE_CONVERGED; k++) {
     PetscCall(ModelTakeBack(model, x, &back));
     if (!back || k == PREDICTION_LESS) break;
-    PetscCall(ContactTakeOffsetsPart(model->contact, problem->trial, model->t, PREDICTION_OFFSETS, &back));
+    PetscCall(ContactTakeOffsetsPart(model->contact, PREDICTION_OFFSETS, &back));
     if (!back) break;
     PetscCall(ModelStepHeld(model, PETSC_TRUE, report));
   }
