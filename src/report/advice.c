@@ -60,6 +60,10 @@
 /* It is to be more than this part of both energies, which the rule loses of elastic energy alone: on a force that grows
    with the power 1.5 of the way it is off by 0.31/n^2 over n steps, which is 1 % where n is 5 or 6. */
 #define ADVICE_PATH_ELASTIC 0.01
+/* Distance of work and energies over the energy that friction took, above which steps are too long for what slides. The
+   rule over a few steps is off by some of it even where forces grow evenly; where a cap snaps over its neck in one step
+   it is off by twice of it, and friction takes 40 % too little. */
+#define ADVICE_SLIDING 0.5
 /* Penetration of a slave node (face sizes) at which contact is lost because the penalty is soft, and the one that a
    stiffer penalty is to leave. */
 #define ADVICE_DEEP        0.5
@@ -357,6 +361,21 @@ static double PathIsCoarse(const RunFigures *figures, char *text)
   return 1;
 }
 
+/* What friction takes depends on the path, and so does the largest force on it. */
+static double SlidingIsCoarse(const RunFigures *figures, char *text)
+{
+  const EnergyFigures energy = figures->last ? figures->last->energy : (EnergyFigures){0};
+  const double        taken = (double)energy.outer.friction, apart = (double)EnergyApart(&energy);
+
+  if (energy.plastic > 0 || !(taken > 0) || !(apart > ADVICE_SLIDING * taken)) return 0;
+  if (!(apart > ADVICE_PATH_ELASTIC * (double)energy.elastic)) return 0;
+  snprintf(text, ADVICE_TEXT,
+           "work and energies are %.2g %% of what friction took apart: steps may be too long for what slides, and that "
+           "energy and the largest force on the way wrong; compare with shorter ones",
+           100 * apart / taken);
+  return 1;
+}
+
 static double OutputIsSlow(const RunFigures *figures, char *text)
 {
   const PetscReal seconds = figures->usage.seconds[TIMING_OUTPUT];
@@ -422,6 +441,7 @@ static const Situation situations[] = {
   {.run = FlowTurns, .changes = {CHANGE_FLOW}},
   {.run = FlowLags, .changes = {CHANGE_LAG}},
   {.run = PathIsCoarse, .changes = {CHANGE_PATH}},
+  {.run = SlidingIsCoarse, .changes = {CHANGE_PATH}},
   {.run = OutputIsSlow, .changes = {CHANGE_OUTPUT}},
   {.run = StepsAreMany, .changes = {CHANGE_LONGER}},
   {.run = ResultsAreLarge, .changes = {CHANGE_LESS_OUTPUT}},

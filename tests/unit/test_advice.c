@@ -304,6 +304,20 @@ static void test_path(void **state)
   Expect(&c, NULL);
 }
 
+static void test_sliding(void **state)
+{
+  Case c;
+
+  (void)state;
+  Good(&c);
+  c.last.energy = (EnergyFigures){.elastic = 180, .outer = {.work = 980, .friction = 780}};
+  Expect(&c, NULL);
+  c.last.energy.outer.work = 1500;
+  Expect(&c, "are 69 % of what friction took apart: steps may be too long for what slides");
+  c.last.energy.outer.friction = 1200;
+  Expect(&c, NULL);
+}
+
 /* What can go wrong in a scene, all of it at once */
 static void Bad(Case *c, StepControlKind control, int formulation, int adjust, int augment)
 {
@@ -484,7 +498,8 @@ int main(void)
     cmocka_unit_test(test_length),   cmocka_unit_test(test_locking), cmocka_unit_test(test_bending),
     cmocka_unit_test(test_foretold), cmocka_unit_test(test_pairs),   cmocka_unit_test(test_steps),
     cmocka_unit_test(test_agree),    cmocka_unit_test(test_order),   cmocka_unit_test(test_sides),
-    cmocka_unit_test(test_kernels),  cmocka_unit_test(test_flow),    cmocka_unit_test(test_path)};
+    cmocka_unit_test(test_kernels),  cmocka_unit_test(test_flow),    cmocka_unit_test(test_path),
+    cmocka_unit_test(test_sliding)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
