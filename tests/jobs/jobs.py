@@ -350,4 +350,6 @@ JOBS = [
         Answer("grip", 4667, 2.6, "limit"),  # it varies by that with the mesh
         Answer("set", 7985.5, 0.26, "limit"),
     ], steps=12, pairs=2, picture=["--mirror", "x"]),
+    Job("bottle_cap", "cap snapped over a neck", [Answer("force", 198.1, 0.05, "limit")], steps=8,
+        picture=["--mirror", "x"]),
 ]
