@@ -9,6 +9,7 @@
 struct _n_ContactStep {
   Contact        contact;
   PetscReal     *reach; /* of each pair */
+  PetscBool     *near;  /* has a pair terms here, on any rank? */
   PetscInt       n, mine, parts;
   PetscMPIInt    rank, *count, *first; /* terms of each rank */
   PetscInt      *order, *place; /* rank after rank: number of the term of all that comes there; of each of mine */
@@ -192,7 +193,10 @@ static PetscErrorCode OrderTerms(ContactStep step)
   for (PetscInt i = 0; i < step->mine; i++)
     mine[i] = (TermKey){step->pair[i], ContactTermId(&step->contact->pairs[step->pair[i]], step->term[i]), 0};
   PetscCall(GatherRanks(step, sizeof(TermKey), mine, all));
-  for (PetscInt i = 0; i < step->n; i++) all[i].at = i;
+  for (PetscInt i = 0; i < step->n; i++) {
+    all[i].at               = i;
+    step->near[all[i].pair] = PETSC_TRUE;
+  }
   if (step->n) qsort(all, (size_t)step->n, sizeof(TermKey), CompareKeys);
   for (PetscInt i = 0; i < step->n; i++) step->order[all[i].at] = i;
   for (PetscInt i = 0; i < step->mine; i++) step->place[i] = step->order[step->first[step->rank] + i];
@@ -254,6 +258,7 @@ PetscErrorCode ContactStepCreate(Contact contact, const PetscReal *u, const Pets
   if (step->parts > 1) PetscCall(PetscCalloc1(most, &step->tangent));
   step->ptr[0] = 0;
   PetscCall(PetscMalloc1(contact->n_pairs, &step->reach));
+  PetscCall(PetscCalloc1(contact->n_pairs, &step->near));
   for (int p = 0; p < contact->n_pairs; p++) {
     PetscCall(PairStepMotion(contact, &contact->pairs[p], du, t, t_next, &step->reach[p]));
     step->reach[p] *= STEP_REACH;
@@ -279,6 +284,7 @@ PetscErrorCode ContactStepDestroy(ContactStep *step)
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree(s->reach));
+  PetscCall(PetscFree(s->near));
   PetscCall(PetscFree(s->terms));
   PetscCall(PetscFree4(s->pair, s->term, s->area, s->ptr));
   PetscCall(PetscFree(s->tangent));
@@ -343,7 +349,8 @@ static PetscErrorCode FindSlides(ContactStep step)
 }
 
 /* What local displacements do to my terms: travel of their gaps, and motion of their sides along each other, slide[3]
-   of each, 0 without friction; slide may be NULL. Each pair is moved once. */
+   of each, 0 without friction; slide may be NULL. Each pair that has terms is moved once: of a list of surfaces most
+   have none. */
 static PetscErrorCode OwnMotion(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *travel,
                                 PetscReal *slide)
 {
@@ -357,6 +364,7 @@ static PetscErrorCode OwnMotion(ContactStep step, const PetscReal *du, PetscReal
   for (int p = 0; p < step->contact->n_pairs; p++) {
     ContactPair *pair = &step->contact->pairs[p];
 
+    if (!step->near[p]) continue;
     PetscCall(PairMove(step->contact, pair, du, t, t_next, &values));
     for (; i < step->mine && step->pair[i] == p; i++) {
       const PetscInt first = step->ptr[i], n = step->ptr[i + 1] - first;
