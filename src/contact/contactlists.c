@@ -27,9 +27,9 @@
    penetration that the largest pressure causes at the automatic penalty. */
 #define CONTACT_OFFSET_AGREES 0.1
 
-/* Pressures below this part of the largest one of all pairs count as that part where gaps are compared. A body that lies
-   loosely between others touches them with what rounding leaves of their forces, and its gaps would never agree with
-   themselves: seven loose wires in a barrel that is crimped. */
+/* Pressures below this part of the largest one of all pairs count as that part where gaps are compared. A body that
+   lies loosely between others touches them with what rounding leaves of their forces, and its gaps would never agree
+   with themselves: seven loose wires in a barrel that is crimped. */
 #define CONTACT_PRESSURE_COUNTS 1e-6
 
 /* The area factor past a free edge is frozen in a solve. A larger change than this makes the step solve again. */
@@ -253,6 +253,17 @@ static PetscReal TermPressure(const ContactPair *pair, PetscInt c, PetscReal gap
   return pair->now.multiplier[c] + state.penalty * (state.offset - gap);
 }
 
+/* Largest penetration and largest pressure of this rank's terms of the pair at the last residual: most[2], raised
+   where they are larger. */
+static void RaiseDepth(const ContactPair *pair, PetscReal t, PetscReal most[2])
+{
+  for (PetscInt c = 0; c < pair->n; c++) {
+    if (PetscIsNanReal(pair->now.gap[c])) continue;
+    most[0] = PetscMax(most[0], ContactTermOffset(pair, c, t) - pair->now.gap[c]);
+    most[1] = PetscMax(most[1], TermPressure(pair, c, pair->now.gap[c], t));
+  }
+}
+
 /* Largest penetration and largest pressure of the pair at the last residual, over all ranks. */
 static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *depth,
                                 PetscReal *pressure)
@@ -260,14 +271,7 @@ static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscR
   PetscReal most[2] = {0, 0};
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < pair->n; c++) {
-    PetscReal penetration;
-
-    if (PetscIsNanReal(pair->now.gap[c])) continue;
-    penetration = ContactTermOffset(pair, c, t) - pair->now.gap[c];
-    most[0]     = PetscMax(most[0], penetration);
-    most[1]     = PetscMax(most[1], TermPressure(pair, c, pair->now.gap[c], t));
-  }
+  RaiseDepth(pair, t, most);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   *depth    = most[0];
   *pressure = most[1];
@@ -275,17 +279,13 @@ static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscR
 }
 
 /* Largest pressure of all pairs at the last residual, over all ranks. */
-static PetscErrorCode LargestPressure(Contact contact, PetscReal t, PetscReal *most)
+static PetscErrorCode LargestPressure(Contact contact, PetscReal t, PetscReal *pressure)
 {
-  PetscFunctionBeginUser;
-  *most = 0;
-  for (int p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
+  PetscReal most[2] = {0, 0};
 
-    for (PetscInt c = 0; c < pair->n; c++)
-      if (!PetscIsNanReal(pair->now.gap[c])) *most = PetscMax(*most, TermPressure(pair, c, pair->now.gap[c], t));
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) RaiseDepth(&contact->pairs[p], t, most);
+  PetscCallMPI(MPI_Allreduce(&most[1], pressure, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -301,20 +301,28 @@ static PetscErrorCode PairListsMotion(Contact contact, const ContactPair *pair, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gives the lists in force the present offsets. */
+static PetscErrorCode PairListsTakeOffsets(ContactPair *pair)
+{
+  PetscBool changed;
+
+  PetscFunctionBeginUser;
+  PetscCall(PairSetOffsets(pair));
+  PetscCall(NeighbourListsTakeOffsets(pair->search, pair->lists, &changed));
+  if (changed) pair->projected = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The lists in force take the offsets that are extrapolated to the end of the step. They were made with those of the
    accepted state. A second search for a change that is far less than the motion of a step would double its cost. */
 static PetscErrorCode PairExtrapolateOffsets(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal t_next)
 {
-  PetscBool changed = PETSC_FALSE;
-
   PetscFunctionBeginUser;
   if (!pair->slave_offsets) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next));
   if (pair->master_offsets) PetscCall(OffsetsExtrapolate(pair->master_offsets, u, t, t_next));
   if (pair->lists->empty && OffsetsBlank(pair->slave_offsets)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PairSetOffsets(pair));
-  PetscCall(NeighbourListsTakeOffsets(pair->search, pair->lists, &changed));
-  if (changed) pair->projected = PETSC_FALSE;
+  PetscCall(PairListsTakeOffsets(pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -352,8 +360,11 @@ static PetscErrorCode PairTellWork(const ContactPair *pair)
 {
   const NeighbourLists lists = pair->lists;
   PetscInt             fits  = 0;
+  PetscBool            asked;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscInfoEnabled(PETSC_SMALLEST_CLASSID, &asked));
+  if (!asked) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt s = 0; s < lists->n_slaves; s++) fits += lists->fit_n[s] > 0;
   PetscCall(PetscInfo(NULL, "contact '%s': %" PetscInt_FMT " slave points, %" PetscInt_FMT " fits\n", pair->scene->name,
                       lists->n_slaves, fits));
@@ -648,28 +659,18 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the lists in force the present offsets. */
-static PetscErrorCode PairListsTakeOffsets(ContactPair *pair, PetscBool *changed)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PairSetOffsets(pair));
-  PetscCall(NeighbourListsTakeOffsets(pair->search, pair->lists, changed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The next lists, which find something else, replace those in force. Where solutions turn the offsets to and fro, they
    go on with damped ones. */
 static PetscErrorCode PairGoOn(ContactPair *pair)
 {
-  PetscBool slave = PETSC_FALSE, master = PETSC_FALSE, changed = PETSC_FALSE;
+  PetscBool slave = PETSC_FALSE, master = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (pair->slave_offsets) PetscCall(OffsetsDamp(pair->slave_offsets, &slave));
   if (pair->master_offsets) PetscCall(OffsetsDamp(pair->master_offsets, &master));
   PairDamp(pair);
   PetscCall(PairTakeNext(pair));
-  if ((slave || master) && !pair->lists->empty) PetscCall(PairListsTakeOffsets(pair, &changed));
-  if (changed) pair->projected = PETSC_FALSE;
+  if ((slave || master) && !pair->lists->empty) PetscCall(PairListsTakeOffsets(pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -818,16 +819,13 @@ PetscErrorCode ContactTakeOffsetsPart(Contact contact, PetscReal part, PetscBool
   *any = PETSC_FALSE;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   for (int p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair    = &contact->pairs[p];
-    PetscBool    changed = PETSC_FALSE;
+    ContactPair *pair = &contact->pairs[p];
 
     if (!pair->formulation.lags) continue;
     *any = PETSC_TRUE;
     if (pair->slave_offsets) OffsetsTakePart(pair->slave_offsets, part);
     if (pair->master_offsets) OffsetsTakePart(pair->master_offsets, part);
-    if (pair->lists->empty) continue;
-    PetscCall(PairListsTakeOffsets(pair, &changed));
-    if (changed) pair->projected = PETSC_FALSE;
+    if (!pair->lists->empty) PetscCall(PairListsTakeOffsets(pair));
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

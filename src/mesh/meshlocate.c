@@ -113,6 +113,18 @@ static void VisitCell(void *context, int index, double *bound)
   *bound       = -1; /* ends the search */
 }
 
+/* The box low[dim] to high[dim] around a cell whose nodes are at X[nodes][dim]. */
+static void CellBox(int dim, int nodes, const double *X, PetscReal *low, PetscReal *high)
+{
+  for (int d = 0; d < dim; d++) {
+    low[d] = high[d] = X[d];
+    for (int k = 1; k < nodes; k++) {
+      low[d]  = PetscMin(low[d], X[k * dim + d]);
+      high[d] = PetscMax(high[d], X[k * dim + d]);
+    }
+  }
+}
+
 /* Lists the cells of a body on this rank with their boxes. */
 static PetscErrorCode ListCells(Mesh mesh, int body, PetscInt *n, PetscInt *cells, PetscReal *lower, PetscReal *upper)
 {
@@ -123,15 +135,7 @@ static PetscErrorCode ListCells(Mesh mesh, int body, PetscInt *n, PetscInt *cell
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     if (mesh->cell_body[c] != body) continue;
     MeshCellCoordinates(mesh, c, X);
-    for (int d = 0; d < mesh->dim; d++) {
-      PetscReal *low = &lower[*n * mesh->dim + d], *high = &upper[*n * mesh->dim + d];
-
-      *low = *high = X[d];
-      for (int k = 1; k < ElementGet(mesh->cell_type[c])->nodes; k++) {
-        *low  = PetscMin(*low, X[k * mesh->dim + d]);
-        *high = PetscMax(*high, X[k * mesh->dim + d]);
-      }
-    }
+    CellBox(mesh->dim, ElementGet(mesh->cell_type[c])->nodes, X, &lower[*n * mesh->dim], &upper[*n * mesh->dim]);
     cells[(*n)++] = c;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -182,16 +186,10 @@ PetscErrorCode MeshPointsInBody(Mesh mesh, int body, double core, PetscInt n, co
 /* Is the point in the box of a cell that is wider by LOCATE_NEAR of its size on every side? */
 static PetscBool NearBox(int dim, int nodes, const double *X, const PetscReal *x)
 {
-  double low[3], high[3], size = 0;
+  PetscReal low[3], high[3], size = 0;
 
-  for (int d = 0; d < dim; d++) {
-    low[d] = high[d] = X[d];
-    for (int k = 1; k < nodes; k++) {
-      low[d]  = fmin(low[d], X[k * dim + d]);
-      high[d] = fmax(high[d], X[k * dim + d]);
-    }
-    size = fmax(size, high[d] - low[d]);
-  }
+  CellBox(dim, nodes, X, low, high);
+  for (int d = 0; d < dim; d++) size = PetscMax(size, high[d] - low[d]);
   for (int d = 0; d < dim; d++)
     if (x[d] < low[d] - LOCATE_NEAR * size || x[d] > high[d] + LOCATE_NEAR * size) return PETSC_FALSE;
   return PETSC_TRUE;
