@@ -210,8 +210,8 @@ static const Explanation Unsolved[] = {
    "For the load, the bodies move faster from step to step, and the rates of the last steps grow without bound at the "
    "load parameter that the message names. The model carries no more than the load there: a body snaps through, buckles, "
    "or is pressed or drawn through an opening.",
-   "That is a result. What lies behind it is found with `stepping.damping: auto`, or where a displacement is imposed "
-   "instead of the load."},
+   "That is a result: with damped steps, too, the run found no equilibrium behind it. It is looked for earlier with "
+   "`stepping.damping: auto`, or where a displacement is imposed instead of the load."},
   {"B136",
    {"an edge against an edge has no contact"},
    "an edge meets an edge, which has no contact in space",
@@ -279,8 +279,8 @@ static const Explanation Unsolved[] = {
    "Newton's method found no equilibrium",
    "The step is too large, or there is no equilibrium near: a body snaps through or buckles, a material softens, or "
    "the load is more than the model can carry.",
-   "Take a smaller `stepping.initial`, impose displacements instead of forces, or follow the jump with "
-   "`stepping.damping: auto`. The lines `try` of the last screen fit the scene at hand."},
+   "Take a smaller `stepping.initial`, impose displacements instead of forces, or let damped steps "
+   "begin earlier with `stepping.damping: auto`. The lines `try` of the last screen fit the scene at hand."},
   {"B153",
    {"confirmed by a second mesh", "with an error of"},
    "the accuracy that was asked for is not reached, or not confirmed",

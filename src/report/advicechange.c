@@ -480,7 +480,7 @@ static void WriteIterations(const ChangePlace *at, char *text, size_t size)
 
 static int IsUndamped(const ChangePlace *at)
 {
-  return !at->figures->scene->stepping.damped;
+  return at->figures->scene->stepping.damping != DAMPING_AUTO;
 }
 
 static void WriteDamping(const ChangePlace *at, char *text, size_t size)

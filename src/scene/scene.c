@@ -178,7 +178,7 @@ static PetscErrorCode SceneReadStepping(Scene scene)
     PetscCall(SceneRefuse(scene, "stepping", "control",
                           "contact needs N_c (nodes) or N_c_fraction (of the slave area); allowed: one of them", NULL));
   scene->stepping.predict_linearly = SchemaChoice(document, "stepping.prediction");
-  scene->stepping.damped           = SchemaChoice(document, "stepping.damping");
+  scene->stepping.damping          = (StepDamping)SchemaChoice(document, "stepping.damping");
   scene->stepping.initial          = SchemaReal(document, "stepping.initial");
   scene->stepping.dt_min           = SchemaReal(document, "stepping.dt_min");
   scene->stepping.dt_max           = SchemaReal(document, "stepping.dt_max");

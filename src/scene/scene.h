@@ -214,6 +214,9 @@ typedef struct {
   double size; /* of its elements; 0: that of the body */
 } SceneCadSurface;
 
+/* Tangents are stiffened in steps that fail: never; where the run would stop; where static solves fail repeatedly */
+typedef enum { DAMPING_NONE, DAMPING_LAST, DAMPING_AUTO } StepDamping;
+
 /* Errors of probes: not estimated; estimated; with what the load steps leave, by a second run */
 typedef enum { SCENE_ERROR_NO, SCENE_ERROR_YES, SCENE_ERROR_HISTORY } SceneErrorWish;
 
@@ -276,7 +279,7 @@ typedef struct {
     double          plastic_strain;   /* largest growth of the equivalent plastic strain in a step; 0: no bound */
     double          plastic_lag;      /* largest part by which stresses lag behind plastic flow; 0: no bound */
     double          contact_travel;   /* largest travel of a contact with friction in a step; 0: no bound */
-    int             damped;           /* 1 if steps that fail are tried with a viscous restraint */
+    StepDamping     damping;          /* when steps that fail are tried with stiffened tangents */
     int             n_at;
     double         *at; /* load parameters at which a step must end [n_at] */
     int             n_steps;

@@ -372,9 +372,10 @@ const SchemaKey SchemaKeys[] = {
            "of its force at nodes that have come into contact in the step and stick, at most that of nodes that have "
            "left, over the larger one of the forces before and now. A step with more is repeated with a smaller dt as "
            "long as that lessens it, down to dt_min. 0: no bound, as without the key where control is fixed"},
-  {"stepping.damping", CHOICE, .values = "none | auto", .preset = "none",
-   .help = "auto: where static steps fail, Newton's method goes on with a tangent that is stiffened as long as it is not "
-           "positive definite; the end is a static equilibrium, and the last screen says how much energy was lost"},
+  {"stepping.damping", CHOICE, .values = "none | last | auto", .preset = "last",
+   .help = "where static steps fail, Newton's method goes on with a tangent that is stiffened as long as it is not "
+           "positive definite; the end is a static equilibrium, and the last screen says how much energy was lost. last: "
+           "only where the run would stop; auto: after three failed solves of a step; none: never"},
   {"stepping.at", REALS, .range = "(0, 1]", .help = "load parameters at which a step must end"},
   {"stepping.steps", LIST, .range = "[1, inf)",
    .help = "parts of the way from t = 0 to 1, with names that `during` uses. Each may have many load steps, and one ends "

@@ -99,20 +99,21 @@ static PetscErrorCode Potential(Model model, Vec x, PetscReal *energy)
   Note:
   That is what the potential has fallen by at the load of the step, or the work against springs that are anchored at
   each iterate, whichever is less. The first counts what the linear step of the start has put into stiff parts, the
-  second what iterates on the way have.
+  second what iterates on the way have. With friction, and with loads that have no energy, there is no potential, and the
+  work is told.
 @*/
 PetscErrorCode ModelShiftEnd(Model model, PetscReal *taken)
 {
   ShiftedStep *shift = &model->work->shift;
-  PetscReal    end;
+  PetscReal    end, fall;
 
   PetscFunctionBeginUser;
   *taken = 0;
   if (!shift->on) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Potential(model, model->x, &end));
-  *taken = PetscMax(0, PetscMin(shift->works, shift->start - end));
-  PetscCall(
-    PetscInfo(model->snes, "shifted steps: works %g, fall %g\n", (double)shift->works, (double)(shift->start - end)));
+  fall   = isfinite(shift->start) && isfinite(end) ? shift->start - end : INFINITY;
+  *taken = PetscMax(0, PetscMin(shift->works, fall));
+  PetscCall(PetscInfo(model->snes, "shifted steps: works %g, fall %g\n", (double)shift->works, (double)fall));
   shift->on = PETSC_FALSE;
   DofSpringsShift(model->problem->damping, 0);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -26,8 +26,9 @@
 /* A step stretches to the next landing point if that is at most this many dt away. At sqrt(2) the one longer step
    differs from dt by the same factor as two shorter ones. */
 #define STEPPER_STRETCH 1.4142135623730951
-/* After this many failed static solves of a step, the next solve is damped. Shorter steps are cheaper where they help,
-   and at a limit point no static step does. In the step after a damped one the first failure is enough. */
+/* After this many failed static solves of a step, or where no shorter step is allowed, the next solve is damped, as
+   `stepping.damping` says. Shorter steps are cheaper where they help, and at a limit point no static step does. In the
+   step after a damped one the first failure is enough. */
 #define STEPPER_STATIC 3
 /* If the landing point is at most this many dt away, the way to it is halved, so that no very short step remains. */
 #define STEPPER_HALVE 2.0
@@ -626,18 +627,20 @@ static PetscErrorCode LoadStepperBound(LoadStepper stepper, PetscReal dt, PetscR
 static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscReal dt, PetscInt *failures,
                                      SolveReport *solve)
 {
-  const PetscBool last   = (PetscBool)(STEPPER_CUT * dt < stepper->size.dt_min || stepper->damped);
-  const PetscBool slowly = (PetscBool)(*failures >= STEPPER_STATIC);
+  const StepDamping damping = stepper->model->scene->stepping.damping;
+  const PetscBool   last    = (PetscBool)(STEPPER_CUT * dt < stepper->size.dt_min || stepper->damped);
+  const PetscBool   slowly  = (PetscBool)(*failures >= STEPPER_STATIC);
 
   PetscFunctionBeginUser;
-  stepper->model->doubts   = (PetscBool)(stepper->model->scene->stepping.damped && *failures > 0);
+  stepper->model->doubts   = (PetscBool)(damping == DAMPING_AUTO && *failures > 0);
   stepper->model->shortens = (PetscBool)(stepper->shortens && !slowly && STEPPER_CUT * dt >= stepper->size.dt_min);
   if (slowly) {
     PetscCall(ModelSolveSlowly(stepper->model, end, solve));
     *failures = 0;
   } else {
     PetscCall(ModelSolve(stepper->model, end, solve));
-    if (stepper->model->scene->stepping.damped && MayBeUnstable(solve->result)) *failures += last ? STEPPER_STATIC : 1;
+    if (damping != DAMPING_NONE && MayBeUnstable(solve->result))
+      *failures += last ? STEPPER_STATIC : damping == DAMPING_AUTO;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -687,8 +690,8 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   const PetscReal t = model->t, first = stepper->size.dt;
   const PetscBool recovers = (PetscBool)(stepper->size.failed_dt > 0);
   const PetscReal last     = stepper->size.last_dt;
-  SolveReport     solve;
-  PetscReal       most, longest = 0; /* of the attempts that failed */
+  SolveReport     solve, cause  = {0}; /* cause: the last static solve, whose failure is the one to tell of */
+  PetscReal       most, longest = 0;   /* of the attempts that failed */
   PetscBool       clipped, singular;
   PetscInt        failures = 0;
 
@@ -737,6 +740,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     *(solve.result == SOLVE_LEAK ? &report->steps_repeated : &report->steps_failed) += 1;
+    if (!solve.damped) cause = solve;
     singular = (PetscBool)((solve.result == SOLVE_LINEAR && solve.newton == 1) ||
                            (solve.result == SOLVE_ADRIFT && !solve.newton));
     if (failures >= STEPPER_STATIC && !singular) continue; /* a damped solve of the same dt comes next */
@@ -745,7 +749,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     stepper->size.dt        = STEPPER_CUT * dt;
     stepper->size.last_dt   = 0; /* the control is not to return to a length like the one that has failed */
     if (stepper->size.dt < stepper->size.dt_min || singular || BoundIsReached(&solve, dt, end)) {
-      PetscCall(ReportFailure(stepper, t, end, first, dt, record->attempts, &solve));
+      PetscCall(ReportFailure(stepper, t, end, first, dt, record->attempts, &cause));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }
