@@ -55,7 +55,7 @@ INPUT = {
     "B123": (STACK, (), ["geometry=plane_stress", "bodies.0.formulation=fbar"]),
 }
 UNSOLVED = {
-    "B201": (STACK, (), ["solver.max_iterations=1", "solver.tolerance=1e-14", "stepping.dt_min=0.2"]),
+    "B201": (STACK, (), ["solver.max_iterations=1", "solver.tolerance=1e-14", "stepping={dt_min: 0.2, damping: none}"]),
     "B136": (BEAMS, (), []),
     "B202": (STACK, (), ["contact.0.penalty.scale=1e-4", "loads.0.uy=-3.5", "stepping.initial=0.1"]),
     "B203": (SQUARE, (), ["loads.0.ux=-1.5", "kinematics=finite", "bodies.0.material.law=svk", "stepping.dt_min=0.1"]),

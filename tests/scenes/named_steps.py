@@ -94,8 +94,8 @@ def names(finished):
 def restart():
     """A run that ends in the second step goes on with the steps; they cannot be changed then."""
     overrides = [
-        "stepping={control: fixed, initial: 0.1, dt_min: 0.09, steps: [{name: rest, until: 0.3}, {name: pull, until: 1}"
-        "]}", "supports=[{surface: y_min, ux: 0, uy: 0, uz: 0}]",
+        "stepping={control: fixed, initial: 0.1, dt_min: 0.09, damping: none, steps: [{name: rest, until: 0.3}, "
+        "{name: pull, until: 1}]}", "supports=[{surface: y_min, ux: 0, uy: 0, uz: 0}]",
         "loads=[{surface: y_max, traction: [0, 6, 0], during: pull}]",
         "probes=[{name: force, reaction: y_min, component: y}]"
     ]

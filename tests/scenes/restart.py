@@ -270,7 +270,8 @@ def time_limit(begin, reference):
 def failed(reference, overrides):
     """A run that did not converge goes on from its last good step once the solver may try harder."""
     ended = run(args, SCENE, out="failed", ranks=1,
-                overrides=[*overrides, "stepping.dt_min=0.003", "solver.max_iterations=2"], must=2)
+                overrides=[*overrides, "stepping.dt_min=0.003", "stepping.damping=none", "solver.max_iterations=2"],
+                must=2)
     steps = ended.summary()["steps"]
     again = go_on(ended.directory, overrides=["solver.max_iterations=30"])
     check.holds("not converged, then with more iterations: goes on to the end", again.status == 0, f"from step {steps}")

@@ -79,7 +79,7 @@ def restart():
     directory = folder / "again"
     table = "0 0\n0.25 0\n1 0.75\n"
     options = [
-        "-set", "stepping={control: fixed, initial: 0.25, dt_min: 0.2}", "-set",
+        "-set", "stepping={control: fixed, initial: 0.25, dt_min: 0.2, damping: none}", "-set",
         "supports=[{surface: y_min, ux: 0, uy: 0, uz: 0}]", "-set",
         "loads=[{surface: y_max, traction: [0, 6, 0], history: {csv: again.csv}}]", "-set",
         "probes=[{name: force, reaction: y_min, component: y}]"
