@@ -31,3 +31,15 @@ LANES_INLINE double LanesSum(Lanes a)
   for (int i = 0; i < LANES; i++) sum += a[i];
   return sum;
 }
+
+LANES_INLINE Lanes LanesAbsolute(Lanes a)
+{
+  return (Lanes)((LaneMask)a & ~(1ULL << 63));
+}
+
+LANES_INLINE Lanes LanesLarger(Lanes a, Lanes b)
+{
+  const LaneMask from_b = b > a;
+
+  return (Lanes)(((LaneMask)a & ~from_b) | ((LaneMask)b & from_b));
+}

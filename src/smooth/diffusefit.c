@@ -246,16 +246,17 @@ LANES_INLINE void Normalise(const int terms, FitArrays *a, FitState *s)
 /* Largest distance to the surface of the points in the inner half of the support, from the residuals. */
 LANES_INLINE double Missed(const int terms, const FitArrays *a)
 {
-  const double *const residual = (const double *)(a->basis + terms * a->capacity);
-  const double *const inside   = (const double *)a->inside;
-  double              most     = 0;
+  const Lanes *const residual = a->basis + terms * a->capacity;
+  Lanes              most     = Broadcast(0);
+  double             missed   = 0;
 
-  for (int i = 0; i < a->n; i++) {
-    const double missed = inside[i] >= FIT_INNER ? fabs(residual[i]) : 0;
+  for (int g = 0; g < a->groups; g++) {
+    const Lanes at = (Lanes)((LaneMask)LanesAbsolute(residual[g]) & (a->inside[g] >= FIT_INNER));
 
-    most = missed > most ? missed : most;
+    most = LanesLarger(most, at);
   }
-  return most;
+  for (int i = 0; i < LANES; i++) missed = most[i] > missed ? most[i] : missed;
+  return missed;
 }
 
 /* Makes the polynomial through the points inside. Returns 0 if there is none. */
@@ -465,16 +466,16 @@ LANES_INLINE void FootVariation(const int m, const int degree, const int terms, 
 /* Writes the shape values dq(y*)/dz_i = w_i p^_i.p^(y*) into scratch. Returns the sum of their absolute values. */
 LANES_INLINE double Shapes(const int terms, FitArrays *a, const Lanes *foot)
 {
-  double sum = 0;
+  Lanes sum = Broadcast(0);
 
   for (int g = 0; g < a->groups; g++) {
     Lanes shape = Broadcast(0);
 
     for (int k = 0; k < terms; k++) shape += foot[k] * a->basis[k * a->capacity + g];
     a->scratch[g] = a->weight[g] * shape;
-    for (int i = 0; i < LANES; i++) sum += fabs(a->scratch[g][i]);
+    sum += LanesAbsolute(a->scratch[g]);
   }
-  return sum;
+  return LanesSum(sum);
 }
 
 /* Evaluates one problem as far as it is wanted: surface, foot and gap, shape values, variations. */
