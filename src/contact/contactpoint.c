@@ -127,30 +127,48 @@ static void MapAddRow(const ContactPair *pair, int row, int image, PetscReal cos
     for (int d = 0; d < 3; d++) map->sign[3 * k + d] = sign[d] * pair->images[side[a]].sign[d];
     map->sign[3 * k] *= cosine;
   }
+  map->run[row]     = row;
   map->ptr[row + 1] = k;
 }
 
-/* Adds the row of fit point p. */
-static void MapAddPoint(const ContactPair *pair, NeighbourLists lists, int row, PetscInt p)
+/* Adds a row with the nodes and signs of the row before. */
+static void MapRepeatRow(ContactMap *map, int row, const PetscReal *S)
+{
+  const int k = map->ptr[row], before = map->ptr[row - 1], n = k - before;
+
+  for (int a = 0; a < n; a++) {
+    map->node[k + a] = map->node[before + a];
+    map->S[k + a]    = S[a];
+  }
+  for (int a = 0; a < 3 * n; a++) map->sign[3 * k + a] = map->sign[3 * before + a];
+  map->run[row]     = map->run[row - 1];
+  map->ptr[row + 1] = k + n;
+}
+
+/* Adds the row of fit point p; the row before is that of fit point `before`, or of none (-1). */
+static void MapAddPoint(const ContactPair *pair, NeighbourLists lists, int row, PetscInt p, PetscInt before)
 {
   const PetscInt first = lists->point_ptr[p];
 
-  MapAddRow(pair, row, lists->point_image[p], lists->point_cosine ? lists->point_cosine[p] : 1,
-            lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_side[first],
-            &lists->point_S[first]);
+  if (before >= 0 && lists->point_alike[p] == lists->point_alike[before])
+    MapRepeatRow(&pair->work->map, row, &lists->point_S[first]);
+  else
+    MapAddRow(pair, row, lists->point_image[p], lists->point_cosine ? lists->point_cosine[p] : 1,
+              lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_side[first],
+              &lists->point_S[first]);
 }
 
 /* Fills the map of the last evaluation with the nodes' slots. */
 static void MapFill(const ContactPair *pair, NeighbourLists lists, PetscInt q)
 {
-  ContactWork   *work = pair->work;
-  const PetscInt own  = lists->slave_ptr[q];
+  ContactWork    *work = pair->work;
+  const PetscInt *list = &lists->list_point[lists->list_ptr[q]], own = lists->slave_ptr[q];
 
   work->map.ptr[0] = 0;
   MapAddRow(pair, 0, 0, 1, lists->slave_ptr[q + 1] - own, &lists->slave_node[own], &lists->slave_side[own],
             &lists->slave_S[own]);
   for (int i = 0; i < work->result.n; i++)
-    MapAddPoint(pair, lists, 1 + i, lists->list_point[lists->list_ptr[q] + work->result.points[i]]);
+    MapAddPoint(pair, lists, 1 + i, list[work->result.points[i]], i ? list[work->result.points[i - 1]] : -1);
 }
 
 /* Number of entries that the map of the last evaluation has. */
@@ -166,11 +184,10 @@ static PetscInt MapEntries(const ContactPair *pair, NeighbourLists lists, PetscI
   return entries;
 }
 
-/* Adds the nodes of fit point p to the list of nodes. */
-static void NodesAddPoint(const ContactPair *pair, PetscInt p)
+/* Adds the nodes of fit point p to the list of nodes; those of fit point `before` (-1: none) are there. */
+static void NodesAddPoint(const ContactPair *pair, NeighbourLists lists, PetscInt p, PetscInt before)
 {
-  const NeighbourLists lists = pair->lists;
-
+  if (before >= 0 && lists->point_alike[p] == lists->point_alike[before]) return;
   ContactWorkNodesAdd(pair->work, lists->point_ptr[p + 1] - lists->point_ptr[p],
                       &lists->point_node[lists->point_ptr[p]]);
 }
@@ -191,8 +208,9 @@ static void NodesAddPoint(const ContactPair *pair, PetscInt p)
 @*/
 PetscErrorCode ContactPointToNodes(const ContactPair *pair, NeighbourLists lists, PetscInt q)
 {
-  ContactWork   *work = pair->work;
-  FitDerivatives map;
+  const PetscInt *list = &lists->list_point[lists->list_ptr[q]];
+  ContactWork    *work = pair->work;
+  FitDerivatives  map;
 
   PetscFunctionBeginUser;
   PetscCall(ContactWorkReserveMap(work, lists->n_nodes, 1 + work->result.n, MapEntries(pair, lists, q)));
@@ -200,7 +218,7 @@ PetscErrorCode ContactPointToNodes(const ContactPair *pair, NeighbourLists lists
   ContactWorkNodesAdd(pair->work, lists->slave_ptr[q + 1] - lists->slave_ptr[q],
                       &lists->slave_node[lists->slave_ptr[q]]);
   for (int i = 0; i < work->result.n; i++)
-    NodesAddPoint(pair, lists->list_point[lists->list_ptr[q] + work->result.points[i]]);
+    NodesAddPoint(pair, lists, list[work->result.points[i]], i ? list[work->result.points[i - 1]] : -1);
   MapFill(pair, lists, q);
   ContactWorkNodesEnd(pair->work);
   if (work->count > work->room) {
@@ -208,7 +226,7 @@ PetscErrorCode ContactPointToNodes(const ContactPair *pair, NeighbourLists lists
     PetscCall(PetscFree(work->N));
     PetscCall(PetscMalloc1(work->room * lists->dim, &work->N));
   }
-  map = (FitDerivatives){(int)work->count, work->map.ptr, work->map.node, work->map.S, work->map.sign};
+  map = ContactWorkMap(work, work->count);
   FitDerivativesFirst(lists->dim, work->result.n, work->result.N, &map, work->N);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -266,7 +284,6 @@ PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal f
 {
   ContactWork   *work  = pair->work;
   NeighbourLists lists = pair->lists;
-  ContactMap    *map   = &work->map;
   FitDerivatives fit;
 
   PetscFunctionBeginUser;
@@ -276,7 +293,7 @@ PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal f
   if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactWorkReserveMap(work, lists->n_nodes, 1 + work->result.n, MapEntries(pair, lists, q)));
   MapFill(pair, lists, q);
-  fit = (FitDerivatives){work->sum.n_nodes, map->ptr, map->node, map->S, map->sign};
+  fit = ContactWorkMap(work, work->sum.n_nodes);
   if (work->result.factored) {
     FitDerivativesAdd(&work->sum, factor, &work->result.factors, &fit);
     for (int i = 0; i < work->result.n; i++)
@@ -316,7 +333,7 @@ PetscErrorCode ContactPointsToNodes(const ContactPair *pair, PetscInt first, Pet
   PetscCall(ContactWorkReserveMap(pair->work, pair->lists->n_nodes, (int)(end - first),
                                   pair->lists->point_ptr[end] - pair->lists->point_ptr[first]));
   pair->work->count = 0;
-  for (PetscInt p = first; p < end; p++) NodesAddPoint(pair, p);
+  for (PetscInt p = first; p < end; p++) NodesAddPoint(pair, pair->lists, p, p > first ? p - 1 : -1);
   ContactWorkNodesEnd(pair->work);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -345,8 +362,8 @@ PetscErrorCode ContactOwnToNodes(const ContactPair *pair, PetscInt nodes, PetscI
   PetscCall(ContactWorkReserveBlock(work, nodes * dim));
   PetscCall(PetscArrayzero(work->M, PetscSqr(nodes * dim)));
   work->map.ptr[0] = 0;
-  for (PetscInt p = first; p < end; p++) MapAddPoint(pair, pair->lists, (int)(p - first), p);
-  map = (FitDerivatives){(int)nodes, work->map.ptr, work->map.node, work->map.S, work->map.sign};
+  for (PetscInt p = first; p < end; p++) MapAddPoint(pair, pair->lists, (int)(p - first), p, p > first ? p - 1 : -1);
+  map = ContactWorkMap(work, nodes);
   FitDerivativesAddOwn(dim, 0, (int)(end - first), &own[first], &map, work->M);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,13 +38,29 @@ PetscErrorCode ContactWorkDestroy(ContactWork *work)
   PetscFunctionBeginUser;
   PetscCall(PetscFree3(work->result.points, work->result.N, work->result.M));
   PetscCall(PetscFree3(work->x, work->multiplier, work->hoop));
-  PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
+  PetscCall(PetscFree6(work->map.ptr, work->map.run, work->map.node, work->map.S, work->map.sign, work->number));
   PetscCall(PetscFree(work->N));
   PetscCall(PetscFree(work->sum_workspace));
   PetscCall(PetscFree(work->M));
   PetscCall(PetscFree(work->slot));
   PetscCall(PetscFree(work->workspace));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactWorkMap - gives the map in the work as the kernels of the fit take it.
+
+  Not collective
+
+  Input Parameters:
++ work    - the room
+- n_nodes - nodes that the slots in the map count
+@*/
+FitDerivatives ContactWorkMap(const ContactWork *work, PetscInt n_nodes)
+{
+  const ContactMap *map = &work->map;
+
+  return (FitDerivatives){(int)n_nodes, map->ptr, map->run, map->node, map->S, map->sign};
 }
 
 /* Makes room for the slots of all contact nodes. New slots are -1. */
@@ -77,10 +93,10 @@ PetscErrorCode ContactWorkReserveMap(ContactWork *work, PetscInt contact_nodes, 
   if (rows <= work->map.rows_room && entries <= work->map.entries_room) PetscFunctionReturn(PETSC_SUCCESS);
   work->map.rows_room    = PetscMax(work->map.rows_room, 2 * rows);
   work->map.entries_room = PetscMax(work->map.entries_room, 2 * (int)entries);
-  PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
-  PetscCall(PetscMalloc5(work->map.rows_room + 1, &work->map.ptr, work->map.entries_room, &work->map.node,
-                         work->map.entries_room, &work->map.S, 3 * work->map.entries_room, &work->map.sign,
-                         work->map.entries_room, &work->number));
+  PetscCall(PetscFree6(work->map.ptr, work->map.run, work->map.node, work->map.S, work->map.sign, work->number));
+  PetscCall(PetscMalloc6(work->map.rows_room + 1, &work->map.ptr, work->map.rows_room, &work->map.run,
+                         work->map.entries_room, &work->map.node, work->map.entries_room, &work->map.S,
+                         3 * work->map.entries_room, &work->map.sign, work->map.entries_room, &work->number));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

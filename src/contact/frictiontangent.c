@@ -65,8 +65,7 @@ static PetscErrorCode OwnRow(const ContactPair *pair, int c, PetscReal *row)
 PetscErrorCode FrictionTurnsKeep(const ContactPair *pair, PetscInt q)
 {
   const int            dim    = pair->mesh->dim;
-  const ContactMap    *made   = &pair->work->map;
-  const FitDerivatives map    = {pair->work->sum.n_nodes, made->ptr, made->node, made->S, made->sign};
+  const FitDerivatives map    = ContactWorkMap(pair->work, pair->work->sum.n_nodes);
   SmootherResult      *result = &pair->work->result;
   const PetscInt n = ContactVariationsOwn(pair, q), *number = &pair->variations->number[pair->variations->first[q]];
   PetscReal     *nodal, *to;

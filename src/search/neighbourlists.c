@@ -964,9 +964,44 @@ void NeighbourListsRelative(NeighbourLists lists, PetscInt q, PetscInt p, PetscR
            (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
 }
 
+/* Are two fit points made of the same images of nodes? */
+static PetscBool PointsAlike(NeighbourLists lists, PetscInt p, PetscInt q)
+{
+  const PetscInt first = lists->point_ptr[p], other = lists->point_ptr[q], n = lists->point_ptr[p + 1] - first;
+
+  if (lists->point_ptr[q + 1] - other != n || lists->point_image[q] != lists->point_image[p]) return PETSC_FALSE;
+  for (PetscInt k = 0; k < n; k++) {
+    if (lists->point_node[other + k] != lists->point_node[first + k] ||
+        lists->point_side[other + k] != lists->point_side[first + k])
+      return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/*@
+  NeighbourListsFindAlike - finds the runs of fit points that are made of the same images of nodes at the same angle.
+
+  Not collective
+
+  Input/Output Parameter:
+. lists - the lists, with all their fit points
+@*/
+PetscErrorCode NeighbourListsFindAlike(NeighbourLists lists)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(lists->n_points, &lists->point_alike));
+  for (PetscInt p = 0; p < lists->n_points; p++) {
+    const PetscInt  before = p ? lists->point_alike[p - 1] : 0;
+    const PetscBool turned = (PetscBool)(lists->point_cosine && lists->point_cosine[p] != lists->point_cosine[before]);
+
+    lists->point_alike[p] = !turned && PointsAlike(lists, before, p) ? before : p;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   NeighbourListsAlikeEnd - finds the end of the run of points that are made of the same images of nodes as point p, like
-  those of a face.
+  those of a face. In rings their angles may differ.
 
   Not collective
 
@@ -979,20 +1014,9 @@ void NeighbourListsRelative(NeighbourLists lists, PetscInt q, PetscInt p, PetscR
 @*/
 PetscInt NeighbourListsAlikeEnd(NeighbourLists lists, PetscInt p)
 {
-  const PetscInt first = lists->point_ptr[p], n = lists->point_ptr[p + 1] - first;
-  PetscInt       end = p + 1;
+  PetscInt end = p + 1;
 
-  for (; end < lists->n_points && lists->point_ptr[end + 1] - lists->point_ptr[end] == n &&
-         lists->point_image[end] == lists->point_image[p];
-       end++) {
-    for (PetscInt k = 0; k < n; k++) {
-      const PetscInt other = lists->point_ptr[end] + k;
-
-      if (lists->point_node[other] != lists->point_node[first + k] ||
-          lists->point_side[other] != lists->point_side[first + k])
-        return end;
-    }
-  }
+  while (end < lists->n_points && PointsAlike(lists, p, end)) end++;
   return end;
 }
 
@@ -1197,6 +1221,7 @@ static PetscErrorCode FreeNodesAndPoints(NeighbourLists l)
   PetscCall(PetscFree7(l->point_ptr, l->point_node, l->point_S, l->point_offset, l->point_weight, l->point_image,
                        l->point_key));
   PetscCall(PetscFree(l->point_side));
+  PetscCall(PetscFree(l->point_alike));
   if (l->point_cosine) PetscCall(PetscFree2(l->point_cosine, l->point_hoop));
   PetscCall(PetscFree2(l->point_X, l->point_u));
   PetscCall(PetscFree2(l->first_held, l->home_held));

@@ -53,6 +53,9 @@ typedef struct {
   long      *point_key; /* rank-independent: the node or quadrature point, the image, the place on a ring */
   PetscReal *point_cosine, *point_hoop; /* of its angle; distance along the hoop (length). NULL: there are no rings */
   PetscReal *point_X, *point_u;         /* n_points*dim */
+  /* Of each fit point: the first of the points, one after the other, that are made of the same images of nodes at the
+     same angle, like those of a face. */
+  PetscInt *point_alike;
   /* Faces whose quadrature points have held offsets that may change: the fit points of face i are first_held[i] to
      first_held[i + 1] - 1, and home_held[i] says where the face lives. */
   PetscInt     n_held, *first_held;
@@ -102,6 +105,7 @@ PetscErrorCode NeighbourListsGiveBack(ContactSearch, NeighbourLists *);
 PetscErrorCode NeighbourListsUpdate(ContactSearch, NeighbourLists, const PetscReal *u, PetscReal t, PetscBool *moved);
 PetscErrorCode NeighbourListsTakeOffsets(ContactSearch, NeighbourLists, PetscBool *changed);
 void           NeighbourListsRelative(NeighbourLists, PetscInt q, PetscInt p, PetscReal *x);
+PetscErrorCode NeighbourListsFindAlike(NeighbourLists);
 PetscInt       NeighbourListsAlikeEnd(NeighbourLists, PetscInt p);
 PetscReal      NeighbourListsNearestSize(NeighbourLists, PetscInt q);
 PetscReal      NeighbourListsSlip(NeighbourLists, PetscInt q);

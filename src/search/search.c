@@ -446,6 +446,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   if (s->fit->fitted) PetscCall(FitSupportCreate(s, lists, &field, &fit));
   if (s->fit->fitted && s->fit->global_frame)
     PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));
+  PetscCall(NeighbourListsFindAlike(lists));
   PetscCall(NeighbourListsFill(s, lists, &field, s->fit->fitted ? &fit : NULL, motion));
   if (s->fit->fitted) PetscCall(FitSupportDestroy(&fit));
   if (s->keeps_faces) PetscCall(NeighbourListsTakeFaces(lists, &field));

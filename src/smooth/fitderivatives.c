@@ -37,26 +37,13 @@ typedef struct {
   double  factor; /* of this slave point in the sum; it is applied to K */
 } FitNodal;
 
-/* Do rows a and b of the map have the same nodes and signs? */
-static int SameNodes(const FitDerivatives *map, int a, int b)
-{
-  const int *const ptr = map->ptr, entries = ptr[a + 1] - ptr[a];
-
-  if (ptr[b + 1] - ptr[b] != entries) return 0;
-  for (int k = 0; k < entries; k++)
-    if (map->node[ptr[a] + k] != map->node[ptr[b] + k]) return 0;
-  for (int k = 0; k < 3 * entries; k++)
-    if (map->sign[3 * ptr[a] + k] != map->sign[3 * ptr[b] + k]) return 0;
-  return 1;
-}
-
 /* The run of rows that starts at `first`. */
 static FitRun NextRun(const FitDerivatives *map, int rows, int first)
 {
   const int start = map->ptr[first];
   int       end   = first + 1;
 
-  while (end < rows && SameNodes(map, first, end)) end++;
+  while (end < rows && map->run[end] == map->run[first]) end++;
   return (FitRun){first, end, map->ptr[first + 1] - start, map->node + start, map->S + start, map->sign + 3 * start};
 }
 
@@ -271,13 +258,19 @@ LANES_INLINE void Dense(const int dim, int n, double factor, const double *M, co
   sum->depth += m;
 }
 
-/* Adds S^T N to nodal. */
+/* Adds S^T N to nodal, run by run. */
 LANES_INLINE void First(const int dim, int n, const double *N, const FitDerivatives *map, double *nodal)
 {
-  for (int r = 0; r < 1 + n; r++) {
-    for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) {
-      if (map->node[e] < 0) continue;
-      for (int c = 0; c < dim; c++) nodal[map->node[e] * dim + c] += map->S[e] * map->sign[3 * e + c] * N[r * dim + c];
+  for (FitRun run = {.end = 0}; run.end < 1 + n;) {
+    run = NextRun(map, 1 + n, run.end);
+    for (int k = 0; k < run.entries; k++) {
+      const double *S = run.S + k, *from = N + run.first * dim;
+      double        sum[3] = {0, 0, 0};
+
+      if (run.node[k] < 0) continue;
+      for (int r = run.first; r < run.end; r++, S += run.entries, from += dim)
+        for (int c = 0; c < dim; c++) sum[c] += *S * from[c];
+      for (int c = 0; c < dim; c++) nodal[run.node[k] * dim + c] += run.sign[3 * k + c] * sum[c];
     }
   }
 }

@@ -22,6 +22,7 @@
 typedef struct {
   int        n_nodes;
   const int *ptr; /* [1 + points inside + 1] */
+  const int *run; /* of each row: the first of the rows, one after the other, that have the same nodes and signs */
   /* Node of each entry, below n_nodes. A negative one is left out: a node of a rigid tool, which has no unknowns. */
   const int    *node;
   const double *S;    /* of each entry */

@@ -41,7 +41,7 @@ typedef struct {
 /* The points inside the support, and the nodes on which they depend */
 typedef struct {
   FitDerivatives map;
-  int            ptr[MAX_POINTS + 2], node[(MAX_POINTS + 1) * MAX_FACE];
+  int            ptr[MAX_POINTS + 2], run[MAX_POINTS + 1], node[(MAX_POINTS + 1) * MAX_FACE];
   double         S[(MAX_POINTS + 1) * MAX_FACE], sign[3 * (MAX_POINTS + 1) * MAX_FACE];
 } Map;
 
@@ -101,16 +101,15 @@ static void MakeMap(const List *list, int n, const int *points, Map *map)
 {
   int number[MAX_LINE * MAX_LINE], entries = list->entries;
 
-  map->map =
-    (FitDerivatives){.n_nodes = list->entries, .ptr = map->ptr, .node = map->node, .S = map->S, .sign = map->sign};
+  map->map = (FitDerivatives){list->entries, map->ptr, map->run, map->node, map->S, map->sign};
   for (int i = 0; i < MAX_LINE * MAX_LINE; i++) number[i] = -1;
   for (int i = 0; i < 3 * (1 + n) * list->entries; i++) map->sign[i] = 1;
   for (int k = 0; k < entries; k++) {
     map->node[k] = k;
     map->S[k]    = 1.0 / entries;
   }
-  map->ptr[0] = 0;
-  map->ptr[1] = entries;
+  map->ptr[0] = map->run[0] = 0;
+  map->ptr[1]               = entries;
   for (int i = 0; i < n; i++) {
     for (int k = 0; k < list->entries; k++, entries++) {
       const int from = points[i] * list->entries + k, node = list->node[from];
@@ -120,6 +119,9 @@ static void MakeMap(const List *list, int n, const int *points, Map *map)
       map->S[entries]    = list->S[from];
     }
     map->ptr[2 + i] = entries;
+    map->run[1 + i] = 1 + i;
+    if (i && list->node[points[i] * list->entries] == list->node[points[i - 1] * list->entries])
+      map->run[1 + i] = map->run[i];
   }
 }
 

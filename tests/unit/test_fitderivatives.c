@@ -8,7 +8,7 @@ enum { MAX_ENTRIES = 12, NODES = 1 + FEW, SIZE = 3 * NODES, MAP_WORK = 200000 };
 /* A map with its arrays. */
 typedef struct {
   FitDerivatives map;
-  int            ptr[2 + FEW], node[(1 + FEW) * MAX_ENTRIES];
+  int            ptr[2 + FEW], run[1 + FEW], node[(1 + FEW) * MAX_ENTRIES];
   double         S[(1 + FEW) * MAX_ENTRIES], sign[3 * (1 + FEW) * MAX_ENTRIES];
 } Map;
 
@@ -19,7 +19,7 @@ static int Whole(int low, int high)
 
 static void Empty(Map *m, int n_nodes)
 {
-  m->map    = (FitDerivatives){.n_nodes = n_nodes, .ptr = m->ptr, .node = m->node, .S = m->S, .sign = m->sign};
+  m->map    = (FitDerivatives){n_nodes, m->ptr, m->run, m->node, m->S, m->sign};
   m->ptr[0] = 0;
 }
 
@@ -47,6 +47,7 @@ static void RandomMap(Map *m, int n, int n_nodes)
       m->S[at + k]    = Random(-0.5, 1);
     }
     memcpy(m->sign + 3 * at, sign, 3 * entries * sizeof(double));
+    m->run[r]     = same ? m->run[r - 1] : r;
     m->ptr[r + 1] = at + entries;
   }
 }
@@ -177,6 +178,7 @@ static void TestOwnNodes(void **state)
     for (int r = 0; r <= c.out.n; r++) {
       m.node[r]    = r;
       m.S[r]       = 1;
+      m.run[r]     = r;
       m.ptr[r + 1] = r + 1;
       for (int k = 0; k < 3; k++) m.sign[3 * r + k] = 1;
     }

@@ -22,6 +22,7 @@
    sign, which holds three components for each entry and reflects what lies on a mirror image. */
 typedef struct {
   int    *ptr, *node;
+  int    *run; /* of each row: the first of the rows, one after the other, that have the same nodes and signs */
   double *S, *sign;
   int     rows_room, entries_room;
 } ContactMap;
@@ -41,6 +42,7 @@ typedef struct {
   PetscInt          slot_room;
 } ContactWork;
 
+FitDerivatives ContactWorkMap(const ContactWork *, PetscInt n_nodes);
 PetscErrorCode ContactWorkCreate(int capacity, int dense_capacity, long workspace, ContactWork *);
 PetscErrorCode ContactWorkDestroy(ContactWork *);
 PetscErrorCode ContactWorkReserveMap(ContactWork *, PetscInt contact_nodes, int rows, PetscInt entries);

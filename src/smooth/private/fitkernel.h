@@ -157,19 +157,19 @@ LANES_INLINE int HasTerm(const int tangents, const int degree, const int k, cons
 
 /* Calls body(k, b) with constants for all monomials s^(k-b) t^b up to degree 4. In a loop the compiler would compute
    positions of terms again and again. */
-#define FOR_MONOMIALS(body)                     \
-  body(0, 0);                                   \
-  body(1, 0) body(1, 1);                        \
-  body(2, 0) body(2, 1) body(2, 2);             \
-  body(3, 0) body(3, 1) body(3, 2) body(3, 3);  \
+#define FOR_MONOMIALS(body)                    \
+  body(0, 0);                                  \
+  body(1, 0) body(1, 1);                       \
+  body(2, 0) body(2, 1) body(2, 2);            \
+  body(3, 0) body(3, 1) body(3, 2) body(3, 3); \
   body(4, 0) body(4, 1) body(4, 2) body(4, 3) body(4, 4)
 
 LANES_INLINE void Monomials(const int m, const int degree, const Lanes *eta, Lanes *p)
 {
-#define MONOMIAL(k, b)                                                                \
-  if (k > 0 && HasTerm(m, degree, k, b))                                              \
-    p[Term(m, degree, k, b)] = b < k    ? eta[0] * p[Term(m, degree, k - 1, b)]       \
-                               : m == 2 ? eta[1] * p[Term(m, degree, k - 1, b - 1)]   \
+#define MONOMIAL(k, b)                                                              \
+  if (k > 0 && HasTerm(m, degree, k, b))                                            \
+    p[Term(m, degree, k, b)] = b < k    ? eta[0] * p[Term(m, degree, k - 1, b)]     \
+                               : m == 2 ? eta[1] * p[Term(m, degree, k - 1, b - 1)] \
                                         : eta[1] * eta[1] * p[Term(m, degree, k - 2, b - 2)];
   p[0] = Broadcast(1);
   FOR_MONOMIALS(MONOMIAL)
@@ -178,9 +178,9 @@ LANES_INLINE void Monomials(const int m, const int degree, const Lanes *eta, Lan
 
 LANES_INLINE void MonomialGradients(const int m, const int degree, const Lanes *p, Lanes (*dp)[FIT_MAX_TERMS])
 {
-#define GRADIENT(k, b)                                                                               \
-  if (HasTerm(m, degree, k, b)) {                                                                    \
-    dp[0][Term(m, degree, k, b)] = b < k ? (k - b) * p[Term(m, degree, k - 1, b)] : Broadcast(0);    \
+#define GRADIENT(k, b)                                                                                      \
+  if (HasTerm(m, degree, k, b)) {                                                                           \
+    dp[0][Term(m, degree, k, b)] = b < k ? (k - b) * p[Term(m, degree, k - 1, b)] : Broadcast(0);           \
     if (m == 2) dp[1][Term(m, degree, k, b)] = b > 0 ? b * p[Term(m, degree, k - 1, b - 1)] : Broadcast(0); \
   }
   FOR_MONOMIALS(GRADIENT)
@@ -190,10 +190,10 @@ LANES_INLINE void MonomialGradients(const int m, const int degree, const Lanes *
 /* Derivatives (s, t) of the polynomial with coefficients c, where the monomials have the values p. */
 LANES_INLINE void PolynomialGradient(const int m, const int degree, const Lanes *p, const Lanes *c, Lanes gradient[2])
 {
-#define GRADIENT(k, b)                                                                                                 \
-  if (HasTerm(m, degree, k, b)) {                                                                                      \
-    if (k - b > 0) gradient[0] += (k - b) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 1, b)]);                 \
-    if (m == 2 && b > 0) gradient[1] += b * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 1, b - 1)]);             \
+#define GRADIENT(k, b)                                                                                     \
+  if (HasTerm(m, degree, k, b)) {                                                                          \
+    if (k - b > 0) gradient[0] += (k - b) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 1, b)]);     \
+    if (m == 2 && b > 0) gradient[1] += b * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 1, b - 1)]); \
   }
   gradient[0] = gradient[1] = Broadcast(0);
   FOR_MONOMIALS(GRADIENT)
@@ -203,12 +203,12 @@ LANES_INLINE void PolynomialGradient(const int m, const int degree, const Lanes 
 /* Second derivatives (ss, st, tt) of the polynomial with coefficients c, where the monomials have the values p. */
 LANES_INLINE void PolynomialHessian(const int m, const int degree, const Lanes *p, const Lanes *c, Lanes hessian[3])
 {
-#define HESSIAN(k, b)                                                                                                  \
-  if (HasTerm(m, degree, k, b)) {                                                                                      \
-    if (k - b > 1) hessian[0] += ((k - b) * (k - b - 1)) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b)]);  \
-    if (m == 2 && k - b > 0 && b > 0)                                                                                  \
-      hessian[1] += ((k - b) * b) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b - 1)]);                     \
-    if (m == 2 && b > 1) hessian[2] += (b * (b - 1)) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b - 2)]);  \
+#define HESSIAN(k, b)                                                                                                 \
+  if (HasTerm(m, degree, k, b)) {                                                                                     \
+    if (k - b > 1) hessian[0] += ((k - b) * (k - b - 1)) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b)]); \
+    if (m == 2 && k - b > 0 && b > 0)                                                                                 \
+      hessian[1] += ((k - b) * b) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b - 1)]);                    \
+    if (m == 2 && b > 1) hessian[2] += (b * (b - 1)) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b - 2)]); \
   }
   hessian[0] = hessian[1] = hessian[2] = Broadcast(0);
   FOR_MONOMIALS(HESSIAN)
