@@ -38,15 +38,24 @@ typedef struct {
 typedef struct {
   PetscInt  stamp;
   int       ways, own; /* own: of those along its own longest direction, less those against it */
+  int       sign;      /* 1 or -1: it lies along its own longest direction or against it; 0: it does not */
   PetscReal s, t;      /* steps across and along the rows from the foot to its centre (length) */
   PetscReal along[3], across[3], length, width; /* directions of the rows there, unit vectors; its extents along them */
 } FacePlace;
+
+/* The step from the centre of a face that lies along its own longest direction to a neighbour. */
+typedef struct {
+  PetscBool known;
+  int sign; /* 1 or -1: the neighbour is of its row and lies along its own longest direction or against it; else 0 */
+  PetscReal s, t; /* across and along the row (length) */
+} FaceStep;
 
 struct _n_FaceRows {
   const SurfaceView *view;
   Neighbourhoods     neighbourhoods;
   FaceShape         *shape;
   FacePlace         *place;
+  FaceStep          *step; /* of each link */
   PetscInt          *queue, stamp;
 };
 
@@ -163,7 +172,8 @@ PetscErrorCode FaceRowsCreate(const SurfaceView *view, Neighbourhoods neighbourh
   PetscCall(PetscNew(&rows));
   rows->view           = view;
   rows->neighbourhoods = neighbourhoods;
-  PetscCall(PetscCalloc2(view->n_facets, &rows->shape, view->n_facets, &rows->place));
+  PetscCall(PetscCalloc3(view->n_facets, &rows->shape, view->n_facets, &rows->place,
+                         NeighbourhoodsLinkCount(neighbourhoods), &rows->step));
   PetscCall(PetscMalloc1(view->n_facets, &rows->queue));
   *out = rows;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -181,15 +191,16 @@ PetscErrorCode FaceRowsDestroy(FaceRows *rows)
 {
   PetscFunctionBeginUser;
   if (!*rows) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree2((*rows)->shape, (*rows)->place));
+  PetscCall(PetscFree3((*rows)->shape, (*rows)->place, (*rows)->step));
   PetscCall(PetscFree((*rows)->queue));
   PetscCall(PetscFree(*rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Gives a face that lies along its own longest direction, or against it, its directions and extents. */
-static void PlaceOwn(const FaceShape *shape, PetscReal sign, FacePlace *place)
+static void PlaceOwn(const FaceShape *shape, int sign, FacePlace *place)
 {
+  place->sign = sign;
   for (int d = 0; d < 3; d++) {
     place->along[d]  = sign * shape->along[d];
     place->across[d] = sign * shape->across[d];
@@ -206,34 +217,59 @@ static PetscBool OfRow(const FaceShape *shape, const PetscReal *normal, const Pe
                      PetscSqr(Dot(along, shape->along)) > ROWS_TURN * ROWS_TURN * (1 - PetscSqr(Dot(along, normal))));
 }
 
-/* Adds the way from a face to a neighbour, which steps along the mean of their directions. */
-static void AddWay(FaceRows rows, PetscInt from, PetscInt to)
+/* Finds the step from a face with the directions of `at` to a neighbour, along the mean of their directions. `there`
+   returns the direction of the rows at the neighbour. */
+static FaceStep FindStep(FaceRows rows, PetscInt from, PetscInt to, const FacePlace *at, PetscReal there[3])
 {
-  const FacePlace *at     = &rows->place[from];
   const FaceShape *shape  = Shape(rows, to);
-  FacePlace       *next   = &rows->place[to];
   const PetscReal *normal = &rows->view->normals[3 * to];
-  FacePlace        there;
-  PetscReal        step[3], mean[2][3];
+  FaceStep         found  = {.known = PETSC_TRUE};
+  PetscReal        way[3], mean[2][3], across[3];
 
   if (OfRow(shape, normal, at->along)) {
-    const int sign = Dot(at->along, shape->along) > 0 ? 1 : -1;
-
-    PlaceOwn(shape, sign, &there);
-    next->own += sign;
+    found.sign = Dot(at->along, shape->along) > 0 ? 1 : -1;
+    for (int d = 0; d < 3; d++) {
+      there[d]  = found.sign * shape->along[d];
+      across[d] = found.sign * shape->across[d];
+    }
   } else {
-    for (int d = 0; d < 3; d++) there.along[d] = at->along[d];
-    Flatten(normal, there.along);
-    Cross(normal, there.along, there.across);
+    for (int d = 0; d < 3; d++) there[d] = at->along[d];
+    Flatten(normal, there);
+    Cross(normal, there, across);
   }
   for (int d = 0; d < 3; d++) {
-    step[d]    = shape->centre[d] - rows->shape[from].centre[d];
-    mean[0][d] = at->across[d] + there.across[d];
-    mean[1][d] = at->along[d] + there.along[d];
-    next->along[d] += there.along[d];
+    way[d]     = shape->centre[d] - rows->shape[from].centre[d];
+    mean[0][d] = at->across[d] + across[d];
+    mean[1][d] = at->along[d] + there[d];
   }
-  next->s += at->s + Dot(step, mean[0]) / PetscSqrtReal(Dot(mean[0], mean[0]));
-  next->t += at->t + Dot(step, mean[1]) / PetscSqrtReal(Dot(mean[1], mean[1]));
+  found.s = Dot(way, mean[0]) / PetscSqrtReal(Dot(mean[0], mean[0]));
+  found.t = Dot(way, mean[1]) / PetscSqrtReal(Dot(mean[1], mean[1]));
+  return found;
+}
+
+/* Adds the way from a face to the neighbour across link number `link`. Between faces that lie along their own
+   directions all walks go the same step, or its opposite, so that it is found once. */
+static void AddWay(FaceRows rows, PetscInt from, PetscInt to, PetscInt link)
+{
+  const FacePlace *at   = &rows->place[from];
+  FacePlace       *next = &rows->place[to];
+  FaceStep         step = rows->step[link];
+  PetscReal        there[3];
+
+  if (step.known && at->sign) {
+    step.sign *= at->sign;
+    step.s *= at->sign;
+    step.t *= at->sign;
+    for (int d = 0; d < 3; d++) there[d] = step.sign * rows->shape[to].along[d];
+  } else {
+    step = FindStep(rows, from, to, at, there);
+    if (at->sign && step.sign)
+      rows->step[link] = (FaceStep){PETSC_TRUE, at->sign * step.sign, at->sign * step.s, at->sign * step.t};
+  }
+  next->own += step.sign;
+  for (int d = 0; d < 3; d++) next->along[d] += there[d];
+  next->s += at->s + step.s;
+  next->t += at->t + step.t;
   next->ways++;
 }
 
@@ -333,7 +369,8 @@ static void FindBend(const RowSums *sums, const PetscReal radius[2], FaceRow *ro
 static void Spread(FaceRows rows, PetscInt start, PetscInt f, PetscInt *tail)
 {
   const PetscReal *normals = rows->view->normals;
-  const PetscInt  *links, n = NeighbourhoodsLinks(rows->neighbourhoods, f, &links);
+  const PetscInt  *links;
+  PetscInt         first, n = NeighbourhoodsLinks(rows->neighbourhoods, f, &first, &links);
 
   for (PetscInt k = 0; k < n; k++) {
     FacePlace *place = &rows->place[links[k]];
@@ -343,7 +380,7 @@ static void Spread(FaceRows rows, PetscInt start, PetscInt f, PetscInt *tail)
       *place                 = (FacePlace){.stamp = -rows->stamp};
       rows->queue[(*tail)++] = links[k];
     }
-    AddWay(rows, f, links[k]);
+    AddWay(rows, f, links[k], first + k);
   }
 }
 

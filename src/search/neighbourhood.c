@@ -198,16 +198,31 @@ PetscBool NeighbourhoodsMeetSharply(Neighbourhoods nb, PetscInt f, PetscInt g)
 + nb - the object
 - f  - the facet
 
-  Output Parameter:
-. links - their numbers
+  Output Parameters:
++ first - number of the first link among all links, whose numbers follow each other
+- links - the facets
 
   Note:
   Returns how many there are.
 @*/
-PetscInt NeighbourhoodsLinks(Neighbourhoods nb, PetscInt f, const PetscInt **links)
+PetscInt NeighbourhoodsLinks(Neighbourhoods nb, PetscInt f, PetscInt *first, const PetscInt **links)
 {
-  *links = &nb->link[nb->link_ptr[f]];
+  *first = nb->link_ptr[f];
+  *links = &nb->link[*first];
   return nb->link_ptr[f + 1] - nb->link_ptr[f];
+}
+
+/*@
+  NeighbourhoodsLinkCount - returns the number of links of all facets, each way counted.
+
+  Not collective
+
+  Input Parameter:
+. nb - the object
+@*/
+PetscInt NeighbourhoodsLinkCount(Neighbourhoods nb)
+{
+  return nb->link_ptr[nb->view->n_facets];
 }
 
 /* Squared distances of n points from x0 in a support, the first of them being number p. */

@@ -49,7 +49,8 @@ PetscErrorCode NeighbourhoodsCreate(const SurfaceView *, Neighbourhoods *);
 PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *);
 PetscBool      NeighbourhoodsIsSharp(Neighbourhoods, PetscInt f);
 PetscBool      NeighbourhoodsMeetSharply(Neighbourhoods, PetscInt f, PetscInt g);
-PetscInt       NeighbourhoodsLinks(Neighbourhoods, PetscInt f, const PetscInt **links);
+PetscInt       NeighbourhoodsLinkCount(Neighbourhoods);
+PetscInt       NeighbourhoodsLinks(Neighbourhoods, PetscInt f, PetscInt *first, const PetscInt **links);
 PetscErrorCode NeighbourhoodGather(Neighbourhoods, PetscInt start, const PetscReal x0[3], const PetscReal e3[3],
                                    const NeighbourhoodSupport *, PetscReal limit, PetscInt max, PetscInt *points,
                                    const PetscReal **rho2, PetscInt *n, PetscInt *found);
