@@ -5,6 +5,9 @@
 /* A foot that is outside of its reference face by less than this is on it: rounding. Feet on two faces whose distances
    differ by less than this part of a face are one place on their common edge. */
 #define FRICTION_ON_FACE 1e-9
+/* A face lies within this many radii of the ball around its nodes. On faces of second order the absolute values of the
+   shape functions add up to 5/3 at most, in triangles, and to 25/16 in quadrilaterals. */
+#define FRICTION_BALL 1.7
 /* Cosine of the angle, 10 degrees, by which the slip of a node may turn within a step: the step is straight, and its
    end gives the direction of all of it. */
 #define FRICTION_TURN 0.984807753012208
@@ -128,9 +131,31 @@ PetscInt FrictionFootPoint(const ContactPair *pair, PetscInt q, int node)
   return lists->list_point[lists->list_ptr[q] + facet->nodes[node]];
 }
 
-/* Finds the foot of slave point q on a facet of its list. */
+/* Is a line through the origin too far from a face to hit it? Shape functions of second order, which may be negative,
+   lead out of the ball around the nodes, but not far. */
+static PetscBool LineMisses(int dim, int nodes, const PetscReal *x, const PetscReal normal[3])
+{
+  PetscReal centre[3] = {0}, along = 0, square = 0, radius2 = 0, off2 = 0;
+
+  for (int a = 0; a < nodes; a++)
+    for (int d = 0; d < dim; d++) centre[d] += x[a * dim + d] / nodes;
+  for (int a = 0; a < nodes; a++) {
+    PetscReal distance2 = 0;
+
+    for (int d = 0; d < dim; d++) distance2 += PetscSqr(x[a * dim + d] - centre[d]);
+    radius2 = PetscMax(radius2, distance2);
+  }
+  for (int d = 0; d < dim; d++) {
+    along += centre[d] * normal[d];
+    square += PetscSqr(normal[d]);
+    off2 += PetscSqr(centre[d]);
+  }
+  return (PetscBool)(off2 - PetscSqr(along) / square > PetscSqr(FRICTION_BALL) * radius2);
+}
+
+/* Finds the foot of slave point q on a facet of its list. on_face: only one on the face itself counts. */
 static PetscBool FootOnFacet(const ContactPair *pair, PetscInt q, int number, const PetscReal normal[3],
-                             FrictionFoot *foot)
+                             PetscBool on_face, FrictionFoot *foot)
 {
   const NeighbourLists lists = pair->lists;
   const Facet         *facet = &lists->facet[lists->facet_ptr[q] + number];
@@ -144,6 +169,7 @@ static PetscBool FootOnFacet(const ContactPair *pair, PetscInt q, int number, co
     for (int d = 0; d < dim; d++)
       x[a * dim + d] = (lists->point_X[p * dim + d] - X[d]) + (lists->point_u[p * dim + d] - u[d]);
   }
+  if (on_face && LineMisses(dim, ElementGet(facet->type)->nodes, x, normal)) return PETSC_FALSE;
   return FrictionFootFind(dim, facet->type, x, normal, foot) ? PETSC_TRUE : PETSC_FALSE;
 }
 
@@ -181,23 +207,25 @@ static PetscBool ServesBetter(const ContactPair *pair, PetscInt q, int i, PetscR
   return (PetscBool)(PetscAbsReal(distance) < PetscAbsReal(other));
 }
 
-/* Finds the foot of slave point q over the facets of its list: the one that the line hits, or else comes nearest to. */
+/* Finds the foot of slave point q over the facets of its list: the one that the line hits, or else comes nearest to.
+   The nearest facet is looked at first: once the line hits one, most others need no foot. */
 static PetscBool FindFoot(const ContactPair *pair, PetscInt q, const PetscReal normal[3])
 {
   const NeighbourLists lists = pair->lists;
   Friction             f     = pair->friction;
-  const int            n     = (int)(lists->facet_ptr[q + 1] - lists->facet_ptr[q]);
+  const int            n = (int)(lists->facet_ptr[q + 1] - lists->facet_ptr[q]), nearest = n ? lists->nearest[q] : -1;
   PetscReal            least = PETSC_MAX_REAL;
 
-  if (f->facet[q] >= 0 && FootOnFacet(pair, q, f->facet[q], normal, &f->foot[q]) &&
+  if (f->facet[q] >= 0 && FootOnFacet(pair, q, f->facet[q], normal, PETSC_FALSE, &f->foot[q]) &&
       f->foot[q].outside <= FRICTION_ON_FACE)
     return PETSC_TRUE;
   f->facet[q] = -1;
-  for (int i = 0; i < n; i++) {
+  for (int k = nearest < 0 ? 0 : -1; k < n; k++) {
+    const int    i = k < 0 ? nearest : k;
     FrictionFoot foot;
     PetscReal    outside;
 
-    if (!FootOnFacet(pair, q, i, normal, &foot)) continue;
+    if (k == nearest || !FootOnFacet(pair, q, i, normal, (PetscBool)(least <= FRICTION_ON_FACE), &foot)) continue;
     outside = PetscMax(foot.outside, FRICTION_ON_FACE);
     if (outside > least) continue;
     if (outside == least && !ServesBetter(pair, q, i, foot.distance, f->foot[q].distance)) continue;
