@@ -130,10 +130,11 @@ static PetscErrorCode CoupleTool(const ContactPair *pair, PetscInt points, const
 static PetscErrorCode AddSecond(Contact contact, const ContactPair *pair, int p, PetscInt points, const PetscInt *point,
                                 PetscInt n, const PetscInt *nodes)
 {
-  const FitDerivativesSum *sum = &pair->work->sum;
+  FitDerivativesSum *sum = &pair->work->sum;
 
   PetscFunctionBeginUser;
   if (BlockMatrixKeepsFactors(contact->blocks) && !pair->tool) {
+    FitDerivativesJoin(sum);
     PetscCall(BlockMatrixAddFactors(contact->blocks, p, n, nodes, sum->depth, sum->stride, sum->K, sum->J));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

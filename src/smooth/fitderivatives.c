@@ -8,9 +8,9 @@
 
    The part that couples the points to the slave point is again such a product:
        sum_i -S_i^T H_i S_c - S_c^T H_i S_i + S_c^T H_c S_c = B^T S_c + S_c^T B
-   with B = 1/2 H_c S_c - sum_i H_i S_i and H_c = sum H_i. So B and S_c are dim more rows of the factors. The rows of
-   many slave points over the same nodes stand below each other. One product, which writes the large M once, serves
-   all of them. */
+   with B = 1/2 H_c S_c - sum_i H_i S_i and H_c = sum H_i. So B and S_c are dim more rows of the factors. They stand
+   apart, because S_c has few entries: all slave points of a face have the same nodes. The rows of many slave points
+   over the same nodes stand below each other. One product, which writes the large M once, serves all of them. */
 #include "smooth/fitderivatives.h"
 #include "fitkernel.h"
 #include "symmetricproduct.h"
@@ -32,7 +32,8 @@ typedef struct {
   /* [stride + dim][vectors of a row of FitFactors], by node and component. The last dim rows are those of nodes that
      are left out. */
   Lanes  *rows;
-  double *K, *J; /* [terms + dim][stride] */
+  double *K, *J; /* [terms][stride] */
+  double *B, *S; /* [dim][stride]: the coupling */
   int     stride;
   double  factor; /* of this slave point in the sum; it is applied to K */
 } FitNodal;
@@ -129,9 +130,9 @@ LANES_INLINE int HessianEntry(const int c, const int d)
   return c > d ? c * (c + 1) / 2 + d : d * (d + 1) / 2 + c;
 }
 
-/* Adds `share` times the run's part of H_i S_i to B, which is the last dim rows of K. */
-LANES_INLINE void AddSumCoupling(const int dim, const int terms, const FitFactors *factors, const FitRun *run,
-                                 double share, FitNodal *nodal)
+/* Adds `share` times the run's part of H_i S_i to B. */
+LANES_INLINE void AddSumCoupling(const int dim, const FitFactors *factors, const FitRun *run, double share,
+                                 FitNodal *nodal)
 {
   const int vectors = HessianStride(dim) / LANES;
 
@@ -144,20 +145,20 @@ LANES_INLINE void AddSumCoupling(const int dim, const int terms, const FitFactor
     for (int c = 0; c < dim; c++) sign[c] = nodal->factor * share * run->sign[3 * k + c];
     SumHessians(vectors, factors, run, k, sum);
     for (int d = 0; d < dim; d++) {
-      double *const B = nodal->K + (terms + d) * nodal->stride + run->node[k] * dim;
+      double *const B = nodal->B + d * nodal->stride + run->node[k] * dim;
 
       for (int c = 0; c < dim; c++) B[c] += sign[c] * h[HessianEntry(c, d)];
     }
   }
 }
 
-/* Adds S_c to the last dim rows of J. */
-LANES_INLINE void AddSlave(const int dim, const int terms, const FitRun *slave, FitNodal *nodal)
+/* Adds S_c to S. */
+LANES_INLINE void AddSlave(const int dim, const FitRun *slave, FitNodal *nodal)
 {
   for (int k = 0; k < slave->entries; k++) {
     if (slave->node[k] < 0) continue;
     for (int c = 0; c < dim; c++)
-      nodal->J[(terms + c) * nodal->stride + slave->node[k] * dim + c] += slave->sign[3 * k + c] * slave->S[k];
+      nodal->S[c * nodal->stride + slave->node[k] * dim + c] += slave->sign[3 * k + c] * slave->S[k];
   }
 }
 
@@ -210,26 +211,29 @@ LANES_INLINE void Second(const int dim, const int terms, double factor, const Fi
 {
   const int    vectors = FactorStride(terms) / LANES, rows = 1 + factors->n;
   const FitRun slave = NextRun(map, 1, 0);
-  const long   first = (long)sum->depth * sum->stride;
+  const long   first = (long)sum->depth * sum->stride, last = (long)(sum->room - sum->coupled - dim) * sum->stride;
   FitNodal     nodal = {.rows   = (Lanes *)sum->rows,
                         .K      = sum->K + first,
                         .J      = sum->J + first,
+                        .B      = sum->K + last,
+                        .S      = sum->J + last,
                         .stride = sum->stride,
                         .factor = factor};
 
   memset(nodal.rows, 0, (size_t)(nodal.stride + dim) * vectors * sizeof(Lanes));
-  memset(nodal.K + terms * nodal.stride, 0, (size_t)dim * nodal.stride * sizeof(double));
-  memset(nodal.J + terms * nodal.stride, 0, (size_t)dim * nodal.stride * sizeof(double));
+  memset(nodal.B, 0, (size_t)dim * nodal.stride * sizeof(double));
+  memset(nodal.S, 0, (size_t)dim * nodal.stride * sizeof(double));
   AddRows(dim, vectors, factors, &slave, &nodal);
-  AddSumCoupling(dim, terms, factors, &slave, 0.5, &nodal);
-  AddSlave(dim, terms, &slave, &nodal);
+  AddSumCoupling(dim, factors, &slave, 0.5, &nodal);
+  AddSlave(dim, &slave, &nodal);
   for (FitRun run = slave; run.end < rows;) {
     run = NextRun(map, rows, run.end);
     AddRows(dim, vectors, factors, &run, &nodal);
-    AddSumCoupling(dim, terms, factors, &run, -1, &nodal);
+    AddSumCoupling(dim, factors, &run, -1, &nodal);
   }
   TurnBack(terms, vectors, &nodal);
-  sum->depth += terms + dim;
+  sum->depth += terms;
+  sum->coupled += dim;
 }
 
 /* Adds scale times row i of S, which belongs to component c of point r. */
@@ -398,7 +402,7 @@ void FitDerivativesBegin(FitDerivativesSum *sum, int dim, int degree, int n_node
 {
   const int stride = SymmetricProductStride(n_nodes * dim);
 
-  *sum      = (FitDerivativesSum){.dim = dim, .n_nodes = n_nodes, .stride = stride};
+  *sum      = (FitDerivativesSum){.dim = dim, .n_nodes = n_nodes, .stride = stride, .room = depth};
   sum->rows = (double *)(((uintptr_t)workspace + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
   sum->K    = sum->rows + (stride + dim) * FactorStride(FitTerms(dim, degree));
   sum->J    = sum->K + (long)depth * stride;
@@ -532,6 +536,59 @@ void FitDerivativesAddOwn(int dim, int first, int end, const double (*own)[FIT_D
     Own(2, first, end, own, map, M);
 }
 
+/* T := row i of S^T B over the coupling rows. Returns 0 if it has no entries. */
+static int CouplingRow(const FitDerivativesSum *sum, int i, double *T)
+{
+  int any = 0;
+
+  for (int r = sum->room - sum->coupled; r < sum->room; r++) {
+    const double        S = sum->J[(long)r * sum->stride + i];
+    const double *const B = sum->K + (long)r * sum->stride;
+
+    if (S == 0) continue;
+    for (int j = 0; j < sum->stride; j++) T[j] = any ? T[j] + S * B[j] : S * B[j];
+    any = 1;
+  }
+  return any;
+}
+
+/* Adds S^T B and its transpose to the upper triangle of M. Row i goes to row i and to column i. */
+static void AddCoupling(const FitDerivativesSum *sum, double *M)
+{
+  const int     n = sum->n_nodes * sum->dim;
+  double *const T = sum->rows;
+
+  for (int i = 0; i < n; i++) {
+    double *const row = M + (long)i * n;
+
+    if (!CouplingRow(sum, i, T)) continue;
+    for (int j = i; j < n; j++) row[j] += T[j];
+    for (int j = 0; j <= i; j++) M[(long)j * n + i] += T[j];
+  }
+}
+
+/*@
+  FitDerivativesJoin - puts the coupling rows of a sum behind its other rows, so that K and J hold the sum.
+
+  Not collective
+
+  Input/Output Parameter:
+. sum - the sum; nothing is added any more
+
+  Note:
+  Plain C.
+@*/
+void FitDerivativesJoin(FitDerivativesSum *sum)
+{
+  const long   from = (long)(sum->room - sum->coupled) * sum->stride, to = (long)sum->depth * sum->stride;
+  const size_t size = (size_t)sum->coupled * sum->stride * sizeof(double);
+
+  memmove(sum->K + to, sum->K + from, size);
+  memmove(sum->J + to, sum->J + from, size);
+  sum->depth += sum->coupled;
+  sum->coupled = 0;
+}
+
 /*@
   FitDerivativesEnd - writes the sum into the upper triangle of M.
 
@@ -549,4 +606,5 @@ void FitDerivativesAddOwn(int dim, int first, int end, const double (*own)[FIT_D
 void FitDerivativesEnd(FitDerivativesSum *sum, double *M)
 {
   SymmetricProductUpper(sum->n_nodes * sum->dim, sum->depth, sum->stride, sum->K, sum->J, M);
+  if (sum->coupled) AddCoupling(sum, M);
 }

@@ -35,6 +35,9 @@ enum { FIT_DERIVATIVES_OWN = 6 };
 /* A sum of second variations. Of symmetric sums the upper triangle is written. */
 typedef struct {
   int dim, n_nodes, stride, depth;
+  /* Rows that couple slave points to their fit points. They are the last ones of K and J, behind `room` rows in all:
+     those of J have entries at the nodes of slave points only. */
+  int coupled, room;
   /* rows: of the present slave point; K, J: [depth][stride], of all slave points so far. */
   double *rows, *K, *J;
 } FitDerivativesSum;
@@ -46,6 +49,7 @@ void FitDerivativesBegin(FitDerivativesSum *, int dim, int degree, int n_nodes, 
 void FitDerivativesAdd(FitDerivativesSum *, double factor, const FitFactors *, const FitDerivatives *);
 void FitDerivativesAddDense(FitDerivativesSum *, double factor, int n, const double *M, const FitDerivatives *);
 void FitDerivativesAddOuter(FitDerivativesSum *, double factor, const double *v);
+void FitDerivativesJoin(FitDerivativesSum *);
 void FitDerivativesEnd(FitDerivativesSum *, double *M);
 void FitDerivativesSlave(const FitFactors *, int component, double *row);
 void FitDerivativesOwn(double factor, const FitFactors *, int i, double own[FIT_DERIVATIVES_OWN]);
