@@ -1,9 +1,7 @@
 /* Walks from facet to facet around a foot and gathers the fit points within the support. */
 #include "neighbourhood.h"
+#include "base/lanes.h"
 #include "smooth/diffusefit.h"
-
-/* Distances of the fit points of a facet are found so many at a time. */
-enum { RUN = 16 };
 
 typedef struct {
   PetscInt a, b, facet; /* points of the edge, a < b (2D: the end twice) */
@@ -88,7 +86,8 @@ static PetscErrorCode TakePlaces(Neighbourhoods nb)
   const SurfaceView *view = nb->view;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(view->n_points, &nb->place[0], view->n_points, &nb->place[1], view->n_points, &nb->place[2]));
+  PetscCall(PetscCalloc3(view->n_points + LANES, &nb->place[0], view->n_points + LANES, &nb->place[1],
+                         view->n_points + LANES, &nb->place[2]));
   for (PetscInt p = 0; p < view->n_points; p++) {
     for (int d = 0; d < view->dim; d++) nb->place[d][p] = view->x[p * view->dim + d];
     if (view->dim == 2) nb->place[2][p] = view->hoop ? view->hoop[p] : 0;
@@ -225,27 +224,25 @@ PetscInt NeighbourhoodsLinkCount(Neighbourhoods nb)
   return nb->link_ptr[nb->view->n_facets];
 }
 
-/* Squared distances of n points from x0 in a support, the first of them being number p. */
-static inline void Rho2(const Neighbourhoods nb, PetscInt p, PetscInt n, const PetscReal x0[3],
-                        const NeighbourhoodSupport *support, PetscReal *rho2)
+/* Squared distances from x0 in a support of LANES points, the first of them being number p. Behind the last point
+   there are places without a meaning. */
+LANES_INLINE Lanes Rho2(const Neighbourhoods nb, PetscInt p, const PetscReal x0[3], const NeighbourhoodSupport *support)
 {
-  const PetscReal *x = &nb->place[0][p], *y = &nb->place[1][p], *z = &nb->place[2][p], *metric = support->metric;
-  const PetscReal  z0 = nb->view->dim == 3 ? x0[2] : 0;
+  const PetscReal *metric = support->metric, z0 = nb->view->dim == 3 ? x0[2] : 0;
+  Lanes a = *(const LanesInArray *)&nb->place[0][p] - x0[0], b = *(const LanesInArray *)&nb->place[1][p] - x0[1],
+        c = *(const LanesInArray *)&nb->place[2][p] - z0;
 
-  for (PetscInt i = 0; i < n; i++) {
-    PetscReal a = x[i] - x0[0], b = y[i] - x0[1], c = z[i] - z0;
+  if (support->bent) {
+    const PetscReal *along = support->along;
+    const Lanes      t = along[0] * a + along[1] * b + along[2] * c, t2 = t * t,
+                bend = t2 * (support->h[0] + t2 * support->h[1]);
 
-    if (support->bent) {
-      const PetscReal *along = support->along,
-                      bend   = FitBendAside(support->h, along[0] * a + along[1] * b + along[2] * c);
-
-      a -= bend * support->across[0];
-      b -= bend * support->across[1];
-      c -= bend * support->across[2];
-    }
-    rho2[i] = metric[0] * a * a + metric[4] * b * b + metric[8] * c * c +
-              2 * (metric[1] * a * b + metric[2] * a * c + metric[5] * b * c);
+    a -= bend * support->across[0];
+    b -= bend * support->across[1];
+    c -= bend * support->across[2];
   }
+  return metric[0] * a * a + metric[4] * b * b + metric[8] * c * c +
+         2 * (metric[1] * a * b + metric[2] * a * c + metric[5] * b * c);
 }
 
 /* Sorts the points by distance, and points at equal distance by number. */
@@ -260,11 +257,26 @@ static PetscErrorCode SortReach(Neighbourhoods nb, PetscInt n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a point to those that were found. */
-static void ReachAdd(Neighbourhoods nb, PetscInt *count, PetscReal rho2, PetscInt point)
+/* Adds a point to those that were found, if it is within the limit. There is room for all points. */
+static inline void ReachAdd(Neighbourhoods nb, PetscInt *count, PetscReal rho2, PetscReal limit, PetscInt point)
 {
-  nb->rho2[*count]      = rho2;
-  nb->reach[(*count)++] = point;
+  nb->rho2[*count]  = rho2;
+  nb->reach[*count] = point;
+  *count += rho2 <= limit;
+}
+
+/* Adds the fit points of a facet within the limit; returns whether there are any. */
+static inline PetscBool ReachAddFacet(Neighbourhoods nb, PetscInt *count, PetscInt f, const PetscReal x0[3],
+                                      const NeighbourhoodSupport *support, PetscReal limit)
+{
+  const PetscInt first = nb->view->first[f], points = nb->view->count[f], before = *count;
+
+  for (PetscInt q = 0; q < points; q += LANES) {
+    const Lanes rho2 = Rho2(nb, first + q, x0, support);
+
+    for (PetscInt i = 0; i < PetscMin(LANES, points - q); i++) ReachAdd(nb, count, rho2[i], limit, first + q + i);
+  }
+  return (PetscBool)(*count > before);
 }
 
 /*@
@@ -301,18 +313,8 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
   while (head < tail) {
     const PetscInt f      = nb->queue[head++];
     const Facet   *facet  = &view->facets[f];
-    PetscBool      inside = PETSC_FALSE;
+    PetscBool      inside = view->first ? ReachAddFacet(nb, &count, f, x0, support, limit) : PETSC_FALSE;
 
-    for (PetscInt q = 0, points = view->first ? view->count[f] : 0; q < points; q += RUN) {
-      const PetscInt first = view->first[f] + q, run = PetscMin(RUN, points - q);
-      PetscReal      own[RUN];
-
-      Rho2(nb, first, run, x0, support, own);
-      for (PetscInt i = 0; i < run; i++) {
-        inside = (PetscBool)(inside || own[i] <= limit);
-        if (own[i] <= limit) ReachAdd(nb, &count, own[i], first + i);
-      }
-    }
     /* A quadrature point inside shows that the facet reaches into the support, so that its nodes need not be
        examined. */
     for (int a = 0, nodes = view->first && inside ? 0 : ElementGet(facet->type)->nodes; a < nodes; a++) {
@@ -320,10 +322,10 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
 
       if (nb->seen_point[p] != nb->stamp) {
         nb->seen_point[p] = nb->stamp;
-        Rho2(nb, p, 1, x0, support, &nb->point_rho2[p]);
+        nb->point_rho2[p] = Rho2(nb, p, x0, support)[0];
         if (!view->first && nb->point_rho2[p] <= limit && view->geometry[p].weight > 0 &&
             Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE)
-          ReachAdd(nb, &count, nb->point_rho2[p], p);
+          ReachAdd(nb, &count, nb->point_rho2[p], limit, p);
       }
       inside = (PetscBool)(inside || nb->point_rho2[p] <= limit);
     }
