@@ -32,11 +32,13 @@ LANES_INLINE double LanesSum(Lanes a)
   return sum;
 }
 
+/* Absolute values: the sign bits are cleared. */
 LANES_INLINE Lanes LanesAbsolute(Lanes a)
 {
   return (Lanes)((LaneMask)a & ~(1ULL << 63));
 }
 
+/* The larger one of each two entries */
 LANES_INLINE Lanes LanesLarger(Lanes a, Lanes b)
 {
   const LaneMask from_b = b > a;
