@@ -383,6 +383,10 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
 + problem - the fit, with arrays that belong to fit
 . result  - its surface and guards, likewise
 - rung    - the rung on which the fit holds; RUNG_FACET if none does
+
+  Note:
+  None is made on a facet at the tip of a fold. It would know one side of it only and go on past the tip, where the sides
+  are nearer to each other than fits are to their facets.
 @*/
 PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, int first, FitProblem *problem, FitResult *result,
                                int *rung)
@@ -391,6 +395,7 @@ PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, int first, Fi
 
   PetscFunctionBeginUser;
   *rung = RUNG_FACET;
+  if (NeighbourhoodsIsFolded(fit->neighbourhoods, at->facet)) PetscFunctionReturn(PETSC_SUCCESS);
   for (int r = first; r < RUNGS && !holds; r++) {
     PetscCall(FitRung(fit, at, r, problem, result, &holds));
     if (holds) *rung = r;
@@ -453,10 +458,10 @@ static void KeepFrame(const FitSupport *fit, PetscInt q, FitFoot *at)
 @*/
 PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q, PetscInt first, ListBuffer *buffer)
 {
-  NeighbourLists   lists = fit->lists;
-  FitFoot          at    = {.facet = look->best, .xi = {look->foot.xi[0], look->foot.xi[1]}, .past = FootPast(look)};
-  FitProblem       problem;
-  FitResult        result;
+  NeighbourLists lists = fit->lists;
+  FitFoot        at    = {.facet = look->best, .xi = {look->foot.xi[0], look->foot.xi[1]}, .past = FootPast(look)};
+  FitProblem     problem;
+  FitResult      result;
 
   PetscFunctionBeginUser;
   /* The foot's own normal may lie along the surface where the foot is on an edge. */

@@ -10,7 +10,7 @@ typedef struct {
 struct _n_Neighbourhoods {
   const SurfaceView *view;
   PetscInt          *link_ptr, *link; /* facets across the edges that are not sharp, as compressed rows */
-  PetscBool         *sharp;           /* of each facet: it has a sharp edge */
+  PetscBool         *sharp, *folded;  /* of each facet: it has a sharp edge; the surface is folded at an edge of it */
   PetscReal         *place[3];        /* of each point, one component each; in 2D the third one is along the hoop */
   PetscInt          *seen_facet, *seen_point, stamp;
   PetscInt          *queue;
@@ -52,10 +52,18 @@ static PetscInt ListEdges(const SurfaceView *view, SharedEdge *edges)
   return n;
 }
 
+/* Has the surface been folded at an edge between two facets? They belonged to one flank and now belong to two. On which
+   side they face each other says nothing: the sides of a fold that has closed cross a little. */
+static PetscBool IsFold(const SurfaceView *view, PetscInt f, PetscInt g)
+{
+  return (PetscBool)(Dot(&view->normals[3 * f], &view->normals[3 * g]) < NEIGHBOURHOOD_COSINE &&
+                     Dot(&view->reference[3 * f], &view->reference[3 * g]) >= NEIGHBOURHOOD_COSINE);
+}
+
 /* Links every pair of facets that share an edge which is not sharp in the reference configuration. With link NULL it
    only counts the links. Returns the number of pairs. */
 static PetscInt LinkFacets(const SurfaceView *view, PetscInt n, const SharedEdge *edges, PetscInt *ptr, PetscInt *link,
-                           PetscBool *sharp)
+                           PetscBool *sharp, PetscBool *folded)
 {
   PetscInt count = 0;
 
@@ -67,6 +75,7 @@ static PetscInt LinkFacets(const SurfaceView *view, PetscInt n, const SharedEdge
         sharp[f] = sharp[g] = PETSC_TRUE;
         continue;
       }
+      if (IsFold(view, f, g)) folded[f] = folded[g] = PETSC_TRUE;
       if (link) {
         link[ptr[f]++] = g;
         link[ptr[g]++] = f;
@@ -117,12 +126,12 @@ PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out
   nb->view = view;
   PetscCall(PetscMalloc1(n, &edges));
   PetscCall(PetscCalloc1(view->n_facets + 1, &nb->link_ptr));
-  PetscCall(PetscCalloc1(view->n_facets, &nb->sharp));
+  PetscCall(PetscCalloc2(view->n_facets, &nb->sharp, view->n_facets, &nb->folded));
   ListEdges(view, edges);
   if (n) qsort(edges, n, sizeof(*edges), SharedEdgeCompare);
-  PetscCall(PetscMalloc1(2 * LinkFacets(view, n, edges, nb->link_ptr, NULL, nb->sharp), &nb->link));
+  PetscCall(PetscMalloc1(2 * LinkFacets(view, n, edges, nb->link_ptr, NULL, nb->sharp, nb->folded), &nb->link));
   for (PetscInt f = 0; f < view->n_facets; f++) nb->link_ptr[f + 1] += nb->link_ptr[f];
-  LinkFacets(view, n, edges, nb->link_ptr, nb->link, nb->sharp);
+  LinkFacets(view, n, edges, nb->link_ptr, nb->link, nb->sharp, nb->folded);
   /* Filling has moved every start to the next one's. */
   for (PetscInt f = view->n_facets; f > 0; f--) nb->link_ptr[f] = nb->link_ptr[f - 1];
   nb->link_ptr[0] = 0;
@@ -152,7 +161,7 @@ PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
   PetscCall(PetscFree4((*nb)->queue, (*nb)->reach, (*nb)->rho2, (*nb)->point_rho2));
   PetscCall(PetscFree((*nb)->link_ptr));
   PetscCall(PetscFree((*nb)->link));
-  PetscCall(PetscFree((*nb)->sharp));
+  PetscCall(PetscFree2((*nb)->sharp, (*nb)->folded));
   PetscCall(PetscFree(*nb));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -169,6 +178,24 @@ PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
 PetscBool NeighbourhoodsIsSharp(Neighbourhoods nb, PetscInt f)
 {
   return nb->sharp[f];
+}
+
+/*@
+  NeighbourhoodsIsFolded - says whether the surface has been folded at an edge of a facet that is not sharp in the
+  reference configuration, so that the facets there look different ways now.
+
+  Not collective
+
+  Input Parameters:
++ nb - the object
+- f  - the facet
+
+  Note:
+  Such an edge is the tip of a fold or a crease. A fit knows one side of it only.
+@*/
+PetscBool NeighbourhoodsIsFolded(Neighbourhoods nb, PetscInt f)
+{
+  return nb->folded[f];
 }
 
 /*@

@@ -48,6 +48,7 @@ typedef struct _n_Neighbourhoods *Neighbourhoods;
 PetscErrorCode NeighbourhoodsCreate(const SurfaceView *, Neighbourhoods *);
 PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *);
 PetscBool      NeighbourhoodsIsSharp(Neighbourhoods, PetscInt f);
+PetscBool      NeighbourhoodsIsFolded(Neighbourhoods, PetscInt f);
 PetscBool      NeighbourhoodsMeetSharply(Neighbourhoods, PetscInt f, PetscInt g);
 PetscInt       NeighbourhoodsLinkCount(Neighbourhoods);
 PetscInt       NeighbourhoodsLinks(Neighbourhoods, PetscInt f, PetscInt *first, const PetscInt **links);
