@@ -69,6 +69,12 @@ JOBS = [
     Job("tube_flattened", "rubber tube flattened until it touches itself", [
         Answer("force", 12.545, 0.13, "limit"),
     ], steps=12, pairs=3, picture=["--mirror", "x"], stiff=["contact.2.formulation=node_to_surface"]),
+    Job("hose_squeezed", "hose squeezed flat until its inside creases", [
+        Answer("force", 6.904, 0.4, "limit"),
+    ], steps=12, pairs=3, picture=["--mirror", "x"], stiff=["contact.2.formulation=node_to_surface"]),
+    Job("hose_creased", "the same hose in few elements of second order", [
+        Answer("force", 6.904, 0.4, "limit"),
+    ], steps=16, pairs=3, picture=["--mirror", "x"]),
     Job("stacked_rings", "three loose rings pressed on each other", [
         Answer("push", 0.51247, 0.1, "limit"),
         Answer("foot", 0.51247, 0.1, "limit"),
