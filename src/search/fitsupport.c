@@ -385,8 +385,8 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
 - rung    - the rung on which the fit holds; RUNG_FACET if none does
 
   Note:
-  None is made on a facet at the tip of a fold. It would know one side of it only and go on past the tip, where the sides
-  are nearer to each other than fits are to their facets.
+  None is made on a facet at the tip of a fold. It would know one side of it only and go on past the tip, where the
+sides are nearer to each other than fits are to their facets.
 @*/
 PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, int first, FitProblem *problem, FitResult *result,
                                int *rung)
