@@ -95,6 +95,22 @@ PetscErrorCode CellFacesCreate(RootMesh *root)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  CellFacesFree - frees the list of faces.
+
+  Not collective, on rank 0
+
+  Input Parameter:
+. root - may have no list
+@*/
+PetscErrorCode CellFacesFree(RootMesh *root)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(root->corner_faces));
+  PetscCall(PetscFree(root->cell_faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Counts the cells that have the same face as the first of these. */
 static PetscInt CountSame(const CellFace face[], const CellFace *end)
 {

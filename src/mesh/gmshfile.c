@@ -641,6 +641,23 @@ PetscErrorCode GmshRead(const char *file, GmshMesh *mesh, Complaint *complaint)
 }
 
 /*@
+  GmshFreeBlocks - frees the elements.
+
+  Not collective
+
+  Input Parameter:
+. mesh - its nodes and groups stay
+@*/
+PetscErrorCode GmshFreeBlocks(GmshMesh *mesh)
+{
+  PetscFunctionBeginUser;
+  for (int b = 0; b < mesh->n_blocks; b++) PetscCall(BlockFree(&mesh->blocks[b]));
+  PetscCall(PetscFree(mesh->blocks));
+  mesh->n_blocks = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   GmshReset - frees what GmshRead() made.
 
   Not collective
@@ -651,9 +668,8 @@ PetscErrorCode GmshRead(const char *file, GmshMesh *mesh, Complaint *complaint)
 PetscErrorCode GmshReset(GmshMesh *mesh)
 {
   PetscFunctionBeginUser;
-  for (int b = 0; b < mesh->n_blocks; b++) PetscCall(BlockFree(&mesh->blocks[b]));
+  PetscCall(GmshFreeBlocks(mesh));
   for (int i = 0; i < mesh->n_physicals; i++) PetscCall(PetscFree(mesh->physicals[i].name));
-  PetscCall(PetscFree(mesh->blocks));
   PetscCall(PetscFree(mesh->physicals));
   PetscCall(PetscFree(mesh->notes));
   PetscCall(PetscFree2(mesh->node_tag, mesh->coords));

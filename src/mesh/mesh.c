@@ -10,8 +10,8 @@
 #include "base/refusal.h"
 #include "rootgroups.h"
 #include "rootlinks.h"
+#include "rootmiddles.h"
 #include "rootrigid.h"
-#include "roottopology.h"
 #include <string.h>
 
 /* Coordinates below this part of the model's size are round-off of the mesh generator. */
@@ -91,20 +91,18 @@ static PetscErrorCode ReadFile(Scene scene, const char *file, RootMesh *root, Me
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes the DM from root, whole on rank 0, with points for the nodes and with faces and labels of the groups. */
-static PetscErrorCode CreateTopology(Scene scene, const char *file, RootMesh *root, Mesh mesh)
+/* Finds faces and nodes of the groups, and checks the mesh. */
+static PetscErrorCode FindGroups(Scene scene, const char *file, RootMesh *root, Mesh mesh)
 {
   Complaint complaint = {""};
 
   PetscFunctionBeginUser;
-  PetscCall(RootTopologyCreate(mesh->comm, mesh->dim, mesh->order, root, &mesh->dm));
-  PetscCall(RootTopologySetCoordinates(mesh->dm, mesh->dim, root));
-  PetscCall(RootGroupsShare(mesh->dm, scene, mesh, root));
+  PetscCall(RootGroupsShare(scene, mesh, root));
   if (root) {
     PetscCall(CellFacesCreate(root));
     CellFacesCheck(scene, file, root, &complaint);
-    if (!complaint.text[0]) PetscCall(RootTopologyPlaceNodes(mesh->dm, file, root, &complaint));
-    if (!complaint.text[0]) PetscCall(RootGroupsFind(mesh->dm, scene, file, root, mesh, &complaint));
+    if (!complaint.text[0]) PetscCall(RootMiddlesCheck(file, root, &complaint));
+    if (!complaint.text[0]) PetscCall(RootGroupsFind(scene, file, root, mesh, &complaint));
     if (!complaint.text[0]) RootGroupsCheckUses(scene, root, mesh, &complaint);
   }
   PetscCall(ComplaintRefuse(mesh->comm, &complaint));
@@ -112,13 +110,15 @@ static PetscErrorCode CreateTopology(Scene scene, const char *file, RootMesh *ro
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Partitions the DM, whose cells are all on rank 0, into one part for each rank. */
-static PetscErrorCode PartitionBodies(Scene scene, const RootMesh *root, Mesh mesh)
+/* Decides on rank 0 which rank gets which cell: part, to be freed with PetscFree(). The faces of the cells are freed.
+ */
+static PetscErrorCode PartitionBodies(Scene scene, RootMesh *root, PetscMPIInt **part, Mesh mesh)
 {
-  PetscBool  *contact = NULL;
-  PetscInt   *offsets = NULL, *adjacency = NULL;
-  CellLinks   links = {0};
-  PetscMPIInt size;
+  const PetscInt n       = root ? root->n_cells : 0;
+  PetscBool     *contact = NULL;
+  PetscInt      *offsets = NULL, *adjacency = NULL;
+  CellLinks      links = {0};
+  PetscMPIInt    size;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
@@ -127,7 +127,9 @@ static PetscErrorCode PartitionBodies(Scene scene, const RootMesh *root, Mesh me
     PetscCall(RootLinksFind(scene, root, mesh, &links));
     PetscCall(CellFacesNeighbours(root, &offsets, &adjacency));
   }
-  PetscCall(PartitionCells(mesh->dm, offsets, adjacency, contact, &links, &mesh->partition));
+  if (root) PetscCall(CellFacesFree(root));
+  PetscCall(PetscMalloc1(n, part));
+  PetscCall(PartitionCells(mesh->comm, n, offsets, adjacency, contact, &links, *part, &mesh->partition));
   PetscCall(PetscFree(offsets));
   PetscCall(PetscFree(adjacency));
   PetscCall(PetscFree(contact));
@@ -150,21 +152,21 @@ static PetscErrorCode FreeAllDofs(Mesh mesh)
 /* Creates the whole mesh from its file. root is NULL on ranks other than 0. */
 static PetscErrorCode MeshBuild(Scene scene, const char *file, RootMesh *root, Mesh mesh)
 {
+  PetscMPIInt *part;
+
   PetscFunctionBeginUser;
   PetscCall(ReadFile(scene, file, root, mesh));
-  PetscCall(CreateTopology(scene, file, root, mesh));
+  PetscCall(FindGroups(scene, file, root, mesh));
   PetscCall(RootRigidCreate(scene, root, mesh));
-  PetscCall(PartitionBodies(scene, root, mesh));
   PetscCall(MeshToolsList(scene, mesh));
   PetscCall(FormulationsChoose(scene, root, mesh));
   PetscCall(ContactFormulationsChoose(scene, root, mesh));
   PetscCall(PressureNodesExist(scene, root, mesh));
-  PetscCall(MeshDistribute(root, mesh));
+  PetscCall(PartitionBodies(scene, root, &part, mesh));
+  PetscCall(MeshDistribute(root, part, mesh));
+  PetscCall(PetscFree(part));
   PetscCall(MeshToolsMeasureBolts(scene, mesh));
   PetscCall(FreeAllDofs(mesh));
-  PetscCall(DMSetOptionsPrefix(mesh->dm, "mesh_"));
-  PetscCall(PetscObjectSetName((PetscObject)mesh->dm, "mesh"));
-  PetscCall(DMViewFromOptions(mesh->dm, NULL, "-dm_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -180,9 +182,6 @@ static PetscErrorCode MeshBuild(Scene scene, const char *file, RootMesh *root, M
 
   Output Parameter:
 . created - to be destroyed with MeshDestroy()
-
-  Options Database Key:
-. -mesh_dm_view - views the DMPlex
 
   Note:
   The local section treats every dof as free until MeshSetConstraints() is called. Refuses damaged files, elements that
@@ -243,7 +242,6 @@ PetscErrorCode MeshDestroy(Mesh *destroyed)
   PetscCall(PetscFree(mesh->global_dofs));
   PetscCall(PetscFree(mesh->work));
   PetscCall(PetscSFDestroy(&mesh->node_sf));
-  PetscCall(DMDestroy(&mesh->dm));
   PetscCall(PetscFree(*destroyed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

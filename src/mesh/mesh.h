@@ -1,12 +1,12 @@
-/* The distributed mesh: a DMPlex that is made from gmsh's file and partitioned by METIS, with the reference coordinates
-   of every node, physical groups by name, and gmsh's tags as keys that do not depend on the number of ranks. It knows
+/* The distributed mesh: it is made from gmsh's file and partitioned by METIS, with the reference coordinates of every
+   node, physical groups by name, and gmsh's tags as keys that do not depend on the number of ranks. It knows
    no physics. MeshGenerate() makes the file, MeshCreate() reads, checks and distributes it, MeshDestroy() frees the
    mesh.
 
    The steps are these. gmsh.h makes the file. gmshfile.h reads it on rank 0. rootmesh.h checks it against the scene.
-   cellfaces.h finds the cells that share faces. roottopology.h, rootgroups.h and rootrigid.h make a DMPlex, groups and
-   rigid tools of it. partition.h decides which rank gets which cell, and meshdistribution.h distributes the mesh. The
-   headers that are included here are all that users of a mesh need besides. */
+   cellfaces.h finds the cells that share faces, rootmiddles.h checks middle nodes. rootgroups.h and rootrigid.h find
+   groups and rigid tools. partition.h decides which rank gets which cell, and meshdistribution.h distributes the mesh.
+   The headers that are included here are all that users of a mesh need besides. */
 #pragma once
 #include "mesh/meshdata.h"
 #include "mesh/meshdofs.h"

@@ -1,12 +1,10 @@
 /* What a mesh consists of: the arrays, groups and rigid tools that all parts of it work on. Other folders include
    mesh.h.
 
-   A node carries degrees of freedom and sits on a point of the Plex: a vertex and, for order 2, also an edge, face or
-   cell. Local nodes are numbered 0..n_nodes-1 in the order of these points, so that node n has the local dofs
-   n*dim .. n*dim+dim-1. This includes supports: there is a local dof for every component, a global one only for the
-   free ones. Nodes of pressures follow those of cells, and those of tools with free motions come last.
-   Cells do not overlap: each belongs to one rank, and local cell c is point c of the Plex. Plex' order of nodes is not
-   used anywhere: cells keep gmsh's. */
+   A node carries degrees of freedom. Local nodes are numbered 0..n_nodes-1 in the order of their ids, so that node n
+   has the local dofs n*dim .. n*dim+dim-1. This includes supports: there is a local dof for every component, a global
+   one only for the free ones. Nodes of pressures follow those of cells, and those of tools with free motions come last.
+   Cells do not overlap: each belongs to one rank. Local cells are in the order of their ids, too. */
 #pragma once
 #include "base/petsccompat.h"
 #include "kernels/element.h"
@@ -62,7 +60,6 @@ typedef struct {
 
 typedef struct {
   MPI_Comm comm;
-  DM       dm; /* DMPlex */
   int      dim, order;
   PetscInt n_nodes, n_owned, n_global;
   PetscInt n_free; /* free dofs that this rank owns, after MeshSetConstraints() */
@@ -98,4 +95,4 @@ typedef struct {
   PetscSF    node_sf;     /* from ghost nodes to their owners' nodes */
   PetscInt  *global_dofs; /* NULL until MeshSetConstraints() */
   PetscReal *work;        /* n_nodes*dim */
-} * Mesh;
+} *Mesh;

@@ -1,422 +1,363 @@
-/* Distribution of the mesh: rank 0 packs nodes and cells into sections over the Plex, the sections follow the points to
-   their ranks, and each rank unpacks its arrays. */
+/* Distribution of the mesh: cells and faces of groups are sent to their ranks. Each rank then lists the nodes of its
+   cells, and gets what is known of them, and who owns them, from where the nodes were. */
 #include "meshdistribution.h"
 #include "meshtools.h"
 #include "pressurenodesimpl.h"
-#include "mesh/meshgroup.h"
+#include "base/exchange.h"
 
-/* Entries of a cell's record: id, tag, type, body and number of nodes, then the ids of the nodes, then FACE_ENTRIES
-   numbers (group, number, tag) for each face in a group. */
-enum { CELL_ID, CELL_TAG, CELL_TYPE, CELL_BODY, CELL_NODES, CELL_HEADER, FACE_ENTRIES = 3 };
+/* Entries of a cell's record. The ids of its nodes follow. */
+enum { CELL_ID, CELL_TAG, CELL_TYPE, CELL_BODY, CELL_HEADER };
 
-/* Data that travel with the points: sections over the Plex' chart, and their values. */
+/* What comes to a rank */
 typedef struct {
-  PetscSection ids, places, cells; /* ids and places are on points with a node, cells on cells */
-  PetscInt    *id;                 /* for each node: id and tag */
-  PetscReal   *place;              /* for each node: coordinates relative to the centre */
-  PetscInt    *cell;               /* records of the cells */
+  PetscInt n_cells, width, *cells; /* records of the cells, by ascending id, with room for the most nodes of any cell */
+  PetscInt n_faces;
+  RootFace *faces; /* of groups, by ascending cell */
 } Cargo;
 
-/* Packing */
+/* Cells and faces */
 
-static PetscErrorCode SectionCreate(DM dm, PetscSection *section)
+static void PackCell(const void *context, PetscInt c, void *packed)
 {
-  PetscInt start, end;
+  const RootMesh  *root   = context;
+  const GmshBlock *block  = root->cell_block[c];
+  PetscInt        *record = packed;
+
+  record[CELL_ID]   = c;
+  record[CELL_TAG]  = block->tag[root->cell_item[c]];
+  record[CELL_TYPE] = (PetscInt)block->element->type;
+  record[CELL_BODY] = root->cell_body[c];
+  for (int k = 0; k < block->nodes; k++) record[CELL_HEADER + k] = root->id[RootMeshCellNodes(root, c)[k]];
+}
+
+static void PackFace(const void *context, PetscInt f, void *packed)
+{
+  const RootFace *face = &((const RootMesh *)context)->faces[f];
+  RootFace       *to   = packed;
+
+  to->cell   = face->cell;
+  to->group  = face->group;
+  to->tag    = face->tag;
+  to->number = face->number;
+}
+
+static PetscErrorCode SendCells(Mesh mesh, const RootMesh *root, const PetscMPIInt part[], Cargo *cargo)
+{
+  const PetscInt n_cells = root ? root->n_cells : 0, n_faces = root ? root->n_faces : 0;
+  PetscMPIInt   *to;
+  int            most = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetChart(dm, &start, &end));
-  PetscCall(PetscSectionCreate(PetscObjectComm((PetscObject)dm), section));
-  PetscCall(PetscSectionSetChart(*section, start, end));
+  for (PetscInt c = 0; c < n_cells; c++) most = PetscMax(most, root->cell_block[c]->nodes);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_INT, MPI_MAX, mesh->comm));
+  cargo->width = CELL_HEADER + most;
+  PetscCall(ExchangeRecords(mesh->comm, (size_t)cargo->width * sizeof(PetscInt), n_cells, part, PackCell, root,
+                            &cargo->n_cells, (void **)&cargo->cells));
+  PetscCall(PetscMalloc1(n_faces, &to));
+  for (PetscInt f = 0; f < n_faces; f++) to[f] = part[root->faces[f].cell];
+  PetscCall(ExchangeRecords(mesh->comm, sizeof(RootFace), n_faces, to, PackFace, root, &cargo->n_faces,
+                            (void **)&cargo->faces));
+  PetscCall(PetscFree(to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Creates the sections and allocates their values. Ranks without root have none. */
-static PetscErrorCode CargoAllocate(DM dm, int dim, const RootMesh *root, Cargo *cargo)
+/* Fills the arrays of cells. Their nodes are ids yet. */
+static PetscErrorCode CreateCells(Mesh mesh, const Cargo *cargo)
 {
-  PetscInt n_ids, n_places, n_cells;
+  PetscInt n_entries = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(SectionCreate(dm, &cargo->ids));
-  PetscCall(SectionCreate(dm, &cargo->places));
-  PetscCall(SectionCreate(dm, &cargo->cells));
-  for (PetscInt i = 0; root && i < root->n_nodes; i++) {
-    PetscCall(PetscSectionSetDof(cargo->ids, root->point[i], 2));
-    PetscCall(PetscSectionSetDof(cargo->places, root->point[i], dim));
-  }
-  for (PetscInt c = 0; root && c < root->n_cells; c++)
-    PetscCall(PetscSectionSetDof(cargo->cells, c,
-                                 CELL_HEADER + root->cell_block[c]->nodes +
-                                   FACE_ENTRIES * (root->face_ptr[c + 1] - root->face_ptr[c])));
-  PetscCall(PetscSectionSetUp(cargo->ids));
-  PetscCall(PetscSectionSetUp(cargo->places));
-  PetscCall(PetscSectionSetUp(cargo->cells));
-  PetscCall(PetscSectionGetStorageSize(cargo->ids, &n_ids));
-  PetscCall(PetscSectionGetStorageSize(cargo->places, &n_places));
-  PetscCall(PetscSectionGetStorageSize(cargo->cells, &n_cells));
-  PetscCall(PetscMalloc1(n_ids, &cargo->id));
-  PetscCall(PetscMalloc1(n_places, &cargo->place));
-  PetscCall(PetscMalloc1(n_cells, &cargo->cell));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static void LoadCell(const RootMesh *root, PetscInt c, PetscInt *record)
-{
-  const GmshBlock *block = root->cell_block[c];
-  PetscInt         n     = CELL_HEADER;
-
-  record[CELL_ID]    = c;
-  record[CELL_TAG]   = block->tag[root->cell_item[c]];
-  record[CELL_TYPE]  = (PetscInt)block->element->type;
-  record[CELL_BODY]  = root->cell_body[c];
-  record[CELL_NODES] = block->nodes;
-  for (int k = 0; k < block->nodes; k++) record[n++] = root->id[RootMeshCellNodes(root, c)[k]];
-  for (PetscInt f = root->face_ptr[c]; f < root->face_ptr[c + 1]; f++) {
-    record[n++] = root->faces[f].group;
-    record[n++] = root->faces[f].number;
-    record[n++] = root->faces[f].tag;
-  }
-}
-
-static PetscErrorCode CargoLoad(Mesh mesh, const RootMesh *root, Cargo *cargo)
-{
-  PetscInt offset;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < root->n_nodes; i++) {
-    PetscCall(PetscSectionGetOffset(cargo->ids, root->point[i], &offset));
-    cargo->id[offset]     = i;
-    cargo->id[offset + 1] = root->gmsh.node_tag[root->node[i]];
-    PetscCall(PetscSectionGetOffset(cargo->places, root->point[i], &offset));
-    for (int k = 0; k < mesh->dim; k++)
-      cargo->place[offset + k] = root->gmsh.coords[3 * root->node[i] + k] - mesh->centre[k];
-  }
-  for (PetscInt c = 0; c < root->n_cells; c++) {
-    PetscCall(PetscSectionGetOffset(cargo->cells, c, &offset));
-    LoadCell(root, c, cargo->cell + offset);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Moves one section's values along the migration of points. */
-static PetscErrorCode MoveData(DM dm, PetscSF migration, MPI_Datatype type, PetscSection *section, void **values)
-{
-  PetscSection moved;
-  void        *arrived;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSectionCreate(PetscObjectComm((PetscObject)dm), &moved));
-  PetscCall(DMPlexDistributeData(dm, migration, *section, type, *values, moved, &arrived));
-  PetscCall(PetscSectionDestroy(section));
-  PetscCall(PetscFree(*values));
-  *section = moved;
-  *values  = arrived;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Gives cells to ranks; *dm is replaced and the cargo follows. On one rank nothing moves. */
-static PetscErrorCode Distribute(DM *dm, Cargo *cargo)
-{
-  PetscSF migration;
-  DM      distributed;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexDistribute(*dm, 0, &migration, &distributed));
-  if (distributed) {
-    PetscCall(MoveData(distributed, migration, MPIU_INT, &cargo->ids, (void **)&cargo->id));
-    PetscCall(MoveData(distributed, migration, MPIU_REAL, &cargo->places, (void **)&cargo->place));
-    PetscCall(MoveData(distributed, migration, MPIU_INT, &cargo->cells, (void **)&cargo->cell));
-    PetscCall(PetscSFDestroy(&migration));
-    PetscCall(DMDestroy(dm));
-    *dm = distributed;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CargoFree(Cargo *cargo)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscSectionDestroy(&cargo->ids));
-  PetscCall(PetscSectionDestroy(&cargo->places));
-  PetscCall(PetscSectionDestroy(&cargo->cells));
-  PetscCall(PetscFree(cargo->id));
-  PetscCall(PetscFree(cargo->place));
-  PetscCall(PetscFree(cargo->cell));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Unpacking */
-
-/* Returns the range of a point's values; a point outside the section's chart has none. */
-static PetscErrorCode SectionRange(PetscSection section, PetscInt point, PetscInt *n, PetscInt *offset)
-{
-  PetscInt start, end;
-
-  PetscFunctionBeginUser;
-  *n = *offset = 0;
-  PetscCall(PetscSectionGetChart(section, &start, &end));
-  if (point < start || point >= end) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSectionGetDof(section, point, n));
-  PetscCall(PetscSectionGetOffset(section, point, offset));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Numbers the local nodes in the order of their points and fills their arrays. point_node returns the node of each
-   point, -1 if it has none. */
-static PetscErrorCode CreateNodes(Mesh mesh, const Cargo *cargo, PetscInt **point_node)
-{
-  PetscInt start, end, n, offset;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetChart(mesh->dm, &start, &end));
-  PetscCall(PetscMalloc1(end, point_node));
-  for (PetscInt p = 0; p < end; p++) {
-    PetscCall(SectionRange(cargo->ids, p, &n, &offset));
-    (*point_node)[p] = n ? mesh->n_nodes++ : -1;
-  }
-  mesh->n_body_nodes     = mesh->n_nodes;
-  mesh->n_pressure_nodes = mesh->has_pressures ? mesh->n_body_nodes : 0;
-  mesh->n_nodes += mesh->n_pressure_nodes + TOOL_NODES * mesh->n_tools;
-  PetscCall(PetscMalloc5(mesh->n_nodes, &mesh->node_id, mesh->n_nodes, &mesh->node_tag, mesh->n_nodes,
-                         &mesh->node_owner, mesh->n_nodes, &mesh->node_owner_local, mesh->n_nodes * mesh->dim,
-                         &mesh->coords));
-  PetscCall(PetscMalloc1(mesh->n_nodes * mesh->dim, &mesh->work));
-  for (PetscInt p = 0; p < end; p++) {
-    const PetscInt node = (*point_node)[p];
-
-    if (node < 0) continue;
-    PetscCall(SectionRange(cargo->ids, p, &n, &offset));
-    mesh->node_id[node]  = cargo->id[offset];
-    mesh->node_tag[node] = cargo->id[offset + 1];
-    PetscCall(SectionRange(cargo->places, p, &n, &offset));
-    for (int k = 0; k < mesh->dim; k++) mesh->coords[node * mesh->dim + k] = cargo->place[offset + k];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Gets the number that each point's node has on the rank that owns the point; -1 if the point has no node. */
-static PetscErrorCode OwnersNumbers(PetscSF point_sf, PetscInt n_points, const PetscInt point_node[],
-                                    PetscInt owner_node[])
-{
-  PetscInt n_roots;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(owner_node, point_node, n_points));
-  PetscCall(PetscSFGetGraph(point_sf, &n_roots, NULL, NULL, NULL));
-  if (n_roots < 0) PetscFunctionReturn(PETSC_SUCCESS); /* no graph, because there is one rank */
-  PetscCall(PetscSFBcastBegin(point_sf, MPIU_INT, point_node, owner_node, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(point_sf, MPIU_INT, point_node, owner_node, MPI_REPLACE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Makes a node the copy of node `number` of another rank: its owner, and its entry in the SF. */
-static void SetGhost(Mesh mesh, PetscInt node, PetscInt owner, PetscInt number, PetscInt *leaf, PetscSFNode *remote,
-                     PetscInt *n_ghosts)
-{
-  mesh->node_owner[node]       = owner;
-  mesh->node_owner_local[node] = number;
-  *leaf                        = node;
-  *remote                      = (PetscSFNode){.rank = owner, .index = number};
-  (*n_ghosts)++;
-}
-
-/* Derives owners of nodes from owners of points, and creates the SF between the copies of a node. */
-static PetscErrorCode CreateOwners(Mesh mesh, const PetscInt point_node[])
-{
-  PetscSF            point_sf;
-  const PetscInt     n_tool_nodes = TOOL_NODES * mesh->n_tools, copies = mesh->has_pressures ? 2 : 1;
-  PetscInt           end, n_leaves, n_ghosts = 0, *n_body_nodes, *owner_node, *leaf;
-  const PetscInt    *leaves;
-  const PetscSFNode *remotes;
-  PetscSFNode       *remote;
-  PetscMPIInt        rank, size;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
-  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
-  PetscCall(PetscMalloc1(size, &n_body_nodes));
-  PetscCallMPI(MPI_Allgather(&mesh->n_body_nodes, 1, MPIU_INT, n_body_nodes, 1, MPIU_INT, mesh->comm));
-  PetscCall(DMPlexGetChart(mesh->dm, NULL, &end));
-  PetscCall(DMGetPointSF(mesh->dm, &point_sf));
-  PetscCall(PetscMalloc1(end, &owner_node));
-  PetscCall(OwnersNumbers(point_sf, end, point_node, owner_node));
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
-    mesh->node_owner[i]       = rank;
-    mesh->node_owner_local[i] = i;
-  }
-  PetscCall(PetscSFGetGraph(point_sf, NULL, &n_leaves, &leaves, &remotes));
-  n_leaves = PetscMax(n_leaves, 0);
-  PetscCall(PetscMalloc1(copies * n_leaves + n_tool_nodes, &leaf));
-  PetscCall(PetscMalloc1(copies * n_leaves + n_tool_nodes, &remote));
-  for (PetscInt l = 0; l < n_leaves; l++) {
-    const PetscInt point = leaves ? leaves[l] : l, node = point_node[point];
-
-    for (PetscInt k = 0; k < copies && node >= 0; k++)
-      SetGhost(mesh, node + k * mesh->n_body_nodes, remotes[l].rank,
-               owner_node[point] + k * n_body_nodes[remotes[l].rank], &leaf[n_ghosts], &remote[n_ghosts], &n_ghosts);
-  }
-  mesh->n_body_owned = mesh->n_body_nodes - n_ghosts / copies;
-  for (PetscInt k = 0; k < n_tool_nodes && rank; k++)
-    SetGhost(mesh, copies * mesh->n_body_nodes + k, 0, copies * n_body_nodes[0] + k, &leaf[n_ghosts], &remote[n_ghosts],
-             &n_ghosts);
-  mesh->n_owned = mesh->n_nodes - n_ghosts;
-  PetscCall(PetscFree(n_body_nodes));
-  PetscCall(PetscSFCreate(mesh->comm, &mesh->node_sf));
-  PetscCall(
-    PetscSFSetGraph(mesh->node_sf, mesh->n_nodes, n_ghosts, leaf, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
-  PetscCall(PetscSFSetUp(mesh->node_sf));
-  PetscCall(PetscFree(owner_node));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Returns a cell's record, the faces that follow it, and their number. */
-static PetscErrorCode CellRecord(const Cargo *cargo, PetscInt c, const PetscInt **record, const PetscInt **faces,
-                                 PetscInt *n_faces)
-{
-  PetscInt n, offset;
-
-  PetscFunctionBeginUser;
-  *record = *faces = NULL;
-  *n_faces         = 0;
-  PetscCall(SectionRange(cargo->cells, c, &n, &offset));
-  *record  = cargo->cell + offset;
-  *faces   = *record + CELL_HEADER + (*record)[CELL_NODES];
-  *n_faces = (n - CELL_HEADER - (*record)[CELL_NODES]) / FACE_ENTRIES;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Allocates the cells, and the faces of groups that are in the cells' records. */
-static PetscErrorCode AllocateCells(Mesh mesh, const Cargo *cargo)
-{
-  PetscInt        n_entries = 0, n, *n_faces;
-  const PetscInt *record, *faces;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(mesh->dm, 0, NULL, &mesh->n_cells));
-  PetscCall(PetscCalloc1(mesh->n_groups, &n_faces));
+  mesh->n_cells = cargo->n_cells;
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    n_entries += ElementGet((ElementType)cargo->cells[c * cargo->width + CELL_TYPE])->nodes;
+  PetscCall(PetscMalloc6(mesh->n_cells, &mesh->cell_id, mesh->n_cells, &mesh->cell_type, mesh->n_cells + 1,
+                         &mesh->cell_ptr, n_entries, &mesh->cell_nodes, mesh->n_cells, &mesh->cell_body, mesh->n_cells,
+                         &mesh->cell_tag));
+  mesh->cell_ptr[0] = 0;
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    PetscCall(CellRecord(cargo, c, &record, &faces, &n));
-    n_entries += record[CELL_NODES];
-    for (PetscInt f = 0; f < n; f++) n_faces[faces[FACE_ENTRIES * f]]++;
+    const PetscInt   *record = &cargo->cells[c * cargo->width];
+    const ElementType type   = (ElementType)record[CELL_TYPE];
+
+    mesh->cell_id[c]      = record[CELL_ID];
+    mesh->cell_tag[c]     = record[CELL_TAG];
+    mesh->cell_type[c]    = type;
+    mesh->cell_body[c]    = (int)record[CELL_BODY];
+    mesh->cell_ptr[c + 1] = mesh->cell_ptr[c] + ElementGet(type)->nodes;
+    PetscCall(PetscArraycpy(&mesh->cell_nodes[mesh->cell_ptr[c]], &record[CELL_HEADER], ElementGet(type)->nodes));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives the groups their faces. Those of a cell are behind those of the cells before it. */
+static PetscErrorCode CreateFaces(Mesh mesh, const Cargo *cargo)
+{
+  PetscInt *n_faces, c = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_groups, &n_faces));
+  for (PetscInt f = 0; f < cargo->n_faces; f++) n_faces[cargo->faces[f].group]++;
   for (int g = 0; g < mesh->n_groups; g++) {
     MeshGroup *group = &mesh->groups[g];
 
     PetscCall(
       PetscMalloc3(n_faces[g], &group->face_cell, n_faces[g], &group->face_number, n_faces[g], &group->face_tag));
   }
-  PetscCall(PetscMalloc6(mesh->n_cells, &mesh->cell_id, mesh->n_cells, &mesh->cell_type, mesh->n_cells + 1,
-                         &mesh->cell_ptr, n_entries, &mesh->cell_nodes, mesh->n_cells, &mesh->cell_body, mesh->n_cells,
-                         &mesh->cell_tag));
+  for (PetscInt f = 0; f < cargo->n_faces; f++) {
+    const RootFace *face  = &cargo->faces[f];
+    MeshGroup      *group = &mesh->groups[face->group];
+
+    while (mesh->cell_id[c] < face->cell) c++;
+    group->face_cell[group->n_faces]   = c;
+    group->face_number[group->n_faces] = face->number;
+    group->face_tag[group->n_faces++]  = face->tag;
+  }
   PetscCall(PetscFree(n_faces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the local nodes of cell c by their ids. ids: of all local nodes, ascending; nodes: their local numbers. */
-static PetscErrorCode CreateCellNodes(Mesh mesh, PetscInt c, const PetscInt *record, const PetscInt ids[],
-                                      const PetscInt nodes[])
-{
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < record[CELL_NODES]; k++) {
-    PetscInt place;
+/* Nodes */
 
-    PetscCall(PetscFindInt(record[CELL_HEADER + k], mesh->n_nodes, ids, &place));
-    PetscCheck(place >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB,
-               "Node %" PetscInt_FMT " of cell %" PetscInt_FMT " did not come with it", record[CELL_HEADER + k],
-               record[CELL_ID]);
-    mesh->cell_nodes[mesh->cell_ptr[c] + k] = nodes[place];
-  }
+/* Lists the ids of the cells' nodes, ascending, and replaces them in the cells by their places in the list. */
+static PetscErrorCode ListNodes(Mesh mesh, PetscInt *n, PetscInt **ids)
+{
+  const PetscInt n_entries = mesh->cell_ptr[mesh->n_cells];
+
+  PetscFunctionBeginUser;
+  *n = n_entries;
+  PetscCall(PetscMalloc1(n_entries, ids));
+  PetscCall(PetscArraycpy(*ids, mesh->cell_nodes, n_entries));
+  PetscCall(PetscSortRemoveDupsInt(n, *ids));
+  PetscCall(PetscRealloc((size_t)*n * sizeof(PetscInt), ids));
+  for (PetscInt k = 0; k < n_entries; k++) PetscCall(PetscFindInt(mesh->cell_nodes[k], *n, *ids, &mesh->cell_nodes[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fills the local cells and the groups' faces. */
-static PetscErrorCode CreateCells(Mesh mesh, const Cargo *cargo)
+/* Makes the SF from this rank's nodes to where they were before distribution. */
+static PetscErrorCode CreateHomes(Mesh mesh, const RootMesh *root, PetscInt n, const PetscInt ids[], PetscSF *homes)
 {
-  PetscInt        n_faces, *ids, *nodes;
-  const PetscInt *record, *faces;
+  const PetscInt mine = root ? root->n_nodes : 0;
+  PetscInt      *counts, start = 0;
+  PetscSFNode   *home;
+  PetscMPIInt    size, r = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(AllocateCells(mesh, cargo));
-  PetscCall(PetscMalloc2(mesh->n_nodes, &ids, mesh->n_nodes, &nodes));
-  PetscCall(PetscArraycpy(ids, mesh->node_id, mesh->n_nodes));
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) nodes[i] = i;
-  PetscCall(PetscSortIntWithArray(mesh->n_nodes, ids, nodes));
-  mesh->cell_ptr[0] = 0;
-  for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    PetscCall(CellRecord(cargo, c, &record, &faces, &n_faces));
-    mesh->cell_id[c]      = record[CELL_ID];
-    mesh->cell_tag[c]     = record[CELL_TAG];
-    mesh->cell_type[c]    = (ElementType)record[CELL_TYPE];
-    mesh->cell_body[c]    = (int)record[CELL_BODY];
-    mesh->cell_ptr[c + 1] = mesh->cell_ptr[c] + record[CELL_NODES];
-    PetscCall(CreateCellNodes(mesh, c, record, ids, nodes));
-    for (PetscInt f = 0; f < n_faces; f++, faces += FACE_ENTRIES) {
-      MeshGroup *group = &mesh->groups[faces[0]];
+  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+  PetscCall(PetscMalloc1(size, &counts));
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPIU_INT, counts, 1, MPIU_INT, mesh->comm));
+  PetscCall(PetscMalloc1(n, &home));
+  for (PetscInt i = 0; i < n; i++) {
+    while (ids[i] >= start + counts[r]) start += counts[r++];
+    home[i] = (PetscSFNode){.rank = r, .index = ids[i] - start};
+  }
+  PetscCall(PetscSFCreate(mesh->comm, homes));
+  PetscCall(PetscSFSetGraph(*homes, mine, n, NULL, PETSC_OWN_POINTER, home, PETSC_OWN_POINTER));
+  PetscCall(PetscSFSetUp(*homes));
+  PetscCall(PetscFree(counts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-      group->face_cell[group->n_faces]   = c;
-      group->face_number[group->n_faces] = (int)faces[1];
-      group->face_tag[group->n_faces++]  = faces[2];
+/* Gets the tags and coordinates of this rank's nodes. */
+static PetscErrorCode FetchNodes(Mesh mesh, const RootMesh *root, PetscSF homes)
+{
+  const PetscInt n = root ? root->n_nodes : 0;
+  PetscInt      *tags;
+  PetscReal     *places;
+  MPI_Datatype   place;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &tags, n * mesh->dim, &places));
+  for (PetscInt i = 0; i < n; i++) {
+    tags[i] = root->gmsh.node_tag[root->node[i]];
+    for (int k = 0; k < mesh->dim; k++)
+      places[i * mesh->dim + k] = root->gmsh.coords[3 * root->node[i] + k] - mesh->centre[k];
+  }
+  PetscCallMPI(MPI_Type_contiguous(mesh->dim, MPIU_REAL, &place));
+  PetscCallMPI(MPI_Type_commit(&place));
+  PetscCall(PetscSFBcastBegin(homes, MPIU_INT, tags, mesh->node_tag, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(homes, MPIU_INT, tags, mesh->node_tag, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(homes, place, places, mesh->coords, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(homes, place, places, mesh->coords, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_free(&place));
+  PetscCall(PetscFree2(tags, places));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives the groups their nodes, from the marks. */
+static PetscErrorCode FetchGroupNodes(Mesh mesh, const RootMesh *root, PetscSF homes)
+{
+  int *marks;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(mesh->n_body_nodes, &marks));
+  for (int g = 0; g < mesh->n_groups; g++) {
+    MeshGroup *group = &mesh->groups[g];
+    const int  bit = 1 << g % ROOT_MARKS, *sent = root ? root->marks + g / ROOT_MARKS * root->n_nodes : NULL;
+
+    if (g % ROOT_MARKS == 0) {
+      PetscCall(PetscSFBcastBegin(homes, MPI_INT, sent, marks, MPI_REPLACE));
+      PetscCall(PetscSFBcastEnd(homes, MPI_INT, sent, marks, MPI_REPLACE));
     }
+    for (PetscInt i = 0; i < mesh->n_body_nodes; i++) group->n_nodes += (marks[i] & bit) != 0;
+    PetscCall(PetscMalloc1(group->n_nodes, &group->nodes));
+    group->n_nodes = 0;
+    for (PetscInt i = 0; i < mesh->n_body_nodes; i++)
+      if (marks[i] & bit) group->nodes[group->n_nodes++] = i;
   }
-  PetscCall(PetscFree2(ids, nodes));
+  PetscCall(PetscFree(marks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gets a group's nodes from its label, which includes nodes that only another rank's face touches. */
-static PetscErrorCode CreateGroupNodes(Mesh mesh, MeshGroup *group, const PetscInt point_node[])
+/* Fetches the largest value that any copy of a node has. */
+static PetscErrorCode FetchLargest(PetscSF homes, PetscInt n_homes, const PetscInt values[], PetscInt largest[])
 {
-  char            name[MESH_TEXT];
-  IS              points;
-  const PetscInt *point;
-  PetscInt        n;
+  PetscInt *at_home;
 
   PetscFunctionBeginUser;
-  MeshGroupLabel(mesh, group, name);
-  PetscCall(DMGetStratumIS(mesh->dm, name, 1, &points));
-  if (!points) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ISGetLocalSize(points, &n));
-  PetscCall(ISGetIndices(points, &point));
-  PetscCall(PetscMalloc1(n, &group->nodes));
-  for (PetscInt i = 0; i < n; i++)
-    if (point_node[point[i]] >= 0) group->nodes[group->n_nodes++] = point_node[point[i]];
-  PetscCall(PetscSortInt(group->n_nodes, group->nodes));
-  PetscCall(ISRestoreIndices(points, &point));
-  PetscCall(ISDestroy(&points));
+  PetscCall(PetscMalloc1(n_homes, &at_home));
+  for (PetscInt i = 0; i < n_homes; i++) at_home[i] = -1;
+  PetscCall(PetscSFReduceBegin(homes, MPIU_INT, values, at_home, MPI_MAX));
+  PetscCall(PetscSFReduceEnd(homes, MPIU_INT, values, at_home, MPI_MAX));
+  PetscCall(PetscSFBcastBegin(homes, MPIU_INT, at_home, largest, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(homes, MPIU_INT, at_home, largest, MPI_REPLACE));
+  PetscCall(PetscFree(at_home));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the owners of the cells' nodes, the highest rank that has them, and their numbers there. */
+static PetscErrorCode FindOwners(Mesh mesh, const RootMesh *root, PetscSF homes)
+{
+  const PetscInt n = mesh->n_body_nodes, n_homes = root ? root->n_nodes : 0;
+  PetscInt      *mine;
+  PetscMPIInt    rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  PetscCall(PetscMalloc1(n, &mine));
+  for (PetscInt i = 0; i < n; i++) mine[i] = rank;
+  PetscCall(FetchLargest(homes, n_homes, mine, mesh->node_owner));
+  mesh->n_body_owned = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    mine[i] = mesh->node_owner[i] == rank ? i : -1;
+    mesh->n_body_owned += mine[i] >= 0;
+  }
+  PetscCall(FetchLargest(homes, n_homes, mine, mesh->node_owner_local));
+  PetscCall(PetscFree(mine));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Derives the owners of the nodes of pressures from those of the cells' nodes. Tools belong to the first rank. */
+static PetscErrorCode FindOtherOwners(Mesh mesh)
+{
+  const PetscInt first_tool = mesh->n_body_nodes + mesh->n_pressure_nodes;
+  PetscInt      *n_body_nodes;
+  PetscMPIInt    size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+  PetscCall(PetscMalloc1(size, &n_body_nodes));
+  PetscCallMPI(MPI_Allgather(&mesh->n_body_nodes, 1, MPIU_INT, n_body_nodes, 1, MPIU_INT, mesh->comm));
+  for (PetscInt i = 0; i < mesh->n_pressure_nodes; i++) {
+    mesh->node_owner[PressureNodeOf(mesh, i)]       = mesh->node_owner[i];
+    mesh->node_owner_local[PressureNodeOf(mesh, i)] = n_body_nodes[mesh->node_owner[i]] + mesh->node_owner_local[i];
+  }
+  for (PetscInt i = first_tool; i < mesh->n_nodes; i++) {
+    mesh->node_owner[i]       = 0;
+    mesh->node_owner_local[i] = (mesh->has_pressures ? 2 : 1) * n_body_nodes[0] + i - first_tool;
+  }
+  PetscCall(PetscFree(n_body_nodes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Creates the SF between the copies of a node. */
+static PetscErrorCode CreateNodeSF(Mesh mesh)
+{
+  PetscInt     n_ghosts = 0, *leaf;
+  PetscSFNode *remote;
+  PetscMPIInt  rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) n_ghosts += mesh->node_owner[i] != rank;
+  mesh->n_owned = mesh->n_nodes - n_ghosts;
+  PetscCall(PetscMalloc1(n_ghosts, &leaf));
+  PetscCall(PetscMalloc1(n_ghosts, &remote));
+  n_ghosts = 0;
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
+    if (mesh->node_owner[i] == rank) continue;
+    leaf[n_ghosts]     = i;
+    remote[n_ghosts++] = (PetscSFNode){.rank = mesh->node_owner[i], .index = mesh->node_owner_local[i]};
+  }
+  PetscCall(PetscSFCreate(mesh->comm, &mesh->node_sf));
+  PetscCall(
+    PetscSFSetGraph(mesh->node_sf, mesh->n_nodes, n_ghosts, leaf, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
+  PetscCall(PetscSFSetUp(mesh->node_sf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Allocates the arrays of nodes for n nodes of cells and those that follow them. */
+static PetscErrorCode AllocateNodes(Mesh mesh, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  mesh->n_body_nodes     = n;
+  mesh->n_pressure_nodes = mesh->has_pressures ? n : 0;
+  mesh->n_nodes          = n + mesh->n_pressure_nodes + TOOL_NODES * mesh->n_tools;
+  PetscCall(PetscMalloc5(mesh->n_nodes, &mesh->node_id, mesh->n_nodes, &mesh->node_tag, mesh->n_nodes,
+                         &mesh->node_owner, mesh->n_nodes, &mesh->node_owner_local, mesh->n_nodes * mesh->dim,
+                         &mesh->coords));
+  PetscCall(PetscMalloc1(mesh->n_nodes * mesh->dim, &mesh->work));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes all nodes. root is emptied as soon as it has said what it knows of them. */
+static PetscErrorCode CreateNodes(RootMesh *root, Mesh mesh)
+{
+  PetscInt n, *ids;
+  PetscSF  homes;
+
+  PetscFunctionBeginUser;
+  PetscCall(ListNodes(mesh, &n, &ids));
+  PetscCall(AllocateNodes(mesh, n));
+  PetscCall(PetscArraycpy(mesh->node_id, ids, n));
+  PetscCall(PetscFree(ids));
+  PetscCall(CreateHomes(mesh, root, n, mesh->node_id, &homes));
+  PetscCall(FetchNodes(mesh, root, homes));
+  PetscCall(FetchGroupNodes(mesh, root, homes));
+  PetscCall(FindOwners(mesh, root, homes));
+  PetscCall(PetscSFDestroy(&homes));
+  if (root) PetscCall(RootMeshReset(root));
+  PetscCall(MeshToolsPlaceNodes(mesh));
+  PressureNodesPlace(mesh);
+  PetscCall(FindOtherOwners(mesh));
+  PetscCall(CreateNodeSF(mesh));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  MeshDistribute - moves nodes, cells and faces of groups to the ranks of their points.
+  MeshDistribute - moves cells, nodes and faces of groups to their ranks.
 
   Collective
 
   Input Parameters:
-+ root - on rank 0, with points and faces; reset as soon as it is packed. NULL on other ranks
-- mesh - dm with its partitioner and the groups' labels, centre, and groups are read
++ root - on rank 0, with faces and marks; emptied. NULL on other ranks
+. part - on rank 0: rank of each cell
+- mesh - centre, groups, tools and whether there are pressures are read
 
   Note:
-  The DM is replaced by the distributed one. All arrays of nodes and cells, and the groups' nodes and faces, are set.
-  Cells do not overlap. A node belongs to the rank to which the DM's point SF gives its point.
+  All arrays of nodes and cells, and the groups' nodes and faces, are set. Cells do not overlap. A node belongs to the
+  highest rank that has a cell with it.
 @*/
-PetscErrorCode MeshDistribute(RootMesh *root, Mesh mesh)
+PetscErrorCode MeshDistribute(RootMesh *root, const PetscMPIInt part[], Mesh mesh)
 {
-  Cargo     cargo;
-  PetscInt *point_node;
+  Cargo cargo;
 
   PetscFunctionBeginUser;
-  PetscCall(CargoAllocate(mesh->dm, mesh->dim, root, &cargo));
-  if (root) {
-    PetscCall(CargoLoad(mesh, root, &cargo));
-    PetscCall(RootMeshReset(root));
-  }
-  PetscCall(Distribute(&mesh->dm, &cargo));
-  PetscCall(CreateNodes(mesh, &cargo, &point_node));
-  PetscCall(MeshToolsPlaceNodes(mesh));
-  PressureNodesPlace(mesh);
-  PetscCall(CreateOwners(mesh, point_node));
+  PetscCall(SendCells(mesh, root, part, &cargo));
+  if (root) PetscCall(RootMeshFreeCells(root));
   PetscCall(CreateCells(mesh, &cargo));
-  for (int g = 0; g < mesh->n_groups; g++) PetscCall(CreateGroupNodes(mesh, &mesh->groups[g], point_node));
-  PetscCall(PetscFree(point_node));
-  PetscCall(CargoFree(&cargo));
+  PetscCall(PetscFree(cargo.cells));
+  PetscCall(CreateFaces(mesh, &cargo));
+  PetscCall(PetscFree(cargo.faces));
+  PetscCall(CreateNodes(root, mesh));
   PetscCallMPI(MPI_Allreduce(&mesh->n_owned, &mesh->n_global, 1, MPIU_INT, MPI_SUM, mesh->comm));
   PetscCallMPI(MPI_Allreduce(&mesh->n_cells, &mesh->n_cells_global, 1, MPIU_INT, MPI_SUM, mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -9,4 +9,3 @@ int            MeshFindGroup(Mesh, int dim, const char *name);
 MeshRigid     *MeshFindRigid(Mesh, const char *name);
 int            MeshFindBody(Scene, const char *name, PetscBool rigid);
 ElementType    MeshFaceNodes(Mesh, const MeshGroup *, PetscInt f, PetscInt nodes[FACE_MAX_NODES]);
-void           MeshGroupLabel(Mesh, const MeshGroup *, char label[MESH_TEXT]);

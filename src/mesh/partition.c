@@ -174,69 +174,50 @@ PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Lists the cells by part, as PETSCPARTITIONERSHELL requires. */
-static PetscErrorCode PartitionSort(PetscInt n, const PetscInt part[], PetscMPIInt parts, const PetscInt sizes[],
-                                    PetscInt cells[])
-{
-  PetscInt *next;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(parts + 1, &next));
-  for (PetscMPIInt p = 0; p < parts; p++) next[p + 1] = next[p] + sizes[p];
-  for (PetscInt c = 0; c < n; c++) cells[next[part[c]]++] = c;
-  PetscCall(PetscFree(next));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   PartitionCells - decides which rank gets which cell.
 
   Collective
 
   Input Parameters:
-+ dm        - DMPlex, all its cells on rank 0
++ comm      - the ranks
+. n         - on rank 0: number of cells
 . offsets   - on rank 0: start of each cell's neighbours in adjacency
 . adjacency - on rank 0: neighbours across faces
 . contact   - on rank 0: for each cell, whether it has a face in contact; a second weight, so that contact work is
   balanced too
 - links     - on rank 0: cells that face each other across contact, which are kept on one rank where that is cheap
 
-  Output Parameter:
-. partition - tool, edge cut and imbalances, the same on all ranks
-
-  Note:
-  The DM gets a partitioner that holds the result. DMPlexDistribute() follows it afterwards.
+  Output Parameters:
++ ranks     - on rank 0: the rank of each cell [n]
+- partition - tool, edge cut and imbalances, the same on all ranks
 @*/
-PetscErrorCode PartitionCells(DM dm, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[],
-                              const CellLinks *links, Partition *partition)
+PetscErrorCode PartitionCells(MPI_Comm comm, PetscInt n, const PetscInt offsets[], const PetscInt adjacency[],
+                              const PetscBool contact[], const CellLinks *links, PetscMPIInt ranks[],
+                              Partition *partition)
 {
-  MPI_Comm         comm = PetscObjectComm((PetscObject)dm);
-  PetscPartitioner partitioner;
-  PetscMPIInt      rank, size;
-  PetscInt         n, *sizes, *contact_sizes, *cells, *part;
-  PetscReal        imbalances[2] = {1, 1};
+  PetscMPIInt rank, size;
+  PetscInt   *count, *part;
+  PetscReal   imbalances[2] = {1, 1};
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   *partition = (Partition){.tool = "none", .imbalance_cells = 1, .imbalance_contact = 1};
+  if (size == 1) PetscCall(PetscArrayzero(ranks, n));
   if (size == 1) PetscFunctionReturn(PETSC_SUCCESS);
   partition->tool = "metis";
-  PetscCall(DMPlexGetHeightStratum(dm, 0, NULL, &n));
-  PetscCall(PetscCalloc4(size, &sizes, size, &contact_sizes, n, &cells, n, &part));
   if (!rank) {
+    PetscCall(PetscMalloc2(size, &count, n, &part));
     PetscCall(PartitionGraph(n, offsets, adjacency, contact, links, size, part, &partition->edge_cut));
-    imbalances[0] = PartitionImbalance(n, part, NULL, size, sizes);
-    imbalances[1] = PartitionImbalance(n, part, contact, size, contact_sizes);
-    PetscCall(PartitionSort(n, part, size, sizes, cells));
+    imbalances[0] = PartitionImbalance(n, part, NULL, size, count);
+    imbalances[1] = PartitionImbalance(n, part, contact, size, count);
+    for (PetscInt c = 0; c < n; c++) ranks[c] = (PetscMPIInt)part[c];
+    PetscCall(PetscFree2(count, part));
   }
-  PetscCall(DMPlexGetPartitioner(dm, &partitioner));
-  PetscCall(PetscPartitionerSetType(partitioner, PETSCPARTITIONERSHELL));
-  PetscCall(PetscPartitionerShellSetPartition(partitioner, size, sizes, cells));
   PetscCallMPI(MPI_Bcast(&partition->edge_cut, 1, MPIU_INT, 0, comm));
   PetscCallMPI(MPI_Bcast(imbalances, 2, MPIU_REAL, 0, comm));
   partition->imbalance_cells   = imbalances[0];
   partition->imbalance_contact = imbalances[1];
-  PetscCall(PetscFree4(sizes, contact_sizes, cells, part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,6 @@
 /* Decides which rank gets which cell. METIS partitions the cells' dual graph with its k-way method. Cells that face
    each other across contact are joined by links. Cells and contact cells are balanced at the same time.
-   PartitionCells() does this for a DMPlex that is on rank 0; PartitionGraph() does it for any graph. */
+   PartitionCells() does this for a graph that is on rank 0, one part for each rank; PartitionGraph() for any parts. */
 #pragma once
 #include "base/petsccompat.h"
 
@@ -16,8 +16,8 @@ typedef struct {
   PetscInt n, *cell;
 } CellLinks;
 
-PetscErrorCode PartitionCells(DM, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[],
-                              const CellLinks *, Partition *);
+PetscErrorCode PartitionCells(MPI_Comm, PetscInt n, const PetscInt offsets[], const PetscInt adjacency[],
+                              const PetscBool contact[], const CellLinks *, PetscMPIInt part[], Partition *);
 PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[],
                               const PetscBool contact[], const CellLinks *, PetscInt parts, PetscInt part[],
                               PetscInt *edge_cut);

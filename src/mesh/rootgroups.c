@@ -1,4 +1,4 @@
-/* Physical groups before distribution: faces, labels and the checks of how the scene uses groups. */
+/* Physical groups before distribution: faces, marked nodes and the checks of how the scene uses groups. */
 #include "rootgroups.h"
 #include "cellfaces.h"
 #include "rootskins.h"
@@ -33,20 +33,18 @@ static PetscErrorCode ShareGroup(Mesh mesh, const GmshPhysical *physical, MeshGr
 }
 
 /*@
-  RootGroupsShare - makes mesh->groups on all ranks, without nodes and faces, and the groups' empty labels.
+  RootGroupsShare - makes mesh->groups on all ranks, without nodes and faces.
 
   Collective
 
   Input Parameters:
-+ dm    - from RootTopologyCreate()
-. scene - its contact pairs may ask for the skins of bodies, which are the last groups
++ scene - its contact pairs may ask for the skins of bodies, which are the last groups
 . mesh  - its groups are set
 - root  - on rank 0; NULL on other ranks
 @*/
-PetscErrorCode RootGroupsShare(DM dm, Scene scene, Mesh mesh, const RootMesh *root)
+PetscErrorCode RootGroupsShare(Scene scene, Mesh mesh, const RootMesh *root)
 {
   const int skins = RootSkinsCount(scene);
-  char      label[MESH_TEXT];
 
   PetscFunctionBeginUser;
   if (root) mesh->n_groups = root->gmsh.n_physicals;
@@ -54,12 +52,8 @@ PetscErrorCode RootGroupsShare(DM dm, Scene scene, Mesh mesh, const RootMesh *ro
   mesh->n_groups += skins;
   PetscCall(PetscCalloc1(mesh->n_groups, &mesh->groups));
   PetscCall(RootSkinsShare(scene, mesh, mesh->n_groups - skins));
-  for (int g = 0; g < mesh->n_groups; g++) {
-    if (g < mesh->n_groups - skins)
-      PetscCall(ShareGroup(mesh, root ? &root->gmsh.physicals[g] : NULL, &mesh->groups[g]));
-    MeshGroupLabel(mesh, &mesh->groups[g], label);
-    PetscCall(DMCreateLabel(dm, label));
-  }
+  for (int g = 0; g < mesh->n_groups - skins; g++)
+    PetscCall(ShareGroup(mesh, root ? &root->gmsh.physicals[g] : NULL, &mesh->groups[g]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,25 +87,21 @@ static void FindFace(const RootMesh *root, const GmshBlock *block, PetscInt item
   *interior    = n_cells > 1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Adds one element of a deformable body's group: its face, if the group is a surface, and its nodes' points to the
-   label. loose: the element does not lie on a body. */
-static PetscErrorCode AddElement(RootMesh *root, const GmshBlock *block, PetscInt item, int g, PetscBool surface,
-                                 DMLabel label, PetscBool *loose)
+/* Adds one element of a deformable body's group: its face, if the group is a surface, and marks its nodes. Returns
+   whether the element does not lie on a body. */
+static PetscBool AddElement(RootMesh *root, const GmshBlock *block, PetscInt item, int g, PetscBool surface)
 {
   RootFace  face     = {.group = g};
   PetscBool interior = PETSC_FALSE;
 
-  PetscFunctionBeginUser;
   if (surface) FindFace(root, block, item, &face, &interior);
-  *loose = IsLoose(root, block, item) || (surface && face.cell < 0) ? PETSC_TRUE : PETSC_FALSE;
-  if (*loose) PetscFunctionReturn(PETSC_SUCCESS);
+  if (IsLoose(root, block, item) || (surface && face.cell < 0)) return PETSC_TRUE;
   if (surface) {
     root->faces[root->n_faces++] = face;
     root->interior[g] += interior;
   }
-  for (int k = 0; k < block->nodes; k++)
-    PetscCall(DMLabelSetValue(label, root->point[root->id[block->connectivity[item * block->nodes + k]]], 1));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < block->nodes; k++) RootMeshMark(root, g, root->id[block->connectivity[item * block->nodes + k]]);
+  return PETSC_FALSE;
 }
 
 /* Complains if an element of a rigid tool is a face of a body. */
@@ -133,23 +123,12 @@ static void CheckRigidBlock(Scene scene, const char *file, const RootMesh *root,
 }
 
 /* Adds the elements of one block to one of its groups. */
-static PetscErrorCode AddCellBlock(DM dm, Scene scene, RootMesh *root, const GmshBlock *block, int g, Mesh mesh)
+static void AddCellBlock(Scene scene, RootMesh *root, const GmshBlock *block, int g, Mesh mesh)
 {
   MeshGroup      *group   = &mesh->groups[g];
   const PetscBool surface = group->dim == scene->dim - 1 ? PETSC_TRUE : PETSC_FALSE;
-  DMLabel         label;
-  char            name[MESH_TEXT];
 
-  PetscFunctionBeginUser;
-  MeshGroupLabel(mesh, group, name);
-  PetscCall(DMGetLabel(dm, name, &label));
-  for (PetscInt item = 0; item < block->n; item++) {
-    PetscBool loose;
-
-    PetscCall(AddElement(root, block, item, g, surface, label, &loose));
-    group->n_loose += loose;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt item = 0; item < block->n; item++) group->n_loose += AddElement(root, block, item, g, surface);
 }
 
 /* Sorts the faces by cell; faces of one cell keep their order. */
@@ -173,22 +152,21 @@ static PetscErrorCode SortGroupFaces(RootMesh *root)
 }
 
 /*@
-  RootGroupsFind - finds the groups' faces, sorted by cell, and labels the points of their nodes.
+  RootGroupsFind - finds the groups' faces, sorted by cell, and marks their nodes.
 
   Not collective, on rank 0
 
   Input Parameters:
-+ dm    - from RootTopologyCreate()
-. scene - says which groups are rigid tools
++ scene - says which groups are rigid tools
 . file  - name of the mesh, for the complaint
-- root  - after CellFacesCreate() and RootTopologyPlaceNodes()
+- root  - after CellFacesCreate()
 
   Output Parameters:
-+ root      - its faces are set
++ root      - its faces and marks are set
 . mesh      - the groups' numbers of elements are set, on rank 0 only
 - complaint - a rigid tool that shares faces with a body
 @*/
-PetscErrorCode RootGroupsFind(DM dm, Scene scene, const char *file, RootMesh *root, Mesh mesh, Complaint *complaint)
+PetscErrorCode RootGroupsFind(Scene scene, const char *file, RootMesh *root, Mesh mesh, Complaint *complaint)
 {
   const GmshMesh *gmsh      = &root->gmsh;
   PetscInt        max_faces = 0;
@@ -198,6 +176,7 @@ PetscErrorCode RootGroupsFind(DM dm, Scene scene, const char *file, RootMesh *ro
     if (gmsh->blocks[b].dim == scene->dim - 1) max_faces += gmsh->blocks[b].n * gmsh->blocks[b].n_physicals;
   PetscCall(PetscMalloc1(max_faces, &root->faces));
   PetscCall(PetscCalloc1(mesh->n_groups, &root->interior));
+  PetscCall(PetscCalloc1((mesh->n_groups + ROOT_MARKS - 1) / ROOT_MARKS * root->n_nodes, &root->marks));
   for (int b = 0; b < gmsh->n_blocks; b++) {
     const GmshBlock *block = &gmsh->blocks[b];
 
@@ -208,10 +187,10 @@ PetscErrorCode RootGroupsFind(DM dm, Scene scene, const char *file, RootMesh *ro
       if (IsRigidGroup(scene, group->dim, group->name))
         CheckRigidBlock(scene, file, root, block, group->name, complaint);
       else
-        PetscCall(AddCellBlock(dm, scene, root, block, block->physical[i], mesh));
+        AddCellBlock(scene, root, block, block->physical[i], mesh);
     }
   }
-  PetscCall(RootSkinsAdd(dm, scene, root, mesh, gmsh->n_physicals));
+  PetscCall(RootSkinsAdd(scene, root, mesh, gmsh->n_physicals));
   PetscCall(SortGroupFaces(root));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,6 @@
 /* Reads the mesh on rank 0, checks it against the scene, and numbers cells and nodes. */
 #include "rootmesh.h"
+#include "cellfaces.h"
 #include "mesh/meshgroup.h"
 #include <string.h>
 
@@ -43,6 +44,21 @@ int RootMeshReversedNode(const Element *element, int k)
   if (element->dim == 1) return k < 2 ? 1 - k : k;
   if (k < corners) return (corners - k) % corners;
   return k < 2 * corners ? corners + (2 * corners - 1 - k) : k;
+}
+
+/*@
+  RootMeshMark - says that a node is on a group.
+
+  Not collective, on rank 0
+
+  Input Parameters:
++ root - after its marks were made
+. g    - number of the group
+- id   - of the node
+@*/
+void RootMeshMark(RootMesh *root, int g, PetscInt id)
+{
+  root->marks[g / ROOT_MARKS * root->n_nodes + id] |= 1 << g % ROOT_MARKS;
 }
 
 /* Does the outline of a plane cell run clockwise? */
@@ -322,8 +338,8 @@ static PetscErrorCode RootMeshNumberNodes(RootMesh *root)
   const PetscInt n = root->gmsh.n_nodes;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n, &root->node, n, &root->id, n, &root->vertex, n, &root->point));
-  for (PetscInt i = 0; i < n; i++) root->id[i] = root->vertex[i] = root->point[i] = -1;
+  PetscCall(PetscMalloc3(n, &root->node, n, &root->id, n, &root->vertex));
+  for (PetscInt i = 0; i < n; i++) root->id[i] = root->vertex[i] = -1;
   for (PetscInt c = 0; c < root->n_cells; c++)
     for (int k = 0; k < root->cell_block[c]->nodes; k++) root->id[RootMeshCellNodes(root, c)[k]] = 0;
   for (PetscInt i = 0; i < n; i++) {
@@ -424,6 +440,25 @@ PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, Ro
 }
 
 /*@
+  RootMeshFreeCells - frees the cells, the elements of the file and the faces.
+
+  Not collective, on rank 0
+
+  Input Parameter:
+. root - its nodes and marks stay
+@*/
+PetscErrorCode RootMeshFreeCells(RootMesh *root)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(root->cell_item, root->cell_block, root->cell_body));
+  PetscCall(PetscFree(root->face_ptr));
+  PetscCall(PetscFree(root->faces));
+  PetscCall(CellFacesFree(root));
+  PetscCall(GmshFreeBlocks(&root->gmsh));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   RootMeshReset - frees the contents of the root mesh.
 
   Not collective, on rank 0
@@ -434,13 +469,10 @@ PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, Ro
 PetscErrorCode RootMeshReset(RootMesh *root)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree3(root->cell_item, root->cell_block, root->cell_body));
-  PetscCall(PetscFree4(root->node, root->id, root->vertex, root->point));
-  PetscCall(PetscFree(root->face_ptr));
-  PetscCall(PetscFree(root->faces));
-  PetscCall(PetscFree(root->corner_faces));
-  PetscCall(PetscFree(root->cell_faces));
+  PetscCall(RootMeshFreeCells(root));
+  PetscCall(PetscFree3(root->node, root->id, root->vertex));
   PetscCall(PetscFree(root->interior));
+  PetscCall(PetscFree(root->marks));
   PetscCall(GmshReset(&root->gmsh));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

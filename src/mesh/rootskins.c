@@ -130,27 +130,24 @@ static void MarkInner(Scene scene, const RootMesh *root, Mesh mesh, PetscBool *i
   }
 }
 
-/* Adds a face to a skin, and its nodes to the group's label. */
-static PetscErrorCode AddFace(RootMesh *root, const RootFace *face, DMLabel label)
+/* Adds a face to a skin, and marks its nodes. */
+static void AddFace(RootMesh *root, const RootFace *face)
 {
   const Element  *element = root->cell_block[face->cell]->element;
   const PetscInt *nodes   = RootMeshCellNodes(root, face->cell);
 
-  PetscFunctionBeginUser;
   root->faces[root->n_faces++] = *face;
   for (int k = 0; k < ElementGet((ElementType)element->face_type)->nodes; k++)
-    PetscCall(DMLabelSetValue(label, root->point[root->id[nodes[element->face_nodes[face->number][k]]]], 1));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    RootMeshMark(root, (int)face->group, root->id[nodes[element->face_nodes[face->number][k]]]);
 }
 
 /*@
-  RootSkinsAdd - adds the outer faces of bodies to the groups' faces, and labels their nodes.
+  RootSkinsAdd - adds the outer faces of bodies to the groups' faces, and marks their nodes.
 
   Not collective, on rank 0
 
   Input Parameters:
-+ dm    - with the groups' labels
-. scene - the scene
++ scene - the scene
 . mesh  - its size and its groups; the numbers of elements of the skins are set
 - first - number of the first skin
 
@@ -160,7 +157,7 @@ static PetscErrorCode AddFace(RootMesh *root, const RootFace *face, DMLabel labe
   Note:
   The tags of these faces follow on the largest one of an element in the file, in the order of the cells.
 @*/
-PetscErrorCode RootSkinsAdd(DM dm, Scene scene, RootMesh *root, Mesh mesh, int first)
+PetscErrorCode RootSkinsAdd(Scene scene, RootMesh *root, Mesh mesh, int first)
 {
   PetscBool *inner;
   PetscInt   tag = 0;
@@ -174,18 +171,15 @@ PetscErrorCode RootSkinsAdd(DM dm, Scene scene, RootMesh *root, Mesh mesh, int f
     for (PetscInt i = 0; i < root->gmsh.blocks[b].n; i++) tag = PetscMax(tag, root->gmsh.blocks[b].tag[i]);
   PetscCall(PetscRealloc((root->n_faces + SKIN_CELL_FACES * root->n_cells) * sizeof(RootFace), &root->faces));
   for (int g = first; g < mesh->n_groups; g++) {
-    DMLabel label;
-    char    name[MESH_TEXT];
+    char name[MESH_TEXT];
 
-    MeshGroupLabel(mesh, &mesh->groups[g], name);
-    PetscCall(DMGetLabel(dm, name, &label));
     for (PetscInt c = 0; c < root->n_cells; c++) {
       SceneBodySkin(&scene->bodies[root->cell_body[c]], name, sizeof(name));
       for (int k = 0; k < root->cell_block[c]->element->faces && !strcmp(name, mesh->groups[g].name); k++) {
         const RootFace face = {.cell = c, .group = g, .tag = tag + 1, .number = k};
 
         if (inner[SKIN_CELL_FACES * c + k]) continue;
-        PetscCall(AddFace(root, &face, label));
+        AddFace(root, &face);
         mesh->groups[g].n_elements++;
         tag++;
       }

@@ -1,5 +1,6 @@
 /* Reads gmsh's .msh files (format 4.1, text and binary) into plain arrays on one rank. It knows nothing of scenes and
-   bodies. GmshRead() reads a file, GmshReset() frees the arrays, GmshFileLoad() loads any file as text.
+   bodies. GmshRead() reads a file, GmshFreeBlocks() frees the elements, GmshReset() all arrays. GmshFileLoad() loads
+   any file as text.
 
    DMPlex's reader is not used, because this one keeps gmsh's tags, which are the keys that do not depend on the number
    of ranks, keeps second-order nodes in gmsh's order, reads groups of every dimension, and describes what is wrong with
@@ -38,5 +39,6 @@ typedef struct {
 } GmshMesh;
 
 PetscErrorCode GmshRead(const char *file, GmshMesh *, Complaint *);
+PetscErrorCode GmshFreeBlocks(GmshMesh *);
 PetscErrorCode GmshReset(GmshMesh *);
 PetscErrorCode GmshFileLoad(const char *file, char **data, size_t *size);

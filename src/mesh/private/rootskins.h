@@ -9,4 +9,4 @@
 
 int            RootSkinsCount(Scene);
 PetscErrorCode RootSkinsShare(Scene, Mesh, int first);
-PetscErrorCode RootSkinsAdd(DM, Scene, RootMesh *, Mesh, int first);
+PetscErrorCode RootSkinsAdd(Scene, RootMesh *, Mesh, int first);
