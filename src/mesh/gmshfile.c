@@ -1,4 +1,4 @@
-/* Reader for gmsh's file format 4.1, text and binary. The file is loaded as a whole and read section by section. */
+/* Reader for gmsh's file format 4.1, text and binary. The file is read section by section through a window. */
 #define _GNU_SOURCE 1 /* for memmem() */
 #include "gmshfile.h"
 #include <ctype.h>
@@ -27,27 +27,39 @@ static const char *const RefusedElements[] = {[6]          = "6-node prism",
                                               [18]         = "15-node prism",
                                               [19]         = "13-node pyramid"};
 
+/* Bytes of the file that are in memory at a time, and those that a number or a line needs at most. Of longer lines the
+   rest is skipped. */
+enum { WINDOW = 1 << 18, WINDOW_ROOM = 1024 };
+
 /* An entity of the geometry and the signed tags of the physical groups that contain it. */
 typedef struct {
   int dim, tag, n, *physical;
 } Entity;
 
-/* A cursor over the file in memory. After the first mistake every read returns 0, so that loops end. */
+/* A place in the file, for messages */
+typedef struct {
+  size_t byte, line;
+} Place;
+
+/* A cursor over the file. After the first mistake every read returns 0, so that loops end. */
 typedef struct {
   const char *file;
-  char       *data;
-  size_t      size, at;
+  FILE       *stream;
+  size_t      size;    /* of the file */
+  char       *data;    /* the window, followed by a zero */
+  size_t      end, at; /* bytes in the window, and the next one */
+  Place       start;   /* of the window */
   PetscBool   binary;
   char        section[64];
   Complaint  *complaint;
   GmshMesh   *mesh;
   PetscInt    n_entities;
   Entity     *entities;
-  PetscBool  *used; /* for each node: some element has it */
+  char       *used; /* for each node: some element has it */
 } Reader;
 
 /*@
-  GmshFileLoad - loads a whole .geo or .msh file into memory.
+  GmshFileLoad - loads a whole .geo file, or another small one, into memory.
 
   Not collective
 
@@ -87,25 +99,97 @@ static PetscBool ReaderFailed(const Reader *r)
   return r->complaint->text[0] ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Complains that the file is truncated or damaged, with the section and the place. */
-static void ReaderDamaged(Reader *r)
+/* Where the cursor is. */
+static Place ReaderPlace(const Reader *r)
 {
-  size_t line = 1;
+  Place place = {r->start.byte + r->at, r->start.line};
 
-  if (ReaderFailed(r)) return;
-  for (size_t i = 0; i < r->at && i < r->size; i++) line += r->data[i] == '\n';
+  for (size_t i = 0; i < r->at; i++) place.line += r->data[i] == '\n';
+  return place;
+}
+
+/* Complains that the file is truncated or damaged at a place. */
+static void ReaderDamagedAt(Reader *r, Place place)
+{
   if (r->binary)
     Complain(r->complaint, "%s: the file is truncated or damaged in section %s (byte %zu of %zu)", r->file, r->section,
-             r->at, r->size);
+             place.byte, r->size);
   else
-    Complain(r->complaint, "%s:%zu: the file is truncated or damaged in section %s", r->file, line, r->section);
+    Complain(r->complaint, "%s:%zu: the file is truncated or damaged in section %s", r->file, place.line, r->section);
+}
+
+/* Complains that the file is truncated or damaged at the cursor. */
+static void ReaderDamaged(Reader *r)
+{
+  if (!ReaderFailed(r)) ReaderDamagedAt(r, ReaderPlace(r));
+}
+
+/* Bytes of the file that are not read yet. */
+static size_t ReaderLeft(const Reader *r)
+{
+  return r->size - r->start.byte - r->at;
+}
+
+/* Moves the window on, so that it begins at the cursor. */
+static void ReaderMove(Reader *r)
+{
+  size_t wanted, got;
+
+  r->start = ReaderPlace(r);
+  r->end -= r->at;
+  memmove(r->data, r->data + r->at, r->end);
+  r->at  = 0;
+  wanted = PetscMin(WINDOW - r->end, r->size - r->start.byte - r->end);
+  got    = fread(r->data + r->end, 1, wanted, r->stream);
+  r->end += got;
+  r->data[r->end] = '\0';
+  if (got < wanted) r->size = r->start.byte + r->end; /* the file has become shorter */
+}
+
+/* Sees to it that the next bytes are in the window, as far as the file has them. */
+static void ReaderNeed(Reader *r, size_t bytes)
+{
+  if (r->end - r->at < bytes && r->start.byte + r->end < r->size) ReaderMove(r);
+}
+
+static void SkipSpace(Reader *r)
+{
+  do {
+    ReaderNeed(r, WINDOW_ROOM);
+    while (r->at < r->end && isspace((unsigned char)r->data[r->at])) r->at++;
+  } while (r->at == r->end && ReaderLeft(r));
+}
+
+/* Reads a number that a space follows: an integer, or a real one where integer is NULL. */
+static void ReadNumber(Reader *r, long long *integer, double *real)
+{
+  Place       place = {0, 0};
+  const char *text;
+  char       *end;
+
+  ReaderNeed(r, WINDOW_ROOM);
+  if (strspn(r->data + r->at, " \t\r\n") >= WINDOW_ROOM / 2) {
+    place = ReaderPlace(r);
+    SkipSpace(r);
+    ReaderNeed(r, WINDOW_ROOM);
+  }
+  text = r->data + r->at;
+  if (integer)
+    *integer = strtoll(text, &end, 10);
+  else
+    *real = strtod(text, &end);
+  if (end == text || !isspace((unsigned char)*end))
+    ReaderDamagedAt(r, place.line ? place : ReaderPlace(r));
+  else
+    r->at += (size_t)(end - text);
 }
 
 static void ReadBytes(Reader *r, void *value, size_t size)
 {
   memset(value, 0, size);
   if (ReaderFailed(r)) return;
-  if (r->size - r->at < size)
+  ReaderNeed(r, size);
+  if (r->end - r->at < size)
     ReaderDamaged(r);
   else {
     memcpy(value, r->data + r->at, size);
@@ -115,15 +199,9 @@ static void ReadBytes(Reader *r, void *value, size_t size)
 
 static long long ReadTextInteger(Reader *r)
 {
-  char     *end;
-  long long value;
+  long long value = 0;
 
-  if (ReaderFailed(r)) return 0;
-  value = strtoll(r->data + r->at, &end, 10);
-  if (end == r->data + r->at || !isspace((unsigned char)*end))
-    ReaderDamaged(r);
-  else
-    r->at = (size_t)(end - r->data);
+  if (!ReaderFailed(r)) ReadNumber(r, &value, NULL);
   return value;
 }
 
@@ -151,7 +229,7 @@ static PetscInt ReadCount(Reader *r)
 {
   long long value = ReadSize(r);
 
-  if (value < 0 || (size_t)value > r->size - r->at || value > PETSC_MAX_INT) {
+  if (value < 0 || (size_t)value > ReaderLeft(r) || value > PETSC_MAX_INT) {
     ReaderDamaged(r);
     return 0;
   }
@@ -170,34 +248,28 @@ static PetscInt ReadTag(Reader *r)
 static double ReadDouble(Reader *r)
 {
   double value = 0;
-  char  *end;
 
-  if (r->binary) {
+  if (r->binary)
     ReadBytes(r, &value, sizeof(value));
-    return value;
-  }
-  if (ReaderFailed(r)) return 0;
-  value = strtod(r->data + r->at, &end);
-  if (end == r->data + r->at || !isspace((unsigned char)*end))
-    ReaderDamaged(r);
-  else
-    r->at = (size_t)(end - r->data);
+  else if (!ReaderFailed(r))
+    ReadNumber(r, NULL, &value);
   return value;
-}
-
-static void SkipSpace(Reader *r)
-{
-  while (r->at < r->size && isspace((unsigned char)r->data[r->at])) r->at++;
 }
 
 /* Reads the rest of the line, without the end of line. */
 static void ReadLine(Reader *r, char *line, size_t size)
 {
-  size_t length = strcspn(r->data + r->at, "\r\n");
+  size_t length;
 
+  ReaderNeed(r, WINDOW_ROOM);
+  length = strcspn(r->data + r->at, "\r\n");
   snprintf(line, size, "%.*s", (int)PetscMin(length, size - 1), r->data + r->at);
-  r->at += length;
-  while (r->at < r->size && (r->data[r->at] == '\r' || r->data[r->at] == '\n')) {
+  for (r->at += length; r->at == r->end && ReaderLeft(r); r->at += length) {
+    ReaderMove(r);
+    length = strcspn(r->data, "\r\n");
+  }
+  ReaderNeed(r, WINDOW_ROOM);
+  while (r->at < r->end && (r->data[r->at] == '\r' || r->data[r->at] == '\n')) {
     if (r->data[r->at++] == '\n') break;
   }
 }
@@ -448,7 +520,7 @@ static PetscErrorCode ReadBlockElements(Reader *r, GmshBlock *block)
         Complain(r->complaint, "%s: element %" PetscInt_FMT " has node %" PetscInt_FMT ", which is not in the file",
                  r->file, block->tag[i], tag);
       else
-        r->used[node] = PETSC_TRUE;
+        r->used[node] = 1;
       block->connectivity[i * block->nodes + k] = node;
     }
   }
@@ -496,13 +568,20 @@ static void ReadClosing(Reader *r, PetscBool anywhere)
 {
   char        closing[72];
   const char *end;
+  Place       place;
 
   snprintf(closing, sizeof(closing), "$End%s", r->section + 1);
   SkipSpace(r);
-  end = memmem(r->data + r->at, anywhere ? r->size - r->at : PetscMin(r->size - r->at, strlen(closing)), closing,
-               strlen(closing));
+  ReaderNeed(r, WINDOW_ROOM);
+  place = ReaderPlace(r);
+  while (!(end = memmem(r->data + r->at, anywhere ? r->end - r->at : PetscMin(r->end - r->at, strlen(closing)), closing,
+                        strlen(closing))) &&
+         anywhere && r->start.byte + r->end < r->size) {
+    r->at = r->end - strlen(closing);
+    ReaderMove(r);
+  }
   if (!end)
-    ReaderDamaged(r);
+    ReaderDamagedAt(r, place);
   else
     r->at = (size_t)(end - r->data) + strlen(closing);
 }
@@ -514,7 +593,7 @@ static PetscErrorCode ReadComments(Reader *r)
   char         line[512];
 
   PetscFunctionBeginUser;
-  while (r->at < r->size && r->data[r->at] != '$') {
+  for (ReaderNeed(r, WINDOW_ROOM); r->at < r->end && r->data[r->at] != '$'; ReaderNeed(r, WINDOW_ROOM)) {
     const size_t used = r->mesh->notes ? strlen(r->mesh->notes) : 0;
 
     ReadLine(r, line, sizeof(line));
@@ -600,6 +679,23 @@ static void CheckContents(Reader *r, unsigned seen)
       Complain(r->complaint, "%s: node %" PetscInt_FMT " belongs to no element", r->file, r->mesh->node_tag[i]);
 }
 
+static PetscErrorCode ReaderOpen(Reader *r)
+{
+  struct stat status;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(WINDOW + 1, &r->data));
+  r->data[0]    = '\0';
+  r->start.line = 1;
+  r->stream     = fopen(r->file, "rb");
+  if (r->stream && !fstat(fileno(r->stream), &status) && S_ISREG(status.st_mode))
+    r->size = (size_t)status.st_size;
+  else
+    Complain(r->complaint, "%s: there is no such file, or it cannot be read", r->file);
+  if (!r->size) Complain(r->complaint, "%s: the file is empty", r->file);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   GmshRead - reads a gmsh file of format 4.1, text or binary.
 
@@ -625,12 +721,9 @@ PetscErrorCode GmshRead(const char *file, GmshMesh *mesh, Complaint *complaint)
 
   PetscFunctionBeginUser;
   *mesh = (GmshMesh){0};
-  PetscCall(GmshFileLoad(file, &r.data, &r.size));
-  if (!r.data)
-    Complain(complaint, "%s: there is no such file, or it cannot be read", file);
-  else if (!r.size)
-    Complain(complaint, "%s: the file is empty", file);
-  for (SkipSpace(&r); r.at < r.size && !ReaderFailed(&r); SkipSpace(&r)) PetscCall(ReadSection(&r, &seen));
+  PetscCall(ReaderOpen(&r));
+  for (SkipSpace(&r); ReaderLeft(&r) && !ReaderFailed(&r); SkipSpace(&r)) PetscCall(ReadSection(&r, &seen));
+  if (r.stream) fclose(r.stream);
   CheckContents(&r, seen);
   if (!ReaderFailed(&r)) PetscCall(SortPhysicals(mesh));
   for (PetscInt i = 0; i < r.n_entities; i++) PetscCall(PetscFree(r.entities[i].physical));

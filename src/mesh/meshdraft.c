@@ -1,11 +1,14 @@
 /* Mesh files in the making, see meshdraft.h. */
 #include "meshdraft.h"
-#include "gmshfile.h"
 #include <ctype.h>
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+/* Bytes in which the last line of a mesh ends and begins. */
+#define LAST_BYTES 512
 
 /* Makes the directories above a path. */
 static void MakeDirectoriesAbove(const char *path, Complaint *complaint)
@@ -69,22 +72,21 @@ void MeshDraftCreate(const char *file, MeshDraft *draft, Complaint *complaint)
 
 /* Tells whether the file ends as a mesh ends. On a full disk gmsh leaves a part of it, or nothing, and reports
    success. */
-static PetscErrorCode IsWhole(const char *file, PetscBool *whole)
+static PetscBool IsWhole(const char *file)
 {
-  char  *text, *line;
+  FILE  *stream = fopen(file, "rb");
+  char   text[LAST_BYTES + 1], *line;
   size_t size;
 
-  PetscFunctionBeginUser;
-  *whole = PETSC_FALSE;
-  PetscCall(GmshFileLoad(file, &text, &size));
-  if (!text) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!stream) return PETSC_FALSE;
+  if (fseek(stream, -LAST_BYTES, SEEK_END)) rewind(stream); /* the file is shorter */
+  size = fread(text, 1, LAST_BYTES, stream);
+  fclose(stream);
   while (size && isspace((unsigned char)text[size - 1])) size--;
   text[size] = '\0';
   line       = text + size;
   while (line > text && line[-1] != '\n') line--;
-  *whole = strncmp(line, "$End", 4) ? PETSC_FALSE : PETSC_TRUE;
-  PetscCall(PetscFree(text));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return strncmp(line, "$End", 4) ? PETSC_FALSE : PETSC_TRUE;
 }
 
 /*@
@@ -101,10 +103,9 @@ static PetscErrorCode IsWhole(const char *file, PetscBool *whole)
 @*/
 PetscErrorCode MeshDraftFinish(MeshDraft *draft, const char *file, Complaint *complaint)
 {
-  PetscBool whole;
+  const PetscBool whole = IsWhole(draft->mesh);
 
   PetscFunctionBeginUser;
-  PetscCall(IsWhole(draft->mesh, &whole));
   if (!complaint->text[0] && !whole)
     Complain(complaint, "cannot write '%s': a part of it is there; is the disk full?", file);
   if (!complaint->text[0] && rename(draft->mesh, file))

@@ -2,11 +2,12 @@
 #include "meshimport.h"
 #include "base/hash.h"
 #include "base/scripts.h"
-#include "gmshfile.h"
 #include "gmshprocess.h"
 #include "meshdraft.h"
 #include <cJSON.h>
 #include <petsctime.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
@@ -65,18 +66,18 @@ static PetscBool IncludedFile(const char *line, const char *file, char included[
 /* Hashes a file and those that it includes. Files that are not there are the converter's to name. */
 static PetscErrorCode HashFile(const char *file, int depth, uint64_t *hash)
 {
-  char  *text, included[PETSC_MAX_PATH_LEN];
-  size_t size;
+  char   included[PETSC_MAX_PATH_LEN], part[BUFSIZ], *line = NULL;
+  FILE  *stream = fopen(file, "r");
+  size_t size   = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(GmshFileLoad(file, &text, &size));
-  if (!text) PetscFunctionReturn(PETSC_SUCCESS);
-  *hash = HashBytes(*hash, text, size);
-  for (const char *line = text; line && depth < DEEPEST_INCLUDE; line = strchr(line, '\n')) {
-    line += *line == '\n';
+  if (!stream) PetscFunctionReturn(PETSC_SUCCESS);
+  for (size_t n; (n = fread(part, 1, sizeof(part), stream));) *hash = HashBytes(*hash, part, n);
+  rewind(stream);
+  while (depth < DEEPEST_INCLUDE && getline(&line, &size, stream) >= 0)
     if (IncludedFile(line, file, included)) PetscCall(HashFile(included, depth + 1, hash));
-  }
-  PetscCall(PetscFree(text));
+  free(line);
+  fclose(stream);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
