@@ -24,6 +24,26 @@ void Complain(Complaint *complaint, const char *format, ...)
 }
 
 /*@
+  ComplaintAnywhere - says whether any rank has a complaint
+
+  Collective
+
+  Input Parameters:
++ comm      - all ranks
+- complaint - of this rank; empty if it has none
+
+  Output Parameter:
+. anywhere - the same on all ranks
+@*/
+PetscErrorCode ComplaintAnywhere(MPI_Comm comm, const Complaint *complaint, PetscBool *anywhere)
+{
+  PetscFunctionBeginUser;
+  *anywhere = complaint->text[0] ? PETSC_TRUE : PETSC_FALSE;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, anywhere, 1, MPIU_BOOL, MPI_LOR, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ComplaintRefuse - refuses the input if any rank has a complaint
 
   Collective

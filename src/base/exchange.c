@@ -12,7 +12,8 @@ static PetscErrorCode CountPortions(PetscMPIInt size, PetscInt n, const PetscMPI
 
   PetscFunctionBeginUser;
   PetscCall(PetscMPIIntCast(n, &all)); /* no sum of counts is larger */
-  for (PetscInt i = 0; i < n; i++) send->count[to[i]]++;
+  for (PetscInt i = 0; i < n; i++)
+    if (to[i] >= 0) send->count[to[i]]++;
   for (PetscMPIInt r = 0; r + 1 < size; r++) send->start[r + 1] = send->start[r] + send->count[r];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -39,7 +40,7 @@ static PetscErrorCode ShareCounts(MPI_Comm comm, PetscMPIInt size, const Portion
 + comm    - the ranks
 . bytes   - size of a record
 . n       - number of records of this rank
-. to      - rank to which each of them goes [n]
+. to      - rank to which each of them goes [n]; -1: it is not sent
 . pack    - writes one of them
 - context - for pack
 
@@ -52,7 +53,7 @@ PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const Pe
                                const void *context, PetscInt *n_arrived, void **arrived)
 {
   Portions     send, receive;
-  PetscMPIInt  size, *next;
+  PetscMPIInt  size, n_sent, *next;
   char        *records;
   MPI_Datatype type;
 
@@ -61,11 +62,13 @@ PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const Pe
   PetscCall(
     PetscCalloc5(size, &send.count, size, &send.start, size, &receive.count, size, &receive.start, size, &next));
   PetscCall(CountPortions(size, n, to, &send));
-  PetscCall(PetscCalloc1((size_t)n * bytes, &records));
+  n_sent = send.start[size - 1] + send.count[size - 1];
+  PetscCall(PetscCalloc1((size_t)n_sent * bytes, &records));
   PetscCall(PetscArraycpy(next, send.start, size));
-  for (PetscInt i = 0; i < n; i++) pack(context, i, records + (size_t)next[to[i]]++ * bytes);
+  for (PetscInt i = 0; i < n; i++)
+    if (to[i] >= 0) pack(context, i, records + (size_t)next[to[i]]++ * bytes);
   if (size == 1) {
-    *n_arrived = n;
+    *n_arrived = n_sent;
     *arrived   = records;
   } else {
     PetscCall(ShareCounts(comm, size, &send, &receive, n_arrived));
@@ -78,5 +81,37 @@ PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const Pe
     PetscCall(PetscFree(records));
   }
   PetscCall(PetscFree5(send.count, send.start, receive.count, receive.start, next));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ExchangeSources - says from which ranks records come.
+
+  Collective
+
+  Input Parameters:
++ comm - the ranks
+. n    - number of records that this rank sends
+- to   - rank to which each of them goes [n]
+
+  Output Parameter:
+. from - rank from which each record comes, in the order in which ExchangeRecords() returns them; to be freed with
+  PetscFree()
+@*/
+PetscErrorCode ExchangeSources(MPI_Comm comm, PetscInt n, const PetscMPIInt to[], PetscMPIInt **from)
+{
+  Portions    send, receive;
+  PetscMPIInt size;
+  PetscInt    n_arrived;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscCalloc4(size, &send.count, size, &send.start, size, &receive.count, size, &receive.start));
+  PetscCall(CountPortions(size, n, to, &send));
+  PetscCall(ShareCounts(comm, size, &send, &receive, &n_arrived));
+  PetscCall(PetscMalloc1(n_arrived, from));
+  for (PetscMPIInt r = 0; r < size; r++)
+    for (PetscMPIInt i = 0; i < receive.count[r]; i++) (*from)[receive.start[r] + i] = r;
+  PetscCall(PetscFree4(send.count, send.start, receive.count, receive.start));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,12 +3,12 @@
 #include "kernels/elementkernel.h"
 #include "formulationchoice.h"
 
-/* Says for each body whether a cell of it has a kernel of its formulation. On rank 0. */
-static void FindServed(Scene scene, const RootMesh *root, PetscBool *served)
+/* Says for each body whether a cell of it in the slice has a kernel of its formulation. */
+static void FindServed(Scene scene, const SliceMesh *slice, PetscBool *served)
 {
-  for (PetscInt c = 0; c < root->n_cells; c++) {
-    const int        b      = root->cell_body[c];
-    const KernelCase kernel = {.type        = root->cell_block[c]->element->type,
+  for (PetscInt c = 0; c < slice->n_cells; c++) {
+    const int        b      = slice->cell_body[c];
+    const KernelCase kernel = {.type        = slice->cell_block[c]->element->type,
                                .geometry    = scene->geometry,
                                .formulation = scene->bodies[b].formulation};
 
@@ -23,7 +23,7 @@ static void FindServed(Scene scene, const RootMesh *root, PetscBool *served)
 
   Input Parameters:
 + scene - its bodies, of which formulation may change
-. root  - on rank 0, NULL on other ranks
+. slice - after SliceMeshRead()
 - mesh  - its communicator
 
   Note:
@@ -32,14 +32,14 @@ static void FindServed(Scene scene, const RootMesh *root, PetscBool *served)
   one of a saddle, which the iterative solver cannot take, and routines of the user have no split into shape and volume;
   there the integration is full.
 @*/
-PetscErrorCode FormulationsChoose(Scene scene, const RootMesh *root, Mesh mesh)
+PetscErrorCode FormulationsChoose(Scene scene, const SliceMesh *slice, Mesh mesh)
 {
   PetscBool *served;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(scene->n_bodies, &served));
-  if (root) FindServed(scene, root, served);
-  PetscCallMPI(MPI_Bcast(served, scene->n_bodies * (int)sizeof(PetscBool), MPI_BYTE, 0, mesh->comm));
+  FindServed(scene, slice, served);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, served, scene->n_bodies, MPIU_BOOL, MPI_LOR, mesh->comm));
   for (int b = 0; b < scene->n_bodies; b++) {
     SceneBody      *body = &scene->bodies[b];
     const PetscBool mixes =
@@ -74,14 +74,14 @@ void FormulationsCrowded(SceneBody *body)
 
   Input Parameters:
 + scene - its contact pairs, of which formulation may change where it was chosen
-. root  - on rank 0, after RootGroupsFind(); NULL on other ranks
+. slice - after SliceGroupsFind()
 - mesh  - names of the groups
 
   Note:
   Corners of 6-node triangles have no part of the face's area. Node to surface would leave them without a force, and a
   tool would go into the body there.
 @*/
-PetscErrorCode ContactFormulationsChoose(Scene scene, const RootMesh *root, Mesh mesh)
+PetscErrorCode ContactFormulationsChoose(Scene scene, const SliceMesh *slice, Mesh mesh)
 {
   PetscFunctionBeginUser;
   for (int i = 0; i < scene->n_contacts; i++) {
@@ -90,9 +90,11 @@ PetscErrorCode ContactFormulationsChoose(Scene scene, const RootMesh *root, Mesh
     int           corners = 0;
 
     if (!contact->formulation_chosen || contact->formulation == CONTACT_SURFACE_TO_SURFACE) continue;
-    for (PetscInt f = 0; root && f < root->n_faces && !corners; f++)
-      corners = root->faces[f].group == group && root->cell_block[root->faces[f].cell]->element->type == ELEMENT_TET10;
-    PetscCallMPI(MPI_Bcast(&corners, 1, MPI_INT, 0, mesh->comm));
+    for (PetscInt f = 0; f < slice->n_faces && !corners; f++)
+      corners =
+        slice->faces[f].group == group &&
+        slice->cell_block[slice->faces[f].cell - slice->cell_start[slice->rank]]->element->type == ELEMENT_TET10;
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &corners, 1, MPI_INT, MPI_MAX, mesh->comm));
     if (corners) contact->formulation = CONTACT_SURFACE_TO_SURFACE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

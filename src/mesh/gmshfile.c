@@ -1,6 +1,10 @@
 /* Reader for gmsh's file format 4.1, text and binary. The file is read section by section through a window. */
 #define _GNU_SOURCE 1 /* for memmem() */
 #include "gmshfile.h"
+#include "base/exchange.h"
+#include "base/integerset.h"
+#include "gmshportions.h"
+#include "tagranges.h"
 #include <ctype.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -55,7 +59,8 @@ typedef struct {
   GmshMesh   *mesh;
   PetscInt    n_entities;
   Entity     *entities;
-  char       *used; /* for each node: some element has it */
+  PetscBool   has_nodes;
+  Portions   *portions; /* where nodes and elements go */
 } Reader;
 
 /*@
@@ -362,60 +367,33 @@ static PetscErrorCode ReadEntities(Reader *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sorts the nodes by ascending tag, because their order in the file is arbitrary. */
-static PetscErrorCode SortNodes(Reader *r)
-{
-  GmshMesh  *mesh   = r->mesh;
-  PetscBool  sorted = PETSC_TRUE;
-  PetscInt  *order, *tags;
-  PetscReal *coords;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 1; i < mesh->n_nodes; i++)
-    sorted = sorted && mesh->node_tag[i] > mesh->node_tag[i - 1] ? PETSC_TRUE : PETSC_FALSE;
-  if (sorted) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc3(mesh->n_nodes, &order, mesh->n_nodes, &tags, 3 * mesh->n_nodes, &coords));
-  PetscCall(PetscArraycpy(tags, mesh->node_tag, mesh->n_nodes));
-  PetscCall(PetscArraycpy(coords, mesh->coords, 3 * mesh->n_nodes));
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) order[i] = i;
-  PetscCall(PetscSortIntWithPermutation(mesh->n_nodes, tags, order));
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
-    mesh->node_tag[i] = tags[order[i]];
-    for (int k = 0; k < 3; k++) mesh->coords[3 * i + k] = coords[3 * order[i] + k];
-    if (i && mesh->node_tag[i] == mesh->node_tag[i - 1])
-      Complain(r->complaint, "%s: node %" PetscInt_FMT " occurs twice", r->file, mesh->node_tag[i]);
-  }
-  PetscCall(PetscFree3(order, tags, coords));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode ReadNodes(Reader *r)
 {
-  GmshMesh *mesh   = r->mesh;
-  PetscInt  blocks = ReadCount(r), n = ReadCount(r), done = 0;
+  PetscInt blocks = ReadCount(r), n = ReadCount(r), done = 0;
 
   PetscFunctionBeginUser;
   (void)ReadSize(r); /* smallest and largest tag */
   (void)ReadSize(r);
-  PetscCall(PetscMalloc2(n, &mesh->node_tag, 3 * n, &mesh->coords));
+  PetscCall(PortionsNodes(r->portions, n));
   for (PetscInt b = 0; b < blocks && !ReaderFailed(r); b++) {
     int      dim        = ReadInt(r);
     int      parametric = (ReadInt(r), ReadInt(r)); /* skips the entity's tag */
     PetscInt in_block   = ReadCount(r);
 
     if (in_block > n - done || dim < 0 || dim > 3) ReaderDamaged(r);
-    for (PetscInt i = 0; i < in_block && !ReaderFailed(r); i++) mesh->node_tag[done + i] = ReadTag(r);
+    for (PetscInt i = 0; i < in_block && !ReaderFailed(r); i++)
+      PetscCall(PortionsTag(r->portions, done + i, ReadTag(r)));
     for (PetscInt i = 0; i < in_block && !ReaderFailed(r); i++) {
-      for (int k = 0; k < 3; k++) mesh->coords[3 * (done + i) + k] = ReadDouble(r);
+      PetscReal x[3];
+
+      for (int k = 0; k < 3; k++) x[k] = ReadDouble(r);
       for (int k = 0; parametric && k < dim; k++) (void)ReadDouble(r); /* parametric coordinates on the entity */
+      PetscCall(PortionsPlace(r->portions, done + i, x));
     }
     done += in_block;
   }
   if (done != n) ReaderDamaged(r);
-  if (ReaderFailed(r)) PetscFunctionReturn(PETSC_SUCCESS);
-  mesh->n_nodes = n;
-  PetscCall(SortNodes(r));
-  PetscCall(PetscCalloc1(n, &r->used));
+  r->has_nodes = n > 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -441,17 +419,6 @@ static void RefuseElement(Reader *r, int type, int dim, int entity)
              "tet4, tet10, hex8, hex27",
              r->file, entity, dim, name);
   }
-}
-
-/* Returns the index of a node from its tag, -1 if there is no such node. Tags mostly have no gaps, so that the first
-   guess is mostly right. */
-static PetscInt NodeIndex(const GmshMesh *mesh, PetscInt tag)
-{
-  PetscInt guess = mesh->n_nodes ? tag - mesh->node_tag[0] : -1;
-
-  if (guess < 0 || (guess < mesh->n_nodes && mesh->node_tag[guess] == tag)) return guess < 0 ? -1 : guess;
-  if (PetscFindInt(tag, mesh->n_nodes, mesh->node_tag, &guess)) return -1;
-  return guess < 0 ? -1 : guess;
 }
 
 static int PhysicalIndex(const GmshMesh *mesh, int dim, PetscInt tag)
@@ -508,21 +475,16 @@ static PetscErrorCode BlockFree(GmshBlock *block)
 /* Reads the tags and nodes of a block's elements. */
 static PetscErrorCode ReadBlockElements(Reader *r, GmshBlock *block)
 {
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(block->n, &block->tag));
-  PetscCall(PetscMalloc1(block->n * block->nodes, &block->connectivity));
-  for (PetscInt i = 0; i < block->n && !ReaderFailed(r); i++) {
-    block->tag[i] = ReadTag(r);
-    for (int k = 0; k < block->nodes && !ReaderFailed(r); k++) {
-      PetscInt tag = ReadTag(r), node = NodeIndex(r->mesh, tag);
+  PetscInt nodes[ELEMENT_MAX_NODES];
 
-      if (node < 0)
-        Complain(r->complaint, "%s: element %" PetscInt_FMT " has node %" PetscInt_FMT ", which is not in the file",
-                 r->file, block->tag[i], tag);
-      else
-        r->used[node] = 1;
-      block->connectivity[i * block->nodes + k] = node;
-    }
+  PetscFunctionBeginUser;
+  PetscCall(PortionsBlock(r->portions, block->nodes, block->n_all));
+  for (PetscInt i = 0; i < block->n_all && !ReaderFailed(r); i++) {
+    const PetscInt tag = ReadTag(r);
+
+    if (!i) block->first_tag = tag;
+    for (int k = 0; k < block->nodes && !ReaderFailed(r); k++) nodes[k] = ReadTag(r);
+    if (!ReaderFailed(r)) PetscCall(PortionsElement(r->portions, tag, nodes));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -534,28 +496,28 @@ static PetscErrorCode ReadBlock(Reader *r)
   int       entity = ReadInt(r), type = ReadInt(r);
 
   PetscFunctionBeginUser;
-  block.n       = ReadCount(r);
+  block.n_all   = ReadCount(r);
   block.element = ElementFromGmsh(type);
   block.nodes   = block.element ? block.element->nodes : 1;
   if (!block.element && type != GMSH_POINT) RefuseElement(r, type, block.dim, entity);
   if (ReaderFailed(r)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ReadBlockElements(r, &block));
   PetscCall(BlockPhysicals(r, block.dim, entity, &block));
-  if (block.n_physicals) {
-    PetscCall(PetscRealloc((size_t)(mesh->n_blocks + 1) * sizeof(*mesh->blocks), &mesh->blocks));
-    mesh->blocks[mesh->n_blocks++] = block;
-  } else
-    PetscCall(BlockFree(&block));
+  PetscCall(PetscRealloc((size_t)(mesh->n_blocks + 1) * sizeof(*mesh->blocks), &mesh->blocks));
+  mesh->blocks[mesh->n_blocks++] = block;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ReadElements(Reader *r)
 {
-  PetscInt blocks = ReadCount(r);
+  PetscInt  blocks = ReadCount(r);
+  long long n;
 
   PetscFunctionBeginUser;
-  if (!r->mesh->node_tag) ReaderDamaged(r);      /* the section of nodes must come first */
-  for (int i = 0; i < 3; i++) (void)ReadSize(r); /* number of elements, smallest and largest tag */
+  if (!r->has_nodes) ReaderDamaged(r); /* the section of nodes must come first */
+  n = ReadSize(r);
+  for (int i = 0; i < 2; i++) (void)ReadSize(r); /* smallest and largest tag */
+  PetscCall(PortionsElements(r->portions, (PetscInt)PetscMin(n, PETSC_MAX_INT)));
   for (PetscInt b = 0; b < blocks && !ReaderFailed(r); b++) PetscCall(ReadBlock(r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -674,9 +636,6 @@ static void CheckContents(Reader *r, unsigned seen)
       r->complaint,
       "%s: the file has no physical names; name volumes and surfaces in gmsh: Physical Volume(\"NAME\") = {...};",
       r->file);
-  for (PetscInt i = 0; i < r->mesh->n_nodes && !ReaderFailed(r); i++)
-    if (!r->used[i])
-      Complain(r->complaint, "%s: node %" PetscInt_FMT " belongs to no element", r->file, r->mesh->node_tag[i]);
 }
 
 static PetscErrorCode ReaderOpen(Reader *r)
@@ -696,45 +655,332 @@ static PetscErrorCode ReaderOpen(Reader *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  GmshRead - reads a gmsh file of format 4.1, text or binary.
-
-  Not collective, meant for one rank
-
-  Input Parameter:
-. file - path
-
-  Output Parameters:
-+ mesh      - nodes by ascending tag, elements of the physical groups, and groups; to be freed with GmshReset(), also
-  after a mistake
-- complaint - says what is wrong with the file, if anything
-
-  Note:
-  The complaint names a missing or truncated file, another format, missing physical names, elements that are not
-  available, or nodes without elements. The format is described in the gmsh reference manual, "MSH file format, version
-  4.1".
-@*/
-PetscErrorCode GmshRead(const char *file, GmshMesh *mesh, Complaint *complaint)
+/* Reads the file on the first rank: groups, blocks without elements, and the portions of all ranks. */
+static PetscErrorCode ReadFile(const char *file, Portions *portions, GmshMesh *mesh, Complaint *complaint)
 {
-  Reader   r    = {.file = file, .complaint = complaint, .mesh = mesh};
+  Reader   r    = {.file = file, .complaint = complaint, .mesh = mesh, .portions = portions};
   unsigned seen = 0;
 
   PetscFunctionBeginUser;
-  *mesh = (GmshMesh){0};
   PetscCall(ReaderOpen(&r));
   for (SkipSpace(&r); ReaderLeft(&r) && !ReaderFailed(&r); SkipSpace(&r)) PetscCall(ReadSection(&r, &seen));
   if (r.stream) fclose(r.stream);
+  PetscCall(PortionsEnd(portions));
   CheckContents(&r, seen);
   if (!ReaderFailed(&r)) PetscCall(SortPhysicals(mesh));
   for (PetscInt i = 0; i < r.n_entities; i++) PetscCall(PetscFree(r.entities[i].physical));
   PetscCall(PetscFree(r.entities));
-  PetscCall(PetscFree(r.used));
   PetscCall(PetscFree(r.data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Nodes and elements of all ranks */
+
+/* Tells all ranks of the blocks. */
+static PetscErrorCode ShareBlocks(MPI_Comm comm, GmshMesh *mesh)
+{
+  enum { HEAD = 6 };
+
+  PetscMPIInt rank;
+  int         n[2] = {mesh->n_physicals, mesh->n_blocks};
+  PetscInt    head[HEAD];
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Bcast(n, 2, MPI_INT, 0, comm));
+  if (rank) PetscCall(PetscCalloc1(n[1], &mesh->blocks));
+  mesh->n_physicals = n[0];
+  mesh->n_blocks    = n[1];
+  for (int b = 0; b < mesh->n_blocks; b++) {
+    GmshBlock *block = &mesh->blocks[b];
+
+    head[0] = block->dim;
+    head[1] = block->element ? block->element->gmsh : GMSH_POINT;
+    head[2] = block->nodes;
+    head[3] = block->n_all;
+    head[4] = block->first_tag;
+    head[5] = block->n_physicals;
+    PetscCallMPI(MPI_Bcast(head, HEAD, MPIU_INT, 0, comm));
+    if (rank) {
+      block->dim         = (int)head[0];
+      block->element     = ElementFromGmsh((int)head[1]);
+      block->nodes       = (int)head[2];
+      block->n_all       = head[3];
+      block->first_tag   = head[4];
+      block->n_physicals = (int)head[5];
+      PetscCall(PetscMalloc2(block->n_physicals, &block->physical, block->n_physicals, &block->sign));
+    }
+    PetscCallMPI(MPI_Bcast(block->physical, block->n_physicals, MPI_INT, 0, comm));
+    PetscCallMPI(MPI_Bcast(block->sign, block->n_physicals, MPI_INT, 0, comm));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A node on its way to the rank of its tag */
+typedef struct {
+  PetscInt  tag;
+  PetscReal x[3];
+} TravelNode;
+
+static void PackNode(const void *context, PetscInt i, void *packed)
+{
+  const Portions *portions = context;
+  TravelNode     *node     = packed;
+
+  node->tag = portions->node_tag[i];
+  for (int k = 0; k < 3; k++) node->x[k] = portions->coords[3 * i + k];
+}
+
+/* Gives the nodes to the ranks by ascending tag, because their order in the file is arbitrary. */
+static PetscErrorCode SortNodes(MPI_Comm comm, const char *file, Portions *portions, GmshMesh *mesh,
+                                Complaint *complaint)
+{
+  PetscMPIInt size, *to;
+  PetscInt   *first, *order, *tags;
+  TravelNode *nodes;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc1(portions->n_tags, &to));
+  PetscCall(TagRangesChoose(comm, portions->n_tags, portions->node_tag, &first));
+  for (PetscInt i = 0; i < portions->n_tags; i++) to[i] = TagRangesRank(size, first, portions->node_tag[i]);
+  PetscCall(PetscFree(first));
+  PetscCall(ExchangeRecords(comm, sizeof(TravelNode), portions->n_tags, to, PackNode, portions, &mesh->n_nodes,
+                            (void **)&nodes));
+  PetscCall(PetscFree(to));
+  PetscCall(PetscFree(portions->node_tag));
+  PetscCall(PetscFree(portions->coords));
+  PetscCall(PetscMalloc2(mesh->n_nodes, &order, mesh->n_nodes, &tags));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
+    order[i] = i;
+    tags[i]  = nodes[i].tag;
+  }
+  PetscCall(PetscSortIntWithPermutation(mesh->n_nodes, tags, order));
+  PetscCall(PetscMalloc2(mesh->n_nodes, &mesh->node_tag, 3 * mesh->n_nodes, &mesh->coords));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
+    mesh->node_tag[i] = tags[order[i]];
+    for (int k = 0; k < 3; k++) mesh->coords[3 * i + k] = nodes[order[i]].x[k];
+    if (i && mesh->node_tag[i] == mesh->node_tag[i - 1])
+      Complain(complaint, "%s: node %" PetscInt_FMT " occurs twice", file, mesh->node_tag[i]);
+  }
+  PetscCall(PetscFree(nodes));
+  PetscCall(PetscFree2(order, tags));
+  PetscCall(PetscMalloc1(size + 1, &mesh->node_start));
+  mesh->node_start[0] = 0;
+  PetscCallMPI(MPI_Allgather(&mesh->n_nodes, 1, MPIU_INT, mesh->node_start + 1, 1, MPIU_INT, comm));
+  for (PetscMPIInt r = 0; r < size; r++) mesh->node_start[r + 1] += mesh->node_start[r];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives the blocks this rank's elements. Their nodes are tags yet. */
+static PetscErrorCode TakeElements(Portions *portions, GmshMesh *mesh)
+{
+  PetscFunctionBeginUser;
+  for (int b = 0; b < portions->n_blocks; b++) {
+    PortionBlock *portion = &portions->blocks[b];
+
+    mesh->blocks[b].n            = portion->n;
+    mesh->blocks[b].tag          = portion->tag;
+    mesh->blocks[b].connectivity = portion->connectivity;
+    portion->tag = portion->connectivity = NULL;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Lists the tags of the nodes of this rank's elements. */
+static PetscErrorCode ListTags(const GmshMesh *mesh, IntegerSet *tags)
+{
+  PetscInt        *size;
+  const PetscInt **list;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(mesh->n_blocks, &size, mesh->n_blocks, &list));
+  for (int b = 0; b < mesh->n_blocks; b++) {
+    size[b] = mesh->blocks[b].n * mesh->blocks[b].nodes;
+    list[b] = mesh->blocks[b].connectivity;
+  }
+  PetscCall(IntegerSetCreate(mesh->n_blocks, size, list, tags));
+  PetscCall(PetscFree2(size, list));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void PackInteger(const void *context, PetscInt i, void *packed)
+{
+  *(PetscInt *)packed = ((const PetscInt *)context)[i];
+}
+
+/* Says to which rank a question about each of the tags goes, which ascend: the last one whose first tag is not larger.
+ */
+static PetscErrorCode ChooseAsked(MPI_Comm comm, const GmshMesh *mesh, PetscInt n, const PetscInt tags[],
+                                  PetscMPIInt to[])
+{
+  PetscMPIInt size, asked = 0;
+  PetscInt   *first, mine = mesh->n_nodes ? mesh->node_tag[0] : PETSC_MAX_INT;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc1(size, &first));
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPIU_INT, first, 1, MPIU_INT, comm));
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscMPIInt r = asked + 1; r < size; r++)
+      if (first[r] <= tags[i]) asked = r;
+    to[i] = asked;
+  }
+  PetscCall(PetscFree(first));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the places of nodes by their tags, which ascend; -1: there is no such node. Marks them as used. */
+static PetscErrorCode FindNodes(MPI_Comm comm, const GmshMesh *mesh, PetscInt n, const PetscInt tags[],
+                                PetscInt **places, char used[])
+{
+  PetscMPIInt rank, *to, *from;
+  PetscInt    n_asked, n_answers, *asked;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscMalloc1(n, &to));
+  PetscCall(ChooseAsked(comm, mesh, n, tags, to));
+  PetscCall(ExchangeSources(comm, n, to, &from));
+  PetscCall(ExchangeRecords(comm, sizeof(PetscInt), n, to, PackInteger, tags, &n_asked, (void **)&asked));
+  for (PetscInt i = 0; i < n_asked; i++) {
+    PetscInt place;
+
+    PetscCall(PetscFindInt(asked[i], mesh->n_nodes, mesh->node_tag, &place));
+    asked[i] = place < 0 ? -1 : mesh->node_start[rank] + place;
+    if (place >= 0) used[place] = 1;
+  }
+  PetscCall(ExchangeRecords(comm, sizeof(PetscInt), n_asked, from, PackInteger, asked, &n_answers, (void **)places));
+  PetscCall(PetscFree(asked));
+  PetscCall(PetscFree(from));
+  PetscCall(PetscFree(to));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Replaces the tags of the elements' nodes by their places, and looks for nodes that are not there or not used. */
+static PetscErrorCode PlaceNodes(MPI_Comm comm, const char *file, GmshMesh *mesh, Complaint *missing, Complaint *unused)
+{
+  IntegerSet tags;
+  PetscInt  *places;
+  char      *used;
+
+  PetscFunctionBeginUser;
+  PetscCall(ListTags(mesh, &tags));
+  PetscCall(PetscCalloc1(mesh->n_nodes, &used));
+  PetscCall(FindNodes(comm, mesh, tags.n, tags.value, &places, used));
+  for (int b = 0; b < mesh->n_blocks; b++) {
+    const GmshBlock *block = &mesh->blocks[b];
+
+    for (PetscInt k = 0; k < block->n * block->nodes; k++) {
+      const PetscInt tag = block->connectivity[k];
+      const PetscInt at  = IntegerSetPlace(&tags, tag);
+
+      block->connectivity[k] = places[at];
+      if (places[at] < 0)
+        Complain(missing, "%s: element %" PetscInt_FMT " has node %" PetscInt_FMT ", which is not in the file", file,
+                 block->tag[k / block->nodes], tag);
+    }
+  }
+  for (PetscInt i = 0; i < mesh->n_nodes; i++)
+    if (!used[i]) Complain(unused, "%s: node %" PetscInt_FMT " belongs to no element", file, mesh->node_tag[i]);
+  PetscCall(IntegerSetDestroy(&tags));
+  PetscCall(PetscFree(places));
+  PetscCall(PetscFree(used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Leaves out the blocks that belong to no physical group. */
+static PetscErrorCode DropBlocks(GmshMesh *mesh)
+{
+  int n = 0;
+
+  PetscFunctionBeginUser;
+  for (int b = 0; b < mesh->n_blocks; b++) {
+    if (mesh->blocks[b].n_physicals)
+      mesh->blocks[n++] = mesh->blocks[b];
+    else
+      PetscCall(BlockFree(&mesh->blocks[b]));
+  }
+  mesh->n_blocks = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Puts the portions of all ranks together. */
+static PetscErrorCode JoinPortions(MPI_Comm comm, const char *file, Portions *portions, GmshMesh *mesh,
+                                   Complaint *complaint)
+{
+  Complaint missing = {""};
+  PetscBool failed;
+
+  PetscFunctionBeginUser;
+  PetscCall(ComplaintAnywhere(comm, complaint, &failed));
+  if (failed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ShareBlocks(comm, mesh));
+  PetscCall(SortNodes(comm, file, portions, mesh, complaint));
+  PetscCall(TakeElements(portions, mesh));
+  PetscCall(ComplaintAnywhere(comm, complaint, &failed));
+  if (failed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PlaceNodes(comm, file, mesh, &missing, complaint));
+  PetscCall(ComplaintAnywhere(comm, &missing, &failed));
+  if (failed) *complaint = missing;
+  PetscCall(DropBlocks(mesh));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  GmshFreeBlocks - frees the elements.
+  GmshRead - reads a gmsh file of format 4.1, text or binary.
+
+  Collective
+
+  Input Parameters:
++ comm - the ranks that share the mesh
+- file - path, read by the first rank
+
+  Output Parameters:
++ mesh      - nodes by ascending tag, elements of the physical groups, and groups; to be freed with GmshReset(), also
+  after a mistake
+- complaint - says what is wrong with the file, if anything, on some ranks
+
+  Note:
+  No rank holds all nodes or elements. The complaint names a missing or truncated file, another format, missing physical
+  names, elements that are not available, or nodes without elements. The format is described in the gmsh reference
+  manual, "MSH file format, version 4.1".
+@*/
+PetscErrorCode GmshRead(MPI_Comm comm, const char *file, GmshMesh *mesh, Complaint *complaint)
+{
+  Portions portions;
+
+  PetscFunctionBeginUser;
+  *mesh = (GmshMesh){0};
+  PetscCall(PortionsCreate(comm, &portions));
+  if (portions.rank)
+    PetscCall(PortionsReceive(&portions));
+  else
+    PetscCall(ReadFile(file, &portions, mesh, complaint));
+  PetscCall(JoinPortions(comm, file, &portions, mesh, complaint));
+  PetscCall(PortionsReset(&portions));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  GmshFreeElements - frees this rank's elements of a block.
+
+  Not collective
+
+  Input Parameter:
+. block - has none afterwards
+@*/
+PetscErrorCode GmshFreeElements(GmshBlock *block)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(block->tag));
+  PetscCall(PetscFree(block->connectivity));
+  block->n = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  GmshFreeBlocks - frees all blocks.
 
   Not collective
 
@@ -762,10 +1008,11 @@ PetscErrorCode GmshReset(GmshMesh *mesh)
 {
   PetscFunctionBeginUser;
   PetscCall(GmshFreeBlocks(mesh));
-  for (int i = 0; i < mesh->n_physicals; i++) PetscCall(PetscFree(mesh->physicals[i].name));
+  for (int i = 0; mesh->physicals && i < mesh->n_physicals; i++) PetscCall(PetscFree(mesh->physicals[i].name));
   PetscCall(PetscFree(mesh->physicals));
   PetscCall(PetscFree(mesh->notes));
   PetscCall(PetscFree2(mesh->node_tag, mesh->coords));
+  PetscCall(PetscFree(mesh->node_start));
   *mesh = (GmshMesh){0};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,10 +8,10 @@
 #include "meshtools.h"
 #include "pressurenodesimpl.h"
 #include "base/refusal.h"
-#include "rootgroups.h"
-#include "rootlinks.h"
-#include "rootmiddles.h"
-#include "rootrigid.h"
+#include "slicegroups.h"
+#include "slicelinks.h"
+#include "slicemiddles.h"
+#include "slicerigid.h"
 #include <string.h>
 
 /* Coordinates below this part of the model's size are round-off of the mesh generator. */
@@ -64,76 +64,62 @@ PetscErrorCode MeshGenerate(MPI_Comm comm, Scene scene, const char *directory, P
 
 /* Creation */
 
-/* Sends the bounding box and the order, which rank 0 found, to all ranks. */
-static PetscErrorCode ShareFrame(Mesh mesh)
-{
-  PetscReal frame[4] = {mesh->centre[0], mesh->centre[1], mesh->centre[2], mesh->size};
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(frame, 4, MPIU_REAL, 0, mesh->comm));
-  PetscCallMPI(MPI_Bcast(&mesh->order, 1, MPI_INT, 0, mesh->comm));
-  PetscCall(PetscArraycpy(mesh->centre, frame, 3));
-  mesh->size = frame[3];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Reads the file into root on rank 0; all ranks get the order and the bounding box. */
-static PetscErrorCode ReadFile(Scene scene, const char *file, RootMesh *root, Mesh mesh)
-{
-  Complaint   complaint = {""};
-  PetscMPIInt size;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
-  if (root) PetscCall(RootMeshRead(scene, file, size, root, mesh, &complaint));
-  PetscCall(ComplaintRefuse(mesh->comm, &complaint));
-  PetscCall(ShareFrame(mesh));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Finds faces and nodes of the groups, and checks the mesh. */
-static PetscErrorCode FindGroups(Scene scene, const char *file, RootMesh *root, Mesh mesh)
+/* Reads the file into slices. */
+static PetscErrorCode ReadFile(Scene scene, const char *file, SliceMesh *slice, Mesh mesh)
 {
   Complaint complaint = {""};
 
   PetscFunctionBeginUser;
-  PetscCall(RootGroupsShare(scene, mesh, root));
-  if (root) {
-    PetscCall(CellFacesCreate(root));
-    CellFacesCheck(scene, file, root, &complaint);
-    if (!complaint.text[0]) PetscCall(RootMiddlesCheck(file, root, &complaint));
-    if (!complaint.text[0]) PetscCall(RootGroupsFind(scene, file, root, mesh, &complaint));
-    if (!complaint.text[0]) RootGroupsCheckUses(scene, root, mesh, &complaint);
-  }
+  PetscCall(SliceMeshRead(scene, file, slice, mesh, &complaint));
   PetscCall(ComplaintRefuse(mesh->comm, &complaint));
-  PetscCall(RootGroupsShareCounts(scene, mesh));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Decides on rank 0 which rank gets which cell: part, to be freed with PetscFree(). The faces of the cells are freed.
- */
-static PetscErrorCode PartitionBodies(Scene scene, RootMesh *root, PetscMPIInt **part, Mesh mesh)
+/* Finds faces and nodes of the groups, and checks the mesh. */
+static PetscErrorCode FindGroups(Scene scene, const char *file, SliceMesh *slice, Mesh mesh)
 {
-  const PetscInt n       = root ? root->n_cells : 0;
-  PetscBool     *contact = NULL;
-  PetscInt      *offsets = NULL, *adjacency = NULL;
-  CellLinks      links = {0};
-  PetscMPIInt    size;
+  Complaint complaint = {""};
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
-  if (root && size > 1) {
-    PetscCall(RootGroupsContactCells(scene, root, mesh, &contact));
-    PetscCall(RootLinksFind(scene, root, mesh, &links));
-    PetscCall(CellFacesNeighbours(root, &offsets, &adjacency));
+  PetscCall(SliceGroupsShare(scene, mesh, slice));
+  PetscCall(CellFacesCreate(slice));
+  PetscCall(CellFacesCheck(scene, file, slice, &complaint));
+  PetscCall(ComplaintRefuse(mesh->comm, &complaint));
+  PetscCall(SliceMiddlesCheck(file, slice, &complaint));
+  PetscCall(ComplaintRefuse(mesh->comm, &complaint));
+  PetscCall(SliceGroupsFind(scene, file, slice, mesh, &complaint));
+  PetscCall(ComplaintRefuse(mesh->comm, &complaint));
+  SliceGroupsCheckUses(scene, slice, mesh, &complaint);
+  PetscCall(ComplaintRefuse(mesh->comm, &complaint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Decides which rank gets which of the slice's cells: part, to be freed with PetscFree(). The graph of the cells is the
+   only thing that the first rank gathers of all of them. The faces of the cells are freed. */
+static PetscErrorCode PartitionBodies(Scene scene, SliceMesh *slice, PetscMPIInt **part, Mesh mesh)
+{
+  const PetscInt n       = slice->cell_start[slice->size];
+  PetscBool     *contact = NULL;
+  PetscInt      *offsets = NULL, *adjacency = NULL;
+  PetscMPIInt   *all   = NULL, *counts, *starts;
+  CellLinks      links = {0};
+
+  PetscFunctionBeginUser;
+  if (slice->size > 1) {
+    PetscCall(SliceGroupsContactCells(scene, slice, mesh, &contact));
+    PetscCall(SliceLinksFind(scene, slice, mesh, &links));
+    PetscCall(CellFacesNeighbours(slice, &offsets, &adjacency));
   }
-  if (root) PetscCall(CellFacesFree(root));
-  PetscCall(PetscMalloc1(n, part));
-  PetscCall(PartitionCells(mesh->comm, n, offsets, adjacency, contact, &links, *part, &mesh->partition));
-  PetscCall(PetscFree(offsets));
-  PetscCall(PetscFree(adjacency));
+  PetscCall(CellFacesFree(slice));
+  if (!slice->rank) PetscCall(PetscMalloc1(n, &all));
+  PetscCall(PartitionCells(mesh->comm, n, &offsets, &adjacency, contact, &links, all, &mesh->partition));
   PetscCall(PetscFree(contact));
   PetscCall(PetscFree(links.cell));
+  PetscCall(SliceMeshCellCounts(slice, &counts, &starts));
+  PetscCall(PetscMalloc1(slice->n_cells, part));
+  PetscCallMPI(MPI_Scatterv(all, counts, starts, MPI_INT, *part, counts[slice->rank], MPI_INT, 0, mesh->comm));
+  PetscCall(PetscFree2(counts, starts));
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -149,21 +135,21 @@ static PetscErrorCode FreeAllDofs(Mesh mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Creates the whole mesh from its file. root is NULL on ranks other than 0. */
-static PetscErrorCode MeshBuild(Scene scene, const char *file, RootMesh *root, Mesh mesh)
+/* Creates the whole mesh from its file. */
+static PetscErrorCode MeshBuild(Scene scene, const char *file, SliceMesh *slice, Mesh mesh)
 {
   PetscMPIInt *part;
 
   PetscFunctionBeginUser;
-  PetscCall(ReadFile(scene, file, root, mesh));
-  PetscCall(FindGroups(scene, file, root, mesh));
-  PetscCall(RootRigidCreate(scene, root, mesh));
+  PetscCall(ReadFile(scene, file, slice, mesh));
+  PetscCall(FindGroups(scene, file, slice, mesh));
+  PetscCall(SliceRigidCreate(scene, slice, mesh));
   PetscCall(MeshToolsList(scene, mesh));
-  PetscCall(FormulationsChoose(scene, root, mesh));
-  PetscCall(ContactFormulationsChoose(scene, root, mesh));
-  PetscCall(PressureNodesExist(scene, root, mesh));
-  PetscCall(PartitionBodies(scene, root, &part, mesh));
-  PetscCall(MeshDistribute(root, part, mesh));
+  PetscCall(FormulationsChoose(scene, slice, mesh));
+  PetscCall(ContactFormulationsChoose(scene, slice, mesh));
+  PetscCall(PressureNodesExist(scene, slice, mesh));
+  PetscCall(PartitionBodies(scene, slice, &part, mesh));
+  PetscCall(MeshDistribute(slice, part, mesh));
   PetscCall(PetscFree(part));
   PetscCall(MeshToolsMeasureBolts(scene, mesh));
   PetscCall(FreeAllDofs(mesh));
@@ -176,7 +162,7 @@ static PetscErrorCode MeshBuild(Scene scene, const char *file, RootMesh *root, M
   Collective
 
   Input Parameters:
-+ comm  - all ranks; rank 0 reads the file
++ comm  - all ranks; rank 0 reads the file and passes it on piece by piece
 . scene - bodies, dimension, and the surfaces that are loaded or in contact
 - file  - path of a .msh file, format 4.1
 
@@ -191,21 +177,18 @@ static PetscErrorCode MeshBuild(Scene scene, const char *file, RootMesh *root, M
 @*/
 PetscErrorCode MeshCreate(MPI_Comm comm, Scene scene, const char *file, Mesh *created)
 {
-  RootMesh       storage = {.n_cells = 0}, *root;
+  SliceMesh      slice = {.n_cells = 0};
   Mesh           mesh;
-  PetscMPIInt    rank;
   PetscErrorCode code;
 
   PetscFunctionBeginUser;
   *created = NULL;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  root = rank ? NULL : &storage;
   PetscCall(PetscNew(&mesh));
   mesh->comm = comm;
   mesh->dim  = scene->dim;
-  code       = MeshBuild(scene, file, root, mesh);
+  code       = MeshBuild(scene, file, &slice, mesh);
   if (code == REFUSED) { /* a refusal occurs on all ranks, before the mesh is distributed */
-    if (root) PetscCall(RootMeshReset(root));
+    PetscCall(SliceMeshReset(&slice));
     PetscCall(MeshDestroy(&mesh));
   }
   PetscCall(code);
@@ -233,7 +216,7 @@ PetscErrorCode MeshDestroy(Mesh *destroyed)
     PetscCall(PetscFree3(mesh->groups[g].face_cell, mesh->groups[g].face_number, mesh->groups[g].face_tag));
   }
   PetscCall(PetscFree(mesh->groups));
-  PetscCall(RootRigidDestroy(mesh));
+  PetscCall(SliceRigidDestroy(mesh));
   PetscCall(PetscFree5(mesh->node_id, mesh->node_tag, mesh->node_owner, mesh->node_owner_local, mesh->coords));
   PetscCall(PetscFree(mesh->tools));
   PetscCall(PetscFree(mesh->notes));

@@ -3,10 +3,10 @@
    no physics. MeshGenerate() makes the file, MeshCreate() reads, checks and distributes it, MeshDestroy() frees the
    mesh.
 
-   The steps are these. gmsh.h makes the file. gmshfile.h reads it on rank 0. rootmesh.h checks it against the scene.
-   cellfaces.h finds the cells that share faces, rootmiddles.h checks middle nodes. rootgroups.h and rootrigid.h find
-   groups and rigid tools. partition.h decides which rank gets which cell, and meshdistribution.h distributes the mesh.
-   The headers that are included here are all that users of a mesh need besides. */
+   The steps are these. gmsh.h makes the file. gmshfile.h reads it and shares it out. slicemesh.h checks it against the
+   scene. cellfaces.h finds the cells that share faces, slicemiddles.h checks middle nodes. slicegroups.h and
+   slicerigid.h find groups and rigid tools. partition.h decides which rank gets which cell, and meshdistribution.h
+   distributes the mesh. The headers that are included here are all that users of a mesh need besides. */
 #pragma once
 #include "mesh/meshdata.h"
 #include "mesh/meshdofs.h"

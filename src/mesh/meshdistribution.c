@@ -1,9 +1,10 @@
 /* Distribution of the mesh: cells and faces of groups are sent to their ranks. Each rank then lists the nodes of its
-   cells, and gets what is known of them, and who owns them, from where the nodes were. */
+   cells, and gets what is known of them, and who owns them, from their homes. */
 #include "meshdistribution.h"
 #include "meshtools.h"
 #include "pressurenodesimpl.h"
 #include "base/exchange.h"
+#include "base/integerset.h"
 
 /* Entries of a cell's record. The ids of its nodes follow. */
 enum { CELL_ID, CELL_TAG, CELL_TYPE, CELL_BODY, CELL_HEADER };
@@ -12,28 +13,28 @@ enum { CELL_ID, CELL_TAG, CELL_TYPE, CELL_BODY, CELL_HEADER };
 typedef struct {
   PetscInt n_cells, width, *cells; /* records of the cells, by ascending id, with room for the most nodes of any cell */
   PetscInt n_faces;
-  RootFace *faces; /* of groups, by ascending cell */
+  SliceFace *faces; /* of groups, by ascending cell */
 } Cargo;
 
 /* Cells and faces */
 
 static void PackCell(const void *context, PetscInt c, void *packed)
 {
-  const RootMesh  *root   = context;
-  const GmshBlock *block  = root->cell_block[c];
+  const SliceMesh *slice  = context;
+  const GmshBlock *block  = slice->cell_block[c];
   PetscInt        *record = packed;
 
-  record[CELL_ID]   = c;
-  record[CELL_TAG]  = block->tag[root->cell_item[c]];
+  record[CELL_ID]   = slice->cell_start[slice->rank] + c;
+  record[CELL_TAG]  = slice->cell_tag[c];
   record[CELL_TYPE] = (PetscInt)block->element->type;
-  record[CELL_BODY] = root->cell_body[c];
-  for (int k = 0; k < block->nodes; k++) record[CELL_HEADER + k] = root->id[RootMeshCellNodes(root, c)[k]];
+  record[CELL_BODY] = slice->cell_body[c];
+  for (int k = 0; k < block->nodes; k++) record[CELL_HEADER + k] = slice->id[SliceMeshCellNodes(slice, c)[k]];
 }
 
 static void PackFace(const void *context, PetscInt f, void *packed)
 {
-  const RootFace *face = &((const RootMesh *)context)->faces[f];
-  RootFace       *to   = packed;
+  const SliceFace *face = &((const SliceMesh *)context)->faces[f];
+  SliceFace       *to   = packed;
 
   to->cell   = face->cell;
   to->group  = face->group;
@@ -41,21 +42,17 @@ static void PackFace(const void *context, PetscInt f, void *packed)
   to->number = face->number;
 }
 
-static PetscErrorCode SendCells(Mesh mesh, const RootMesh *root, const PetscMPIInt part[], Cargo *cargo)
+static PetscErrorCode SendCells(Mesh mesh, const SliceMesh *slice, const PetscMPIInt part[], Cargo *cargo)
 {
-  const PetscInt n_cells = root ? root->n_cells : 0, n_faces = root ? root->n_faces : 0;
-  PetscMPIInt   *to;
-  int            most = 0;
+  PetscMPIInt *to;
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < n_cells; c++) most = PetscMax(most, root->cell_block[c]->nodes);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_INT, MPI_MAX, mesh->comm));
-  cargo->width = CELL_HEADER + most;
-  PetscCall(ExchangeRecords(mesh->comm, (size_t)cargo->width * sizeof(PetscInt), n_cells, part, PackCell, root,
+  cargo->width = CELL_HEADER + slice->width;
+  PetscCall(ExchangeRecords(mesh->comm, (size_t)cargo->width * sizeof(PetscInt), slice->n_cells, part, PackCell, slice,
                             &cargo->n_cells, (void **)&cargo->cells));
-  PetscCall(PetscMalloc1(n_faces, &to));
-  for (PetscInt f = 0; f < n_faces; f++) to[f] = part[root->faces[f].cell];
-  PetscCall(ExchangeRecords(mesh->comm, sizeof(RootFace), n_faces, to, PackFace, root, &cargo->n_faces,
+  PetscCall(PetscMalloc1(slice->n_faces, &to));
+  for (PetscInt f = 0; f < slice->n_faces; f++) to[f] = part[slice->faces[f].cell - slice->cell_start[slice->rank]];
+  PetscCall(ExchangeRecords(mesh->comm, sizeof(SliceFace), slice->n_faces, to, PackFace, slice, &cargo->n_faces,
                             (void **)&cargo->faces));
   PetscCall(PetscFree(to));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -103,8 +100,8 @@ static PetscErrorCode CreateFaces(Mesh mesh, const Cargo *cargo)
       PetscMalloc3(n_faces[g], &group->face_cell, n_faces[g], &group->face_number, n_faces[g], &group->face_tag));
   }
   for (PetscInt f = 0; f < cargo->n_faces; f++) {
-    const RootFace *face  = &cargo->faces[f];
-    MeshGroup      *group = &mesh->groups[face->group];
+    const SliceFace *face  = &cargo->faces[f];
+    MeshGroup       *group = &mesh->groups[face->group];
 
     while (mesh->cell_id[c] < face->cell) c++;
     group->face_cell[group->n_faces]   = c;
@@ -118,48 +115,21 @@ static PetscErrorCode CreateFaces(Mesh mesh, const Cargo *cargo)
 /* Nodes */
 
 /* Lists the ids of the cells' nodes, ascending, and replaces them in the cells by their places in the list. */
-static PetscErrorCode ListNodes(Mesh mesh, PetscInt *n, PetscInt **ids)
+static PetscErrorCode ListNodes(Mesh mesh, IntegerSet *ids)
 {
-  const PetscInt n_entries = mesh->cell_ptr[mesh->n_cells];
+  const PetscInt        n     = mesh->cell_ptr[mesh->n_cells];
+  const PetscInt *const nodes = mesh->cell_nodes;
 
   PetscFunctionBeginUser;
-  *n = n_entries;
-  PetscCall(PetscMalloc1(n_entries, ids));
-  PetscCall(PetscArraycpy(*ids, mesh->cell_nodes, n_entries));
-  PetscCall(PetscSortRemoveDupsInt(n, *ids));
-  PetscCall(PetscRealloc((size_t)*n * sizeof(PetscInt), ids));
-  for (PetscInt k = 0; k < n_entries; k++) PetscCall(PetscFindInt(mesh->cell_nodes[k], *n, *ids, &mesh->cell_nodes[k]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Makes the SF from this rank's nodes to where they were before distribution. */
-static PetscErrorCode CreateHomes(Mesh mesh, const RootMesh *root, PetscInt n, const PetscInt ids[], PetscSF *homes)
-{
-  const PetscInt mine = root ? root->n_nodes : 0;
-  PetscInt      *counts, start = 0;
-  PetscSFNode   *home;
-  PetscMPIInt    size, r = 0;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
-  PetscCall(PetscMalloc1(size, &counts));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPIU_INT, counts, 1, MPIU_INT, mesh->comm));
-  PetscCall(PetscMalloc1(n, &home));
-  for (PetscInt i = 0; i < n; i++) {
-    while (ids[i] >= start + counts[r]) start += counts[r++];
-    home[i] = (PetscSFNode){.rank = r, .index = ids[i] - start};
-  }
-  PetscCall(PetscSFCreate(mesh->comm, homes));
-  PetscCall(PetscSFSetGraph(*homes, mine, n, NULL, PETSC_OWN_POINTER, home, PETSC_OWN_POINTER));
-  PetscCall(PetscSFSetUp(*homes));
-  PetscCall(PetscFree(counts));
+  PetscCall(IntegerSetCreate(1, &n, &nodes, ids));
+  for (PetscInt k = 0; k < n; k++) mesh->cell_nodes[k] = IntegerSetPlace(ids, mesh->cell_nodes[k]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Gets the tags and coordinates of this rank's nodes. */
-static PetscErrorCode FetchNodes(Mesh mesh, const RootMesh *root, PetscSF homes)
+static PetscErrorCode FetchNodes(Mesh mesh, const SliceMesh *slice, PetscSF homes)
 {
-  const PetscInt n = root ? root->n_nodes : 0;
+  const PetscInt n = slice->n_homes;
   PetscInt      *tags;
   PetscReal     *places;
   MPI_Datatype   place;
@@ -167,9 +137,9 @@ static PetscErrorCode FetchNodes(Mesh mesh, const RootMesh *root, PetscSF homes)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &tags, n * mesh->dim, &places));
   for (PetscInt i = 0; i < n; i++) {
-    tags[i] = root->gmsh.node_tag[root->node[i]];
+    tags[i] = slice->gmsh.node_tag[slice->home[i]];
     for (int k = 0; k < mesh->dim; k++)
-      places[i * mesh->dim + k] = root->gmsh.coords[3 * root->node[i] + k] - mesh->centre[k];
+      places[i * mesh->dim + k] = slice->gmsh.coords[3 * slice->home[i] + k] - mesh->centre[k];
   }
   PetscCallMPI(MPI_Type_contiguous(mesh->dim, MPIU_REAL, &place));
   PetscCallMPI(MPI_Type_commit(&place));
@@ -183,7 +153,7 @@ static PetscErrorCode FetchNodes(Mesh mesh, const RootMesh *root, PetscSF homes)
 }
 
 /* Gives the groups their nodes, from the marks. */
-static PetscErrorCode FetchGroupNodes(Mesh mesh, const RootMesh *root, PetscSF homes)
+static PetscErrorCode FetchGroupNodes(Mesh mesh, const SliceMesh *slice, PetscSF homes)
 {
   int *marks;
 
@@ -191,9 +161,9 @@ static PetscErrorCode FetchGroupNodes(Mesh mesh, const RootMesh *root, PetscSF h
   PetscCall(PetscMalloc1(mesh->n_body_nodes, &marks));
   for (int g = 0; g < mesh->n_groups; g++) {
     MeshGroup *group = &mesh->groups[g];
-    const int  bit = 1 << g % ROOT_MARKS, *sent = root ? root->marks + g / ROOT_MARKS * root->n_nodes : NULL;
+    const int  bit = 1 << g % SLICE_MARKS, *sent = slice->marks + g / SLICE_MARKS * slice->n_homes;
 
-    if (g % ROOT_MARKS == 0) {
+    if (g % SLICE_MARKS == 0) {
       PetscCall(PetscSFBcastBegin(homes, MPI_INT, sent, marks, MPI_REPLACE));
       PetscCall(PetscSFBcastEnd(homes, MPI_INT, sent, marks, MPI_REPLACE));
     }
@@ -224,9 +194,9 @@ static PetscErrorCode FetchLargest(PetscSF homes, PetscInt n_homes, const PetscI
 }
 
 /* Finds the owners of the cells' nodes, the highest rank that has them, and their numbers there. */
-static PetscErrorCode FindOwners(Mesh mesh, const RootMesh *root, PetscSF homes)
+static PetscErrorCode FindOwners(Mesh mesh, const SliceMesh *slice, PetscSF homes)
 {
-  const PetscInt n = mesh->n_body_nodes, n_homes = root ? root->n_nodes : 0;
+  const PetscInt n = mesh->n_body_nodes, n_homes = slice->n_homes;
   PetscInt      *mine;
   PetscMPIInt    rank;
 
@@ -308,23 +278,23 @@ static PetscErrorCode AllocateNodes(Mesh mesh, PetscInt n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes all nodes. root is emptied as soon as it has said what it knows of them. */
-static PetscErrorCode CreateNodes(RootMesh *root, Mesh mesh)
+/* Makes all nodes. The slice is emptied as soon as it has said what it knows of them. */
+static PetscErrorCode CreateNodes(SliceMesh *slice, Mesh mesh)
 {
-  PetscInt n, *ids;
-  PetscSF  homes;
+  IntegerSet ids;
+  PetscSF    homes;
 
   PetscFunctionBeginUser;
-  PetscCall(ListNodes(mesh, &n, &ids));
-  PetscCall(AllocateNodes(mesh, n));
-  PetscCall(PetscArraycpy(mesh->node_id, ids, n));
-  PetscCall(PetscFree(ids));
-  PetscCall(CreateHomes(mesh, root, n, mesh->node_id, &homes));
-  PetscCall(FetchNodes(mesh, root, homes));
-  PetscCall(FetchGroupNodes(mesh, root, homes));
-  PetscCall(FindOwners(mesh, root, homes));
+  PetscCall(ListNodes(mesh, &ids));
+  PetscCall(AllocateNodes(mesh, ids.n));
+  PetscCall(PetscArraycpy(mesh->node_id, ids.value, ids.n));
+  PetscCall(IntegerSetDestroy(&ids));
+  PetscCall(SliceMeshSF(slice, slice->home_start, mesh->n_body_nodes, mesh->node_id, &homes));
+  PetscCall(FetchNodes(mesh, slice, homes));
+  PetscCall(FetchGroupNodes(mesh, slice, homes));
+  PetscCall(FindOwners(mesh, slice, homes));
   PetscCall(PetscSFDestroy(&homes));
-  if (root) PetscCall(RootMeshReset(root));
+  PetscCall(SliceMeshReset(slice));
   PetscCall(MeshToolsPlaceNodes(mesh));
   PressureNodesPlace(mesh);
   PetscCall(FindOtherOwners(mesh));
@@ -338,26 +308,26 @@ static PetscErrorCode CreateNodes(RootMesh *root, Mesh mesh)
   Collective
 
   Input Parameters:
-+ root - on rank 0, with faces and marks; emptied. NULL on other ranks
-. part - on rank 0: rank of each cell
-- mesh - centre, groups, tools and whether there are pressures are read
++ slice - with faces and marks; emptied
+. part  - rank of each of its cells
+- mesh  - centre, groups, tools and whether there are pressures are read
 
   Note:
   All arrays of nodes and cells, and the groups' nodes and faces, are set. Cells do not overlap. A node belongs to the
   highest rank that has a cell with it.
 @*/
-PetscErrorCode MeshDistribute(RootMesh *root, const PetscMPIInt part[], Mesh mesh)
+PetscErrorCode MeshDistribute(SliceMesh *slice, const PetscMPIInt part[], Mesh mesh)
 {
   Cargo cargo;
 
   PetscFunctionBeginUser;
-  PetscCall(SendCells(mesh, root, part, &cargo));
-  if (root) PetscCall(RootMeshFreeCells(root));
+  PetscCall(SendCells(mesh, slice, part, &cargo));
+  PetscCall(SliceMeshFreeCells(slice));
   PetscCall(CreateCells(mesh, &cargo));
   PetscCall(PetscFree(cargo.cells));
   PetscCall(CreateFaces(mesh, &cargo));
   PetscCall(PetscFree(cargo.faces));
-  PetscCall(CreateNodes(root, mesh));
+  PetscCall(CreateNodes(slice, mesh));
   PetscCallMPI(MPI_Allreduce(&mesh->n_owned, &mesh->n_global, 1, MPIU_INT, MPI_SUM, mesh->comm));
   PetscCallMPI(MPI_Allreduce(&mesh->n_cells, &mesh->n_cells_global, 1, MPIU_INT, MPI_SUM, mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -69,12 +69,13 @@ static PetscErrorCode PartitionFreeGraph(Graph *graph)
 }
 
 /* Counts pairs of neighbours in different parts, without links. */
-static PetscInt CountCut(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const PetscInt part[])
+static PetscInt CountCut(idx_t n, const Graph *graph, const PetscInt part[])
 {
   PetscInt ends = 0;
 
-  for (PetscInt c = 0; c < n; c++)
-    for (PetscInt k = offsets[c]; k < offsets[c + 1]; k++) ends += part[c] != part[adjacency[k]];
+  for (idx_t c = 0; c < n; c++)
+    for (idx_t k = graph->offsets[c]; k < graph->offsets[c + 1]; k++)
+      ends += graph->weights[k] != LINK_WEIGHT && part[c] != part[graph->neighbours[k]];
   return ends / 2;
 }
 
@@ -128,6 +129,29 @@ static int PartitionFind(idx_t n, idx_t n_weights, const PetscBool contact[], Gr
                              NULL, tolerance, options, &cut, found);
 }
 
+/* Partitions a graph and frees it. */
+static PetscErrorCode PartitionUp(PetscInt n, Graph *graph, const PetscBool contact[], PetscInt parts, PetscInt part[],
+                                  PetscInt *edge_cut)
+{
+  idx_t *weights, *found, n_vertices, n_weights = 1, n_parts;
+  int    status;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; contact && c < n; c++)
+    if (contact[c]) n_weights = 2; /* METIS cannot balance weights that are all zero */
+  PetscCall(IndexCast(n, &n_vertices));
+  PetscCall(IndexCast(parts, &n_parts));
+  PetscCall(PetscMalloc2(n * n_weights, &weights, n, &found));
+  status = PartitionFind(n_vertices, n_weights, contact, graph, n_parts, weights, found);
+  if (status != METIS_OK && n_weights == 2) status = PartitionFind(n_vertices, 1, NULL, graph, n_parts, weights, found);
+  PetscCheck(status == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS failed with status %d", status);
+  for (PetscInt c = 0; c < n; c++) part[c] = (PetscInt)found[c];
+  *edge_cut = CountCut(n_vertices, graph, part);
+  PetscCall(PartitionFreeGraph(graph));
+  PetscCall(PetscFree2(weights, found));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   PartitionGraph - partitions a graph of cells with METIS' k-way method.
 
@@ -152,25 +176,11 @@ PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscI
                               const PetscBool contact[], const CellLinks *links, PetscInt parts, PetscInt part[],
                               PetscInt *edge_cut)
 {
-  Graph  graph;
-  idx_t *weights, *found, n_vertices, n_weights = 1, n_parts;
-  int    status;
+  Graph graph;
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; contact && c < n; c++)
-    if (contact[c]) n_weights = 2; /* METIS cannot balance weights that are all zero */
-  PetscCall(IndexCast(n, &n_vertices));
-  PetscCall(IndexCast(parts, &n_parts));
   PetscCall(GraphCreate(n, offsets, adjacency, links, &graph));
-  PetscCall(PetscMalloc2(n * n_weights, &weights, n, &found));
-  status = PartitionFind(n_vertices, n_weights, contact, &graph, n_parts, weights, found);
-  if (status != METIS_OK && n_weights == 2)
-    status = PartitionFind(n_vertices, 1, NULL, &graph, n_parts, weights, found);
-  PetscCheck(status == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS failed with status %d", status);
-  for (PetscInt c = 0; c < n; c++) part[c] = (PetscInt)found[c];
-  *edge_cut = CountCut(n, offsets, adjacency, part);
-  PetscCall(PartitionFreeGraph(&graph));
-  PetscCall(PetscFree2(weights, found));
+  PetscCall(PartitionUp(n, &graph, contact, parts, part, edge_cut));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -182,8 +192,8 @@ PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscI
   Input Parameters:
 + comm      - the ranks
 . n         - on rank 0: number of cells
-. offsets   - on rank 0: start of each cell's neighbours in adjacency
-. adjacency - on rank 0: neighbours across faces
+. offsets   - on rank 0: start of each cell's neighbours in adjacency; freed as soon as METIS has a graph of its own
+. adjacency - on rank 0: neighbours across faces; freed too
 . contact   - on rank 0: for each cell, whether it has a face in contact; a second weight, so that contact work is
   balanced too
 - links     - on rank 0: cells that face each other across contact, which are kept on one rank where that is cheap
@@ -192,11 +202,12 @@ PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscI
 + ranks     - on rank 0: the rank of each cell [n]
 - partition - tool, edge cut and imbalances, the same on all ranks
 @*/
-PetscErrorCode PartitionCells(MPI_Comm comm, PetscInt n, const PetscInt offsets[], const PetscInt adjacency[],
+PetscErrorCode PartitionCells(MPI_Comm comm, PetscInt n, PetscInt **offsets, PetscInt **adjacency,
                               const PetscBool contact[], const CellLinks *links, PetscMPIInt ranks[],
                               Partition *partition)
 {
   PetscMPIInt rank, size;
+  Graph       graph;
   PetscInt   *count, *part;
   PetscReal   imbalances[2] = {1, 1};
 
@@ -208,8 +219,11 @@ PetscErrorCode PartitionCells(MPI_Comm comm, PetscInt n, const PetscInt offsets[
   if (size == 1) PetscFunctionReturn(PETSC_SUCCESS);
   partition->tool = "metis";
   if (!rank) {
+    PetscCall(GraphCreate(n, *offsets, *adjacency, links, &graph));
+    PetscCall(PetscFree(*offsets));
+    PetscCall(PetscFree(*adjacency));
     PetscCall(PetscMalloc2(size, &count, n, &part));
-    PetscCall(PartitionGraph(n, offsets, adjacency, contact, links, size, part, &partition->edge_cut));
+    PetscCall(PartitionUp(n, &graph, contact, size, part, &partition->edge_cut));
     imbalances[0] = PartitionImbalance(n, part, NULL, size, count);
     imbalances[1] = PartitionImbalance(n, part, contact, size, count);
     for (PetscInt c = 0; c < n; c++) ranks[c] = (PetscMPIInt)part[c];

@@ -16,8 +16,8 @@ typedef struct {
   PetscInt n, *cell;
 } CellLinks;
 
-PetscErrorCode PartitionCells(MPI_Comm, PetscInt n, const PetscInt offsets[], const PetscInt adjacency[],
-                              const PetscBool contact[], const CellLinks *, PetscMPIInt part[], Partition *);
+PetscErrorCode PartitionCells(MPI_Comm, PetscInt n, PetscInt **offsets, PetscInt **adjacency, const PetscBool contact[],
+                              const CellLinks *, PetscMPIInt part[], Partition *);
 PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[],
                               const PetscBool contact[], const CellLinks *, PetscInt parts, PetscInt part[],
                               PetscInt *edge_cut);

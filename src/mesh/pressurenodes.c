@@ -4,6 +4,7 @@
 #include "formulationchoice.h"
 #include "pressurenodesimpl.h"
 #include "base/complaint.h"
+#include "base/exchange.h"
 
 /* Says whether the nodes of the cells of a type in a body have pressures. */
 static PetscBool HasPressures(Scene scene, int body, ElementType type)
@@ -36,32 +37,94 @@ static void SortMaterials(Scene scene, int *material)
   }
 }
 
-/* Marks the pairs of materials with pressures that share nodes: bonded [n_bodies][n_bodies]. A node lists one material
-   more than it has components, at most, since components fail there anyway. On rank 0. */
-static PetscErrorCode FindBonds(Scene scene, const RootMesh *root, int dim, const int *material, PetscBool *bonded)
+/* A material with pressures at a node */
+typedef struct {
+  PetscInt id;
+  int      material;
+} NodeMaterial;
+
+static void PackNodeMaterial(const void *context, PetscInt i, void *packed)
+{
+  const NodeMaterial *from = &((const NodeMaterial *)context)[i];
+  NodeMaterial       *to   = packed;
+
+  to->id       = from->id;
+  to->material = from->material;
+}
+
+/* Lists the materials with pressures at the nodes of the slice, in the order of its cells, each at most once in a row.
+ */
+static PetscErrorCode ListMaterials(Scene scene, const SliceMesh *slice, const int *material, PetscInt *n,
+                                    NodeMaterial **list)
+{
+  int *last;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  for (PetscInt c = 0; c < slice->n_cells; c++)
+    if (HasPressures(scene, slice->cell_body[c], slice->cell_block[c]->element->type))
+      *n += slice->cell_block[c]->nodes;
+  PetscCall(PetscMalloc1(*n, list));
+  PetscCall(PetscMalloc1(slice->n_nodes, &last));
+  for (PetscInt i = 0; i < slice->n_nodes; i++) last[i] = -1;
+  *n = 0;
+  for (PetscInt c = 0; c < slice->n_cells; c++) {
+    const PetscInt *nodes = SliceMeshCellNodes(slice, c);
+    const int       own   = material[slice->cell_body[c]];
+
+    if (!HasPressures(scene, slice->cell_body[c], slice->cell_block[c]->element->type)) continue;
+    for (int k = 0; k < slice->cell_block[c]->nodes; k++) {
+      if (last[nodes[k]] == own) continue;
+      last[nodes[k]]  = own;
+      (*list)[(*n)++] = (NodeMaterial){.id = slice->id[nodes[k]], .material = own};
+    }
+  }
+  PetscCall(PetscFree(last));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the pairs of materials with pressures that share nodes of this home. A node lists one material more than it has
+   components, at most, since components fail there anyway. */
+static PetscErrorCode MarkBonds(const SliceMesh *slice, int n_bodies, int dim, PetscInt n, const NodeMaterial list[],
+                                PetscBool *bonded)
 {
   int *known, *count;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(root->gmsh.n_nodes * (dim + 1), &known));
-  PetscCall(PetscCalloc1(root->gmsh.n_nodes, &count));
-  for (PetscInt c = 0; c < root->n_cells; c++) {
-    const PetscInt *nodes = RootMeshCellNodes(root, c);
-    const int       own   = material[root->cell_body[c]];
+  PetscCall(PetscMalloc1(slice->n_homes * (dim + 1), &known));
+  PetscCall(PetscCalloc1(slice->n_homes, &count));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt home = list[i].id - slice->home_start[slice->rank];
+    const int      own  = list[i].material;
+    int           *at = &known[home * (dim + 1)], *n_known = &count[home], m = 0;
 
-    if (!HasPressures(scene, root->cell_body[c], root->cell_block[c]->element->type)) continue;
-    for (int k = 0; k < root->cell_block[c]->nodes; k++) {
-      int *at = &known[nodes[k] * (dim + 1)], *n = &count[nodes[k]], m = 0;
-
-      while (m < *n && at[m] != own) m++;
-      if (m < *n || *n > dim) continue;
-      for (m = 0; m < *n; m++)
-        bonded[own * scene->n_bodies + at[m]] = bonded[at[m] * scene->n_bodies + own] = PETSC_TRUE;
-      at[(*n)++] = own;
-    }
+    while (m < *n_known && at[m] != own) m++;
+    if (m < *n_known || *n_known > dim) continue;
+    for (m = 0; m < *n_known; m++) bonded[own * n_bodies + at[m]] = bonded[at[m] * n_bodies + own] = PETSC_TRUE;
+    at[(*n_known)++] = own;
   }
   PetscCall(PetscFree(known));
   PetscCall(PetscFree(count));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the pairs of materials with pressures that share nodes: bonded [n_bodies][n_bodies], on all ranks. */
+static PetscErrorCode FindBonds(Scene scene, const SliceMesh *slice, int dim, const int *material, PetscBool *bonded)
+{
+  NodeMaterial *mine, *list;
+  PetscInt      n;
+  PetscMPIInt  *to;
+
+  PetscFunctionBeginUser;
+  PetscCall(ListMaterials(scene, slice, material, &n, &mine));
+  PetscCall(PetscMalloc1(n, &to));
+  for (PetscInt i = 0; i < n; i++) to[i] = SliceMeshRankOf(slice, slice->home_start, mine[i].id);
+  PetscCall(ExchangeRecords(slice->comm, sizeof(NodeMaterial), n, to, PackNodeMaterial, mine, &n, (void **)&list));
+  PetscCall(MarkBonds(slice, scene->n_bodies, dim, n, list, bonded));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bonded, scene->n_bodies * scene->n_bodies, MPIU_BOOL, MPI_LOR, slice->comm));
+  PetscCall(PetscFree(list));
+  PetscCall(PetscFree(mine));
+  PetscCall(PetscFree(to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -102,9 +165,8 @@ static void ChooseComponents(int n, int dim, const int *material, const PetscBoo
   for (int b = 0; b < n; b++) component[b] = material[b] < 0 ? 0 : component[material[b]];
 }
 
-/* Gives bodies of different materials that share nodes different components, and says which bodies these are. On rank
-   0. */
-static PetscErrorCode SeparateBonded(Scene scene, const RootMesh *root, int dim, int *component, int *shares)
+/* Gives bodies of different materials that share nodes different components, and says which bodies these are. */
+static PetscErrorCode SeparateBonded(Scene scene, const SliceMesh *slice, int dim, int *component, int *shares)
 {
   const int  n = scene->n_bodies;
   int       *material;
@@ -114,7 +176,7 @@ static PetscErrorCode SeparateBonded(Scene scene, const RootMesh *root, int dim,
   PetscCall(PetscMalloc1(n, &material));
   PetscCall(PetscCalloc1(n * n, &bonded));
   SortMaterials(scene, material);
-  PetscCall(FindBonds(scene, root, dim, material, bonded));
+  PetscCall(FindBonds(scene, slice, dim, material, bonded));
   ChooseComponents(n, dim, material, bonded, component);
   for (int b = 0; b < n; b++)
     for (int a = 0; a < n && material[b] >= 0; a++) shares[b] |= bonded[material[b] * n + a];
@@ -124,20 +186,20 @@ static PetscErrorCode SeparateBonded(Scene scene, const RootMesh *root, int dim,
 }
 
 /* Refuses a body that has found no component, and whose elements, of first order, cannot condense their pressures. */
-static PetscErrorCode RefuseCrowded(Scene scene, const RootMesh *root, Mesh mesh, const int *component)
+static PetscErrorCode RefuseCrowded(Scene scene, const SliceMesh *slice, Mesh mesh, const int *component)
 {
   Complaint complaint = {""};
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; root && c < root->n_cells; c++) {
-    const SceneBody *body = &scene->bodies[root->cell_body[c]];
+  for (PetscInt c = 0; c < slice->n_cells; c++) {
+    const SceneBody *body = &scene->bodies[slice->cell_body[c]];
 
-    if (component[root->cell_body[c]] < mesh->dim) continue;
-    if (HasPressures(scene, root->cell_body[c], root->cell_block[c]->element->type))
+    if (component[slice->cell_body[c]] < mesh->dim) continue;
+    if (HasPressures(scene, slice->cell_body[c], slice->cell_block[c]->element->type))
       Complain(&complaint,
                "%s: body '%s' of mixed %s shares nodes with bodies of %d other materials, whose pressures leave none "
                "for it; allowed: mesh.order: 2",
-               SceneWhere(scene, body->path, "material"), body->name, root->cell_block[c]->element->name,
+               SceneWhere(scene, body->path, "material"), body->name, slice->cell_block[c]->element->name,
                (int)mesh->dim);
   }
   PetscCall(ComplaintRefuse(mesh->comm, &complaint));
@@ -145,21 +207,21 @@ static PetscErrorCode RefuseCrowded(Scene scene, const RootMesh *root, Mesh mesh
 }
 
 /* Condenses pressures where the linear solver iterates, which is not for tangents of a saddle. */
-static PetscErrorCode CondenseAll(Scene scene, const RootMesh *root, Mesh mesh)
+static PetscErrorCode CondenseAll(Scene scene, const SliceMesh *slice, Mesh mesh)
 {
   int all = scene->solver.type == SOLVER_ITERATIVE;
 
   PetscFunctionBeginUser;
-  if (root && scene->solver.type == SOLVER_AUTO && mesh->dim == 3 && mesh->dim * root->n_nodes > SOLVER_DIRECT_DOFS)
+  if (scene->solver.type == SOLVER_AUTO && mesh->dim == 3 &&
+      mesh->dim * slice->home_start[slice->size] > SOLVER_DIRECT_DOFS)
     all = 1;
-  PetscCallMPI(MPI_Bcast(&all, 1, MPI_INT, 0, mesh->comm));
   for (int b = 0; b < scene->n_bodies; b++) scene->bodies[b].condensed = all;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Sets the components of the bodies. Elements of second order condense their pressures where bodies of different
    materials share nodes: on the same mesh the force of two bonded blocks is 0.3 % off then, 1.5 % with components. */
-static PetscErrorCode SetComponents(Scene scene, const RootMesh *root, Mesh mesh)
+static PetscErrorCode SetComponents(Scene scene, const SliceMesh *slice, Mesh mesh)
 {
   const int      n = scene->n_bodies;
   int           *component;
@@ -167,14 +229,13 @@ static PetscErrorCode SetComponents(Scene scene, const RootMesh *root, Mesh mesh
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(2 * n, &component));
-  if (root) PetscCall(SeparateBonded(scene, root, (int)mesh->dim, component, component + n));
-  PetscCallMPI(MPI_Bcast(component, 2 * n, MPI_INT, 0, mesh->comm));
+  PetscCall(SeparateBonded(scene, slice, (int)mesh->dim, component, component + n));
   for (int b = 0; b < n; b++) {
     scene->bodies[b].component = component[b] < mesh->dim ? component[b] : 0;
     scene->bodies[b].condensed |= component[n + b];
     if (component[b] >= mesh->dim) FormulationsCrowded(&scene->bodies[b]);
   }
-  refused = RefuseCrowded(scene, root, mesh, component);
+  refused = RefuseCrowded(scene, slice, mesh, component);
   PetscCall(PetscFree(component));
   PetscCall(refused);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -187,17 +248,17 @@ static PetscErrorCode SetComponents(Scene scene, const RootMesh *root, Mesh mesh
 
   Input Parameters:
 + scene - its bodies, of which condensed and component are set
-. root  - on rank 0, NULL on other ranks
+. slice - after SliceMeshRead()
 - mesh  - has_pressures is set
 @*/
-PetscErrorCode PressureNodesExist(Scene scene, const RootMesh *root, Mesh mesh)
+PetscErrorCode PressureNodesExist(Scene scene, const SliceMesh *slice, Mesh mesh)
 {
   PetscFunctionBeginUser;
-  PetscCall(CondenseAll(scene, root, mesh));
-  PetscCall(SetComponents(scene, root, mesh));
-  for (PetscInt c = 0; root && c < root->n_cells && !mesh->has_pressures; c++)
-    mesh->has_pressures = HasPressures(scene, root->cell_body[c], root->cell_block[c]->element->type);
-  PetscCallMPI(MPI_Bcast(&mesh->has_pressures, 1, MPIU_BOOL, 0, mesh->comm));
+  PetscCall(CondenseAll(scene, slice, mesh));
+  PetscCall(SetComponents(scene, slice, mesh));
+  for (PetscInt c = 0; c < slice->n_cells && !mesh->has_pressures; c++)
+    mesh->has_pressures = HasPressures(scene, slice->cell_body[c], slice->cell_block[c]->element->type);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mesh->has_pressures, 1, MPIU_BOOL, MPI_LOR, mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

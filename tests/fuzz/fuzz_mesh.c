@@ -16,6 +16,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   Complaint complaint = {""};
   GmshMesh  mesh;
 
-  if (GmshRead(FuzzFile(data, size), &mesh, &complaint) || GmshReset(&mesh)) abort();
+  if (GmshRead(PETSC_COMM_SELF, FuzzFile(data, size), &mesh, &complaint) || GmshReset(&mesh)) abort();
   return 0;
 }

@@ -138,7 +138,7 @@ static void CheckAgainstFile(Mesh mesh, const char *file)
   Complaint complaint = {""};
   PetscInt  ids       = 0;
 
-  assert_int_equal(GmshRead(file, &gmsh, &complaint), 0);
+  assert_int_equal(GmshRead(PETSC_COMM_SELF, file, &gmsh, &complaint), 0);
   for (PetscInt i = 0; i < mesh->n_nodes; i++) {
     PetscInt at;
 

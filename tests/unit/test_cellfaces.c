@@ -10,36 +10,54 @@
 enum { CELLS = 3, LAYERS = CELLS + 1, LAYER = 4, NODES = LAYERS * LAYER, CORNERS = 8 };
 
 /* Makes bricks in a row: brick c is between layers c and c + 1, whose nodes are numbered around the layer. */
-static void MakeRow(GmshBlock *block, RootMesh *root)
+static void MakeRow(GmshBlock *block, SliceMesh *slice)
 {
-  static PetscInt         connectivity[CELLS * CORNERS], item[CELLS], id[NODES], vertex[NODES];
+  static const PetscReal  corner[LAYER][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  static PetscInt         nodes[CELLS * CORNERS], id[NODES], cell_start[] = {0, CELLS}, home_start[] = {0, NODES};
+  static PetscReal        coords[3 * NODES];
+  static int              body[CELLS];
   static const GmshBlock *of_cell[CELLS];
 
   for (PetscInt c = 0; c < CELLS; c++) {
-    for (PetscInt k = 0; k < CORNERS; k++) connectivity[c * CORNERS + k] = c * LAYER + k;
-    item[c]    = c;
+    for (PetscInt k = 0; k < CORNERS; k++) nodes[c * CORNERS + k] = c * LAYER + k;
     of_cell[c] = block;
   }
-  for (PetscInt i = 0; i < NODES; i++) id[i] = vertex[i] = i;
-  *block = (GmshBlock){.dim          = 3,
-                       .element      = ElementGet(ELEMENT_HEX8),
-                       .nodes        = CORNERS,
-                       .n            = CELLS,
-                       .connectivity = connectivity};
-  *root  = (RootMesh){.n_nodes    = NODES,
-                      .id         = id,
-                      .vertex     = vertex,
-                      .n_vertices = NODES,
-                      .n_cells    = CELLS,
-                      .cell_item  = item,
-                      .cell_block = of_cell};
-  assert_int_equal(CellFacesCreate(root), PETSC_SUCCESS);
+  for (PetscInt i = 0; i < NODES; i++) {
+    id[i]             = i;
+    coords[3 * i]     = corner[i % LAYER][0];
+    coords[3 * i + 1] = corner[i % LAYER][1];
+    coords[3 * i + 2] = (PetscReal)(i / LAYER);
+  }
+  *block = (GmshBlock){.dim = 3, .element = ElementGet(ELEMENT_HEX8), .nodes = CORNERS};
+  *slice = (SliceMesh){.comm       = PETSC_COMM_SELF,
+                       .size       = 1,
+                       .n_homes    = NODES,
+                       .home_start = home_start,
+                       .n_nodes    = NODES,
+                       .id         = id,
+                       .coords     = coords,
+                       .n_cells    = CELLS,
+                       .cell_start = cell_start,
+                       .cell_nodes = nodes,
+                       .width      = CORNERS,
+                       .cell_body  = body,
+                       .cell_block = of_cell};
+  assert_int_equal(CellFacesCreate(slice), PETSC_SUCCESS);
 }
 
-static void FreeRow(RootMesh *root)
+static void FreeRow(SliceMesh *slice)
 {
-  assert_int_equal(PetscFree(root->corner_faces), PETSC_SUCCESS);
-  assert_int_equal(PetscFree(root->cell_faces), PETSC_SUCCESS);
+  assert_int_equal(CellFacesFree(slice), PETSC_SUCCESS);
+  assert_int_equal(PetscFree(slice->face_start), PETSC_SUCCESS);
+}
+
+/* Looks for a face by its corners in any order. */
+static PetscInt Find(const SliceMesh *slice, const PetscInt ids[LAYER], const CellFace **face)
+{
+  PetscInt corner[CELL_FACE_CORNERS];
+
+  CellFacesSortCorners(LAYER, ids, corner);
+  return CellFacesFind(slice, corner, face);
 }
 
 /* Expects that the face has the given cell and nodes; its number is that of the element table. */
@@ -54,39 +72,37 @@ static void ExpectFace(const CellFace *face, PetscInt cell, PetscInt first_layer
 
 static void TestFind(void **state)
 {
-  const PetscInt  shared[] = {6, 4, 7, 5}, end[] = {1, 0, 3, 2}, none[] = {0, 1, 6, 7}, middle[] = {0, -1, 3, 2};
+  const PetscInt  shared[] = {6, 4, 7, 5}, end[] = {1, 0, 3, 2}, none[] = {0, 1, 6, 7};
   const CellFace *face;
   GmshBlock       block;
-  RootMesh        root;
+  SliceMesh       slice;
 
   (void)state;
-  MakeRow(&block, &root);
-  assert_int_equal(CellFacesFind(&root, LAYER, shared, &face), 2);
+  MakeRow(&block, &slice);
+  assert_int_equal(Find(&slice, shared, &face), 2);
   ExpectFace(&face[0], 0, shared[0]);
   ExpectFace(&face[1], 1, shared[0]);
-  assert_int_equal(CellFacesFind(&root, LAYER, end, &face), 1);
+  assert_int_equal(Find(&slice, end, &face), 1);
   ExpectFace(face, 0, end[0]);
-  assert_int_equal(CellFacesFind(&root, LAYER, none, &face), 0);
-  assert_int_equal(CellFacesFind(&root, LAYER, middle, &face), 0);
-  assert_int_equal(CellFacesFind(&root, LAYER - 1, shared, &face), 0);
-  FreeRow(&root);
+  assert_int_equal(Find(&slice, none, &face), 0);
+  FreeRow(&slice);
 }
 
 static void TestNeighbours(void **state)
 {
   const PetscInt expected_offsets[CELLS + 1] = {0, 1, 3, 4}, expected[] = {1, 0, 2, 1};
   GmshBlock      block;
-  RootMesh       root;
+  SliceMesh      slice;
   PetscInt      *offsets, *adjacency;
 
   (void)state;
-  MakeRow(&block, &root);
-  assert_int_equal(CellFacesNeighbours(&root, &offsets, &adjacency), PETSC_SUCCESS);
+  MakeRow(&block, &slice);
+  assert_int_equal(CellFacesNeighbours(&slice, &offsets, &adjacency), PETSC_SUCCESS);
   assert_memory_equal(offsets, expected_offsets, sizeof(expected_offsets));
   assert_memory_equal(adjacency, expected, sizeof(expected));
   assert_int_equal(PetscFree(offsets), PETSC_SUCCESS);
   assert_int_equal(PetscFree(adjacency), PETSC_SUCCESS);
-  FreeRow(&root);
+  FreeRow(&slice);
 }
 
 int main(void)

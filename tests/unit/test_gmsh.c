@@ -99,7 +99,7 @@ static void test_meshed_once(void **state)
   assert_true(seconds == 0);
   Generate("{n: 4}", other, &complaint);
   assert_string_not_equal(first, other);
-  assert_int_equal(GmshRead(first, &mesh, &complaint), 0);
+  assert_int_equal(GmshRead(PETSC_COMM_SELF, first, &mesh, &complaint), 0);
   assert_string_equal(complaint.text, "");
   assert_int_equal(mesh.n_nodes, 7 * 7);
   assert_int_equal(GmshReset(&mesh), 0);
@@ -275,8 +275,8 @@ static void test_binary_equals_text(void **state)
   (void)state;
   Generate("{n: 3}", file, &complaint);
   ConvertBinary(file, binary);
-  assert_int_equal(GmshRead(file, &a, &complaint), 0);
-  assert_int_equal(GmshRead(binary, &b, &complaint), 0);
+  assert_int_equal(GmshRead(PETSC_COMM_SELF, file, &a, &complaint), 0);
+  assert_int_equal(GmshRead(PETSC_COMM_SELF, binary, &b, &complaint), 0);
   assert_string_equal(complaint.text, "");
   assert_int_equal(a.n_nodes, b.n_nodes);
   assert_memory_equal(a.node_tag, b.node_tag, (size_t)a.n_nodes * sizeof(PetscInt));
@@ -321,7 +321,7 @@ static void test_damaged(void **state)
     for (size_t cut = 0; cut + 2 < size; cut += 7) {
       WriteText("cut.msh", copy, cut, path);
       complaint.text[0] = '\0';
-      assert_int_equal(GmshRead(path, &mesh, &complaint), 0);
+      assert_int_equal(GmshRead(PETSC_COMM_SELF, path, &mesh, &complaint), 0);
       assert_non_null(strstr(complaint.text, "cut.msh"));
       assert_int_equal(GmshReset(&mesh), 0);
     }
@@ -332,7 +332,7 @@ static void test_damaged(void **state)
       WriteText("cut.msh", copy, size, path);
       copy[at]          = kept;
       complaint.text[0] = '\0';
-      assert_int_equal(GmshRead(path, &mesh, &complaint), 0);
+      assert_int_equal(GmshRead(PETSC_COMM_SELF, path, &mesh, &complaint), 0);
       assert_int_equal(GmshReset(&mesh), 0);
     }
   }

@@ -1,12 +1,14 @@
 /* Every face of the bodies' cells before distribution, by its corners, and the cells that share it. In two dimensions
-   the faces are edges. All functions are called on rank 0 only. CellFacesCreate() lists the faces in the RootMesh. Then
+   the faces are edges. They are shared out by their lowest corners. CellFacesCreate() lists the faces. Then
    CellFacesFind() finds the cells of one face, CellFacesCheck() looks for bodies that are meshed twice, and
    CellFacesNeighbours() computes the graph of cells, which the partition needs. CellFacesFree() frees the list. */
 #pragma once
-#include "rootmesh.h"
+#include "slicemesh.h"
 
-PetscErrorCode CellFacesCreate(RootMesh *);
-PetscInt       CellFacesFind(const RootMesh *, int n, const PetscInt vertices[], const CellFace **face);
-void           CellFacesCheck(Scene, const char *file, const RootMesh *, Complaint *);
-PetscErrorCode CellFacesFree(RootMesh *);
-PetscErrorCode CellFacesNeighbours(const RootMesh *, PetscInt **offsets, PetscInt **adjacency);
+PetscErrorCode CellFacesCreate(SliceMesh *);
+PetscErrorCode CellFacesFree(SliceMesh *);
+void           CellFacesSortCorners(int n, const PetscInt ids[], PetscInt corner[CELL_FACE_CORNERS]);
+PetscInt       CellFacesSame(const SliceMesh *, const CellFace *);
+PetscInt       CellFacesFind(const SliceMesh *, const PetscInt corner[CELL_FACE_CORNERS], const CellFace **face);
+PetscErrorCode CellFacesCheck(Scene, const char *file, const SliceMesh *, Complaint *);
+PetscErrorCode CellFacesNeighbours(const SliceMesh *, PetscInt **offsets, PetscInt **adjacency);

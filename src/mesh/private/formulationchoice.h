@@ -1,8 +1,8 @@
 /* Formulations of bodies and of contact pairs for which the scene leaves the choice and the shape of the cells decides.
  */
 #pragma once
-#include "rootmesh.h"
+#include "slicemesh.h"
 
-PetscErrorCode FormulationsChoose(Scene, const RootMesh *, Mesh);
-PetscErrorCode ContactFormulationsChoose(Scene, const RootMesh *, Mesh);
+PetscErrorCode FormulationsChoose(Scene, const SliceMesh *, Mesh);
+PetscErrorCode ContactFormulationsChoose(Scene, const SliceMesh *, Mesh);
 void           FormulationsCrowded(SceneBody *);

@@ -1,6 +1,6 @@
-/* Distribution of the mesh from rank 0 to every rank's arrays. MeshDistribute() is called once, after the partition is
-   known. */
+/* Distribution of the mesh from the ranks' slices to their arrays. MeshDistribute() is called once, after the partition
+   is known. */
 #pragma once
-#include "rootmesh.h"
+#include "slicemesh.h"
 
-PetscErrorCode MeshDistribute(RootMesh *, const PetscMPIInt part[], Mesh);
+PetscErrorCode MeshDistribute(SliceMesh *, const PetscMPIInt part[], Mesh);

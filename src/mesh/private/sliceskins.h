@@ -2,11 +2,11 @@
    contact pairs that ask for them by SceneBodySkin(). Faces on the axis of an axisymmetric scene, and on planes on
    which supports hold the normal displacement alone, do not belong to them: the body goes on there.
 
-   RootSkinsCount() counts the groups and RootSkinsShare() makes them, without faces, on all ranks; RootSkinsAdd() adds
-   the faces on rank 0. */
+   SliceSkinsCount() counts the groups and SliceSkinsShare() makes them, without faces, on all ranks; SliceSkinsAdd()
+   adds the faces. */
 #pragma once
-#include "rootmesh.h"
+#include "slicemesh.h"
 
-int            RootSkinsCount(Scene);
-PetscErrorCode RootSkinsShare(Scene, Mesh, int first);
-PetscErrorCode RootSkinsAdd(Scene, RootMesh *, Mesh, int first);
+int            SliceSkinsCount(Scene);
+PetscErrorCode SliceSkinsShare(Scene, Mesh, int first);
+PetscErrorCode SliceSkinsAdd(Scene, SliceMesh *, Mesh, int first);

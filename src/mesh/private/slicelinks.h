@@ -1,0 +1,6 @@
+/* Cells that face each other across contact before distribution, so that the partition may keep them on one rank.
+   SliceLinksFind() is called before PartitionCells(). */
+#pragma once
+#include "slicemesh.h"
+
+PetscErrorCode SliceLinksFind(Scene, const SliceMesh *, Mesh, CellLinks *);
