@@ -57,7 +57,7 @@ typedef struct {
   char        section[64];
   Complaint  *complaint;
   GmshMesh   *mesh;
-  PetscInt    n_entities;
+  PetscInt    n_entities, found; /* found: the last one that was looked for */
   Entity     *entities;
   PetscBool   has_nodes;
   Portions   *portions; /* where nodes and elements go */
@@ -442,14 +442,26 @@ static PetscErrorCode AddPhysical(GmshMesh *mesh, int dim, PetscInt tag, int *in
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds an entity; NULL: there is none. Blocks mostly follow the order of the entities, so that the next one is mostly
+   right. */
+static const Entity *FindEntity(Reader *r, int dim, int tag)
+{
+  for (PetscInt i = 0; i < r->n_entities; i++) {
+    const PetscInt at = (r->found + i) % r->n_entities;
+
+    if (r->entities[at].dim != dim || r->entities[at].tag != tag) continue;
+    r->found = at;
+    return &r->entities[at];
+  }
+  return NULL;
+}
+
 /* Finds the groups of the entity on which a block lies. */
 static PetscErrorCode BlockPhysicals(Reader *r, int dim, int tag, GmshBlock *block)
 {
-  const Entity *entity = NULL;
+  const Entity *entity = FindEntity(r, dim, tag);
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < r->n_entities && !entity; i++)
-    if (r->entities[i].dim == dim && r->entities[i].tag == tag) entity = &r->entities[i];
   if (!entity || !entity->n) PetscFunctionReturn(PETSC_SUCCESS);
   block->n_physicals = entity->n;
   PetscCall(PetscMalloc2(entity->n, &block->physical, entity->n, &block->sign));
@@ -676,43 +688,74 @@ static PetscErrorCode ReadFile(const char *file, Portions *portions, GmshMesh *m
 
 /* Nodes and elements of all ranks */
 
+/* Entries of what is told of a block. The indices of its groups and their signs follow. */
+enum { BLOCK_DIM, BLOCK_TYPE, BLOCK_NODES, BLOCK_ALL, BLOCK_FIRST_TAG, BLOCK_PHYSICALS, BLOCK_HEADER };
+
+/* Writes down what is told of the blocks. Returns the number of entries. */
+static PetscInt LoadBlocks(const GmshMesh *mesh, PetscInt *told)
+{
+  PetscInt n = 0;
+
+  for (int b = 0; b < mesh->n_blocks; b++) {
+    const GmshBlock *block = &mesh->blocks[b];
+
+    if (told) {
+      told[n + BLOCK_DIM]       = block->dim;
+      told[n + BLOCK_TYPE]      = block->element ? block->element->gmsh : GMSH_POINT;
+      told[n + BLOCK_NODES]     = block->nodes;
+      told[n + BLOCK_ALL]       = block->n_all;
+      told[n + BLOCK_FIRST_TAG] = block->first_tag;
+      told[n + BLOCK_PHYSICALS] = block->n_physicals;
+      for (int i = 0; i < block->n_physicals; i++) {
+        told[n + BLOCK_HEADER + 2 * i]     = block->physical[i];
+        told[n + BLOCK_HEADER + 2 * i + 1] = block->sign[i];
+      }
+    }
+    n += BLOCK_HEADER + 2 * block->n_physicals;
+  }
+  return n;
+}
+
+/* Makes blocks without elements of what was told. */
+static PetscErrorCode MakeBlocks(const PetscInt *told, GmshMesh *mesh)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_blocks, &mesh->blocks));
+  for (int b = 0; b < mesh->n_blocks; b++, told += BLOCK_HEADER + 2 * told[BLOCK_PHYSICALS]) {
+    GmshBlock *block = &mesh->blocks[b];
+
+    *block = (GmshBlock){.dim         = (int)told[BLOCK_DIM],
+                         .element     = ElementFromGmsh((int)told[BLOCK_TYPE]),
+                         .nodes       = (int)told[BLOCK_NODES],
+                         .n_all       = told[BLOCK_ALL],
+                         .first_tag   = told[BLOCK_FIRST_TAG],
+                         .n_physicals = (int)told[BLOCK_PHYSICALS]};
+    PetscCall(PetscMalloc2(block->n_physicals, &block->physical, block->n_physicals, &block->sign));
+    for (int i = 0; i < block->n_physicals; i++) {
+      block->physical[i] = (int)told[BLOCK_HEADER + 2 * i];
+      block->sign[i]     = (int)told[BLOCK_HEADER + 2 * i + 1];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Tells all ranks of the blocks. */
 static PetscErrorCode ShareBlocks(MPI_Comm comm, GmshMesh *mesh)
 {
-  enum { HEAD = 6 };
-
-  PetscMPIInt rank;
-  int         n[2] = {mesh->n_physicals, mesh->n_blocks};
-  PetscInt    head[HEAD];
+  PetscMPIInt rank, count;
+  PetscInt    n[3] = {mesh->n_physicals, mesh->n_blocks, LoadBlocks(mesh, NULL)}, *told;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCallMPI(MPI_Bcast(n, 2, MPI_INT, 0, comm));
-  if (rank) PetscCall(PetscCalloc1(n[1], &mesh->blocks));
-  mesh->n_physicals = n[0];
-  mesh->n_blocks    = n[1];
-  for (int b = 0; b < mesh->n_blocks; b++) {
-    GmshBlock *block = &mesh->blocks[b];
-
-    head[0] = block->dim;
-    head[1] = block->element ? block->element->gmsh : GMSH_POINT;
-    head[2] = block->nodes;
-    head[3] = block->n_all;
-    head[4] = block->first_tag;
-    head[5] = block->n_physicals;
-    PetscCallMPI(MPI_Bcast(head, HEAD, MPIU_INT, 0, comm));
-    if (rank) {
-      block->dim         = (int)head[0];
-      block->element     = ElementFromGmsh((int)head[1]);
-      block->nodes       = (int)head[2];
-      block->n_all       = head[3];
-      block->first_tag   = head[4];
-      block->n_physicals = (int)head[5];
-      PetscCall(PetscMalloc2(block->n_physicals, &block->physical, block->n_physicals, &block->sign));
-    }
-    PetscCallMPI(MPI_Bcast(block->physical, block->n_physicals, MPI_INT, 0, comm));
-    PetscCallMPI(MPI_Bcast(block->sign, block->n_physicals, MPI_INT, 0, comm));
-  }
+  PetscCallMPI(MPI_Bcast(n, 3, MPIU_INT, 0, comm));
+  mesh->n_physicals = (int)n[0];
+  mesh->n_blocks    = (int)n[1];
+  PetscCall(PetscMPIIntCast(n[2], &count));
+  PetscCall(PetscMalloc1(count, &told));
+  if (!rank) LoadBlocks(mesh, told);
+  PetscCallMPI(MPI_Bcast(told, count, MPIU_INT, 0, comm));
+  if (rank) PetscCall(MakeBlocks(told, mesh));
+  PetscCall(PetscFree(told));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

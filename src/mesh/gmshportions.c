@@ -46,7 +46,10 @@ static PetscErrorCode Keep(Portions *p, const PetscInt head[], const PetscInt va
     PortionBlock *kept;
 
     if (block >= p->n_blocks) {
-      PetscCall(PetscRealloc((size_t)(block + 1) * sizeof(*p->blocks), &p->blocks));
+      if (block >= p->room) {
+        p->room = 2 * (int)block + 1;
+        PetscCall(PetscRealloc((size_t)p->room * sizeof(*p->blocks), &p->blocks));
+      }
       while (p->n_blocks <= block) p->blocks[p->n_blocks++] = (PortionBlock){0};
     }
     kept        = &p->blocks[block];

@@ -34,70 +34,92 @@ static PetscErrorCode GatherIntegers(MPI_Comm comm, PetscInt n, const PetscInt m
 }
 
 /* Entries of a face's record. The places of its nodes among gmsh's follow. */
-enum { FACE_TYPE, FACE_TAG, FACE_HEADER };
+enum { FACE_BLOCK, FACE_TYPE, FACE_TAG, FACE_HEADER };
 
-/* Adds the records of a block's faces of this rank. */
-static PetscInt LoadFaces(const GmshBlock *block, int sign, PetscInt record[])
+/* Writes the records of the tool's faces of this rank. Returns the number of entries. */
+static PetscInt LoadFaces(const GmshMesh *gmsh, int g, PetscInt *record)
 {
   PetscInt n = 0;
 
-  for (PetscInt item = 0; item < block->n; item++) {
-    const PetscInt *nodes = block->connectivity + item * block->nodes;
-
-    record[n + FACE_TYPE] = (PetscInt)block->element->type;
-    record[n + FACE_TAG]  = block->tag[item];
-    for (int k = 0; k < block->nodes; k++)
-      record[n + FACE_HEADER + k] = nodes[sign < 0 ? SliceMeshReversedNode(block->element, k) : k];
-    n += FACE_HEADER + block->nodes;
-  }
-  return n;
-}
-
-/* Gathers the records of a tool's faces, block by block, in the order of the file. */
-static PetscErrorCode GatherFaces(const SliceMesh *slice, int g, PetscInt *n, PetscInt **records)
-{
-  const GmshMesh *gmsh = &slice->gmsh;
-  PetscInt       *mine, *of_block, n_block;
-
-  PetscFunctionBeginUser;
-  *n       = 0;
-  *records = NULL;
   for (int b = 0; b < gmsh->n_blocks; b++) {
     const GmshBlock *block = &gmsh->blocks[b];
     const int        sign  = BlockSign(block, g);
 
-    if (!sign) continue;
-    PetscCall(PetscMalloc1(block->n * (FACE_HEADER + block->nodes), &mine));
-    PetscCall(GatherIntegers(slice->comm, LoadFaces(block, sign, mine), mine, &n_block, &of_block));
-    PetscCall(PetscRealloc((size_t)(*n + n_block) * sizeof(PetscInt), records));
-    PetscCall(PetscArraycpy(*records + *n, of_block, n_block));
-    *n += n_block;
-    PetscCall(PetscFree(of_block));
-    PetscCall(PetscFree(mine));
+    for (PetscInt item = 0; sign && item < block->n; item++, n += FACE_HEADER + block->nodes) {
+      const PetscInt *nodes = block->connectivity + item * block->nodes;
+
+      if (!record) continue;
+      record[n + FACE_BLOCK] = b;
+      record[n + FACE_TYPE]  = (PetscInt)block->element->type;
+      record[n + FACE_TAG]   = block->tag[item];
+      for (int k = 0; k < block->nodes; k++)
+        record[n + FACE_HEADER + k] = nodes[sign < 0 ? SliceMeshReversedNode(block->element, k) : k];
+    }
   }
+  return n;
+}
+
+/* Entries of a record */
+static PetscInt RecordLength(const PetscInt *record)
+{
+  return FACE_HEADER + ElementGet((ElementType)record[FACE_TYPE])->nodes;
+}
+
+/* Puts the records of all ranks in the order of the file: block by block, in each of them rank by rank. */
+static PetscErrorCode SortRecords(int n_blocks, PetscInt n, const PetscInt records[], PetscInt sorted[])
+{
+  PetscInt *next;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n_blocks + 1, &next));
+  for (PetscInt i = 0; i < n; i += RecordLength(&records[i]))
+    next[records[i + FACE_BLOCK] + 1] += RecordLength(&records[i]);
+  for (int b = 0; b < n_blocks; b++) next[b + 1] += next[b];
+  for (PetscInt i = 0; i < n; i += RecordLength(&records[i])) {
+    PetscInt *at = &next[records[i + FACE_BLOCK]];
+
+    PetscCall(PetscArraycpy(&sorted[*at], &records[i], RecordLength(&records[i])));
+    *at += RecordLength(&records[i]);
+  }
+  PetscCall(PetscFree(next));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gathers the records of a tool's faces, in the order of the file. */
+static PetscErrorCode GatherFaces(const SliceMesh *slice, int g, PetscInt *n, PetscInt **records)
+{
+  const GmshMesh *gmsh   = &slice->gmsh;
+  const PetscInt  n_mine = LoadFaces(gmsh, g, NULL);
+  PetscInt       *mine, *all;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n_mine, &mine));
+  LoadFaces(gmsh, g, mine);
+  PetscCall(GatherIntegers(slice->comm, n_mine, mine, n, &all));
+  PetscCall(PetscFree(mine));
+  PetscCall(PetscMalloc1(*n, records));
+  PetscCall(SortRecords(gmsh->n_blocks, *n, all, *records));
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Makes the tool's faces of their records. Their nodes are places among gmsh's yet. */
 static PetscErrorCode CreateFaces(PetscInt n, const PetscInt records[], MeshRigid *rigid)
 {
-  PetscInt f = 0, n_entries = 0;
+  PetscInt f = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n; rigid->n_faces++)
-    i += FACE_HEADER + ElementGet((ElementType)records[i + FACE_TYPE])->nodes;
-  n_entries = n - FACE_HEADER * rigid->n_faces;
-  PetscCall(PetscMalloc4(rigid->n_faces, &rigid->face_type, rigid->n_faces + 1, &rigid->face_ptr, n_entries,
-                         &rigid->face_nodes, rigid->n_faces, &rigid->face_tag));
+  for (PetscInt i = 0; i < n; i += RecordLength(&records[i])) rigid->n_faces++;
+  PetscCall(PetscMalloc4(rigid->n_faces, &rigid->face_type, rigid->n_faces + 1, &rigid->face_ptr,
+                         n - FACE_HEADER * rigid->n_faces, &rigid->face_nodes, rigid->n_faces, &rigid->face_tag));
   rigid->face_ptr[0] = 0;
-  for (PetscInt i = 0; i < n; f++) {
-    const int nodes = ElementGet((ElementType)records[i + FACE_TYPE])->nodes;
+  for (PetscInt i = 0; i < n; i += RecordLength(&records[i]), f++) {
+    const PetscInt nodes = RecordLength(&records[i]) - FACE_HEADER;
 
     rigid->face_type[f]    = (ElementType)records[i + FACE_TYPE];
     rigid->face_tag[f]     = records[i + FACE_TAG];
     rigid->face_ptr[f + 1] = rigid->face_ptr[f] + nodes;
     PetscCall(PetscArraycpy(rigid->face_nodes + rigid->face_ptr[f], &records[i + FACE_HEADER], nodes));
-    i += FACE_HEADER + nodes;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,8 +16,8 @@ typedef struct {
 typedef struct {
   /* What this rank keeps */
   PetscInt      n_tags, n_places, *node_tag;
-  PetscReal    *coords; /* 3*n_places */
-  int           n_blocks;
+  PetscReal    *coords;         /* 3*n_places */
+  int           n_blocks, room; /* room: for so many blocks */
   PortionBlock *blocks;
   /* What is sent next, on the first rank */
   MPI_Comm    comm;
