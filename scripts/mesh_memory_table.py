@@ -1,8 +1,8 @@
 """What the ranks hold while a mesh is read and cut: the peak of memory of each of them above that before the mesh is read,
 and CPU seconds, by tests/bench/meshpeak.c. The meshes are a block of tetrahedra of second order and two rings of bricks
 in contact. Ranks may be more than the machine has cores. Leaves one record per run and prints the table.
-    python scripts/mesh_memory_table.py [--meshpeak BINARY] [--record FILE] [--program NAME]
---program names what is run (`now`, or `before` for an older binary); rows of other programs are kept."""
+    python scripts/mesh_memory_table.py [--meshpeak BINARY] [--record FILE] [--program NAME] [--only MESH ...]
+--program names what is run (`now`, or `before` for an older binary); rows of other programs and meshes are kept."""
 import argparse
 import csv
 import pathlib
@@ -53,20 +53,23 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/mesh_memory")
     parser.add_argument("--record", type=pathlib.Path, default=ROOT / "out/mesh_memory.csv")
     parser.add_argument("--program", default="now")
+    parser.add_argument("--only", nargs="*", metavar="MESH", help="of these meshes, such as rings")
     parser.add_argument("--print", dest="only_print", action="store_true", help="of the record that is there")
     args = parser.parse_args()
     rows = read_records(args.record)
     if not args.only_print:
         args.out.mkdir(parents=True, exist_ok=True)
         args.meshpeak = args.meshpeak.resolve()
-        rows = [row for row in rows if row["program"] != args.program]
         for name, arguments in scenes(args.out):
+            if args.only and name not in args.only:
+                continue
             measure(args, name, arguments, 1)  # makes the mesh
+            rows = [row for row in rows if (row["program"], row["mesh"]) != (args.program, name)]
             rows += [measure(args, name, arguments, ranks) for ranks in RANKS]
-        with open(args.record, "w", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(rows)
+            with open(args.record, "w", newline="") as file:
+                writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+                writer.writeheader()
+                writer.writerows(rows)
     table(rows)
 
 
