@@ -2,9 +2,8 @@
 #include "errors/elementsizes.h"
 #include "mesh/meshsizes.h"
 
-/* An element becomes at most so much smaller and larger from one mesh to the next. */
+/* An element becomes at most so much smaller from one mesh to the next. */
 #define SIZES_SMALLER 0.25
-#define SIZES_LARGER  2
 /* Cells with a smaller error per measure than this part of the mean count as having this part. */
 #define SIZES_LEAST_ERROR 1e-8
 /* Halvings of the bracket of ln s. The bracket has the width of all doubles' logarithms at most. */
@@ -13,13 +12,14 @@ enum { SIZES_HALVINGS = 60 };
 typedef struct {
   Mesh       mesh;
   PetscReal *density, *error, *size; /* error per measure to the power -1 / (2p + d); error; present size */
+  PetscReal  larger;                 /* a cell becomes at most so many times larger */
   PetscBool *touches;                /* the cell lies at a surface of a contact pair */
 } Present;
 
 /* The factor on the size of a cell. */
 static PetscReal Factor(const Present *p, PetscInt cell, PetscReal s)
 {
-  return PetscMin(PetscMax(s * p->density[cell], SIZES_SMALLER), p->touches[cell] ? 1 : SIZES_LARGER);
+  return PetscMin(PetscMax(s * p->density[cell], SIZES_SMALLER), p->touches[cell] ? 1 : p->larger);
 }
 
 /* Elements and error of the next mesh for the common factor s. */
@@ -81,8 +81,8 @@ static PetscErrorCode Take(const PetscReal *cell_error, Present *p, PetscReal *l
 
     p->density[c] = PetscPowReal(PetscMax(p->error[c] / p->density[c] / mean, SIZES_LEAST_ERROR),
                                  -1.0 / (2 * mesh->order + mesh->dim));
-    bound[0] = PetscMax(bound[0], -p->density[c]);
-    bound[1] = PetscMax(bound[1], p->density[c]);
+    bound[0]      = PetscMax(bound[0], -p->density[c]);
+    bound[1]      = PetscMax(bound[1], p->density[c]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bound, 2, MPIU_REAL, MPIU_MAX, mesh->comm));
   *least = -bound[0];
@@ -99,17 +99,18 @@ static PetscErrorCode Take(const PetscReal *cell_error, Present *p, PetscReal *l
 + model      - on the present mesh
 . cell_error - what each local cell leaves of error; the sign does not count
 . part       - of the present error that is to be left
+. larger     - an element becomes at most so many times larger
 - most       - elements at most, over the present ones; then more error is left
 
   Output Parameters:
 + size     - wanted at each local cell
 - forecast - of the next mesh
 @*/
-PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscReal part, PetscReal most,
-                                PetscReal *size, SizesForecast *forecast)
+PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscReal part, PetscReal larger,
+                                PetscReal most, PetscReal *size, SizesForecast *forecast)
 {
   const Mesh mesh = model->mesh;
-  Present    p    = {.mesh = mesh};
+  Present    p    = {.mesh = mesh, .larger = larger};
   PetscReal  low, high, least, largest;
 
   PetscFunctionBeginUser;
@@ -118,7 +119,7 @@ PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscR
   PetscCall(FindTouching(model, p.touches));
   PetscCall(Take(cell_error, &p, &least, &largest));
   low  = PetscLogReal(SIZES_SMALLER / largest); /* all cells become as small, and as large, as they may */
-  high = PetscLogReal(SIZES_LARGER / least);
+  high = PetscLogReal(larger / least);
   for (int k = 0; k < SIZES_HALVINGS; k++) {
     const PetscReal middle = 0.5 * (low + high);
 
@@ -130,5 +131,46 @@ PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscR
   }
   for (PetscInt c = 0; c < mesh->n_cells; c++) size[c] = p.size[c] * Factor(&p, c, PetscExpReal(high));
   PetscCall(PetscFree4(p.density, p.error, p.size, p.touches));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ToolSizesFind - finds sizes of the elements of rigid tools: the mean of what the elements are to have that may meet
+it.
+
+  Collective
+
+  Input Parameters:
++ model - on the present mesh
+- size  - wanted at each local cell (length)
+
+  Output Parameter:
+. tool - tool[mesh->n_rigid] (length); 0: nothing may meet it
+
+  Note:
+  The mean is the geometric one over the cells at the slaves of the pairs whose master the tool is. A mesh of a tool
+that remains as it is would leave an error which no finer mesh of the bodies takes away.
+@*/
+PetscErrorCode ToolSizesFind(Model model, const PetscReal *size, PetscReal *tool)
+{
+  const Mesh mesh = model->mesh;
+
+  PetscFunctionBeginUser;
+  for (int r = 0; r < mesh->n_rigid; r++) {
+    PetscReal sum[2] = {0, 0};
+
+    for (int p = 0; p < ContactPairs(model->contact); p++) {
+      ContactSides sides;
+
+      ContactPairSides(model->contact, p, &sides);
+      if (!sides.master || sides.master->rigid != &mesh->rigid[r]) continue;
+      for (PetscInt f = 0; f < sides.slave->group->n_faces; f++) {
+        sum[0] += PetscLogReal(size[sides.slave->group->face_cell[f]]);
+        sum[1]++;
+      }
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
+    tool[r] = sum[1] > 0 ? PetscExpReal(sum[0] / sum[1]) : 0;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -18,5 +18,6 @@ typedef struct {
   PetscReal error;    /* of the next mesh, over that of the present one */
 } SizesForecast;
 
-PetscErrorCode ElementSizesFind(Model, const PetscReal *cell_error, PetscReal part, PetscReal most, PetscReal *size,
-                                SizesForecast *);
+PetscErrorCode ElementSizesFind(Model, const PetscReal *cell_error, PetscReal part, PetscReal larger, PetscReal most,
+                                PetscReal *size, SizesForecast *);
+PetscErrorCode ToolSizesFind(Model, const PetscReal *size, PetscReal *tool);

@@ -1,5 +1,6 @@
 /* Sizes of elements, see meshsizes.h. */
 #include "mesh/meshsizes.h"
+#include "private/toolsizes.h"
 #include "mesh/mesh.h"
 #include "kernels/elementkernel.h"
 #include <math.h>
@@ -150,10 +151,9 @@ static void BoundGrowth(PetscInt n_cells, const double *cells, double *nodal)
   }
 }
 
-/* Writes the view: one element for each cell, with the sizes at its corners. */
-static void WriteView(PetscInt n_cells, const double *cell, int dim, const double *nodal, FILE *stream)
+/* Writes one element for each cell, with the sizes at its corners. */
+static void WriteCells(PetscInt n_cells, const double *cell, int dim, const double *nodal, FILE *stream)
 {
-  fprintf(stream, "View \"sizes\" {\n");
   for (PetscInt c = 0; c < n_cells; c++, cell += RECORD) {
     const int corners = (int)cell[1];
 
@@ -165,7 +165,6 @@ static void WriteView(PetscInt n_cells, const double *cell, int dim, const doubl
       fprintf(stream, k ? ",%.6g" : "%.6g", nodal[(PetscInt)cell[3 + CORNER_WIDTH * k]]);
     fprintf(stream, "};\n");
   }
-  fprintf(stream, "};\n");
 }
 
 /*@
@@ -176,12 +175,13 @@ static void WriteView(PetscInt n_cells, const double *cell, int dim, const doubl
   Input Parameters:
 + mesh - the mesh
 . size - wanted size at each local cell
+. tool - tool[mesh->n_rigid]: wanted size of a rigid tool's elements; 0: the present ones
 - file - path of the view (.pos), which rank 0 writes
 
   Note:
   Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE.
 @*/
-PetscErrorCode MeshSizesWrite(Mesh mesh, const PetscReal *size, const char *file)
+PetscErrorCode MeshSizesWrite(Mesh mesh, const PetscReal *size, const PetscReal *tool, const char *file)
 {
   PetscMPIInt rank;
   double     *cells = NULL, *nodal;
@@ -196,7 +196,10 @@ PetscErrorCode MeshSizesWrite(Mesh mesh, const PetscReal *size, const char *file
   BoundGrowth(mesh->n_cells_global, cells, nodal);
   stream = fopen(file, "w");
   PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s", file);
-  WriteView(mesh->n_cells_global, cells, mesh->dim, nodal, stream);
+  fprintf(stream, "View \"sizes\" {\n");
+  WriteCells(mesh->n_cells_global, cells, mesh->dim, nodal, stream);
+  ToolSizesWrite(mesh, tool, stream);
+  fprintf(stream, "};\n");
   PetscCheck(!fclose(stream), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s", file);
   PetscCall(PetscFree(nodal));
   PetscCall(PetscFree(cells));

@@ -2,6 +2,8 @@
 #include "report/probevariation.h"
 #include "probeimpl.h"
 
+static const char SharedNodes[] = "slave and master of the pair share nodes";
+
 /* A reaction is the residual at the prescribed dofs; that of a tool is none of these. */
 static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional *f, const char **why)
 {
@@ -52,14 +54,10 @@ static PetscErrorCode VaryContactForce(Probes probes, const Probe *probe, Functi
   PetscBool  shared;
 
   PetscFunctionBeginUser;
-  if (ContactPairScene(probes->model->contact, probe->pair)->friction) {
-    *why = "forces of pairs with friction are not varied";
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   PetscCall(PetscCalloc1(mesh->n_nodes, &mark));
   PetscCall(MarkSlaves(probes, probe, mark, &shared));
   if (shared)
-    *why = "slave and master of the pair share nodes";
+    *why = SharedNodes;
   else {
     PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->pressed));
     f->pair = probe->pair;
@@ -107,7 +105,8 @@ static PetscErrorCode VaryDistance(Probes probes, const Probe *probe, Functional
 }
 
 /* The mean pressure is the sum of the nodes' normal forces over their present areas, weighted by their reference areas.
-   That areas and normals change besides is left out. */
+   That areas and normals change besides is left out: with friction, whose forces have no part along the normal, by the
+   turn of the normal times the friction. */
 static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functional *f, const char **why)
 {
   const Mesh   mesh = probes->model->mesh;
@@ -120,8 +119,8 @@ static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functi
   PetscCall(PetscCalloc1(mesh->n_nodes, &mark));
   PetscCall(MarkSlaves(probes, probe, mark, &shared));
   PetscCall(PetscFree(mark));
-  if (shared || ContactPairScene(probes->model->contact, probe->pair)->friction) {
-    *why = shared ? "slave and master of the pair share nodes" : "forces of pairs with friction are not varied";
+  if (shared) {
+    *why = SharedNodes;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(ProbeMeanWeights(probes, probe, &slaves, &share, &area));
@@ -134,6 +133,55 @@ static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functi
     for (int i = 0; i < dim; i++) f->pressed[slaves.node[k] * dim + i] = -slaves.normal[3 * k + i] * weight / area;
   }
   PetscCall(PetscFree(share));
+  PetscCall(MeshSumNodes(mesh, dim, f->pressed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A figure of the friction forces is the sum over the nodes of what is given here times their forces on the master. */
+static void FrictionWeight(const Probe *probe, const PetscReal x[3], PetscReal weight[3])
+{
+  const int a = probe->scene->axis, i = (a + 1) % 3, j = (a + 2) % 3;
+
+  weight[0] = weight[1] = weight[2] = 0;
+  if (probe->scene->kind == PROBE_FRICTION_FORCE)
+    weight[probe->scene->component] = 1;
+  else {
+    weight[i] = -(x[j] - probe->scene->point[0][j]);
+    weight[j] = x[i] - probe->scene->point[0][i];
+  }
+}
+
+/* Friction forces are the residual of the pair at the nodes of its slave in the planes of contact. That these turn and
+   move is left out: it is as small as the strains that do it. */
+static PetscErrorCode VaryFriction(Probes probes, const Probe *probe, Functional *f, const char **why)
+{
+  const Mesh   mesh = probes->model->mesh;
+  const int    dim  = mesh->dim;
+  ContactNodes slaves;
+  PetscReal   *mark;
+  PetscBool    shared;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes, &mark));
+  PetscCall(MarkSlaves(probes, probe, mark, &shared));
+  PetscCall(PetscFree(mark));
+  if (shared) {
+    *why = SharedNodes;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ContactGetNodes(probes->model->contact, probe->pair, probes->model->u, &slaves));
+  PetscCall(MeshCreateLocal(mesh, dim, &f->pressed));
+  f->pair = probe->pair;
+  for (PetscInt k = 0; k < slaves.n; k++) {
+    const PetscInt   n      = slaves.node[k];
+    const PetscReal *normal = &slaves.normal[3 * k];
+    PetscReal        x[3] = {0, 0, 0}, weight[3], along = 0;
+
+    for (int i = 0; i < dim; i++) x[i] = mesh->coords[n * dim + i] + mesh->centre[i] + probes->model->u[n * dim + i];
+    FrictionWeight(probe, x, weight);
+    for (int i = 0; i < dim; i++) along += weight[i] * normal[i];
+    for (int i = 0; i < dim; i++) f->pressed[n * dim + i] = weight[i] - along * normal[i];
+  }
   PetscCall(MeshSumNodes(mesh, dim, f->pressed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -169,6 +217,8 @@ PetscErrorCode ProbeVary(Probes probes, int i, Functional *functional, const cha
     case PROBE_DISPLACEMENT: PetscCall(VaryDisplacement(probes, probe, functional, why)); break;
     case PROBE_DISTANCE: PetscCall(VaryDistance(probes, probe, functional, why)); break;
     case PROBE_PRESSURE_MEAN: PetscCall(VaryPressureMean(probes, probe, functional, why)); break;
+    case PROBE_FRICTION_FORCE:
+    case PROBE_FRICTION_TORQUE: PetscCall(VaryFriction(probes, probe, functional, why)); break;
     default: *why = "its kind is no smooth function of the displacements";
     }
   for (PetscInt k = 0; k < n; k++) {

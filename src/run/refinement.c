@@ -18,6 +18,8 @@
 #define REFINEMENT_MOST_ELEMENTS 8
 /* It is made for at most this part of the present error, or the change of the answer would hardly tell anything. */
 #define REFINEMENT_PART 0.5
+/* An element becomes at most so many times larger from one mesh to the next. */
+#define REFINEMENT_LARGER 2
 /* Sizes are scaled by at least this, over all meshes. */
 #define REFINEMENT_LEAST_SCALE 0.5
 /* Elements of second order are tried where the limits allow a mesh of elements so many times smaller, which has as many
@@ -352,6 +354,15 @@ static void TakeScale(Refinement *r, double more)
   for (PetscInt c = 0; c < mesh->n_cells; c++) r->size[c] *= (PetscReal)r->scale;
 }
 
+/* How many times larger an element may become. Without an estimate of the probe the errors of the cells are those of
+   the energy, and say nothing of what the probe needs: an element does not become larger than it was before a mesh that
+   is finer everywhere. */
+static PetscReal Largest(const Refinement *r)
+{
+  if (!Last(r)->rough) return REFINEMENT_LARGER;
+  return r->even ? REFINEMENT_WITNESS : 1;
+}
+
 /* Chooses the sizes of the next mesh's elements and forecasts it. finer: it may have so many times the elements, to the
    power of 1 / dim. */
 static PetscErrorCode PlanSizes(Refinement *r, PetscReal finer, MeshFigures *next)
@@ -368,9 +379,9 @@ static PetscErrorCode PlanSizes(Refinement *r, PetscReal finer, MeshFigures *nex
   PetscCall(ResultsGetError(r->run->results, r->wish.probe, &value, &why, &error));
   PetscCall(PetscFree(r->size));
   PetscCall(PetscMalloc1(mesh->n_cells, &r->size));
-  r->even = PETSC_FALSE;
-  PetscCall(ElementSizesFind(r->run->model, error->cells, PetscMin(wanted, REFINEMENT_PART),
+  PetscCall(ElementSizesFind(r->run->model, error->cells, PetscMin(wanted, REFINEMENT_PART), Largest(r),
                              PetscMin(PetscPowRealInt(finer, r->dim), REFINEMENT_MOST_ELEMENTS), r->size, &forecast));
+  r->even = PETSC_FALSE;
   *next =
     MeshPlanForecast(r->n_plan, r->plan, r->dim, r->order, last->factor * pow((double)forecast.elements, 1.0 / r->dim));
   next->error = last->error * (double)forecast.error;
@@ -464,11 +475,16 @@ static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
 /* Writes the sizes of the next mesh's elements and the edit that names their file. */
 static PetscErrorCode EditSizes(Refinement *r)
 {
-  char file[PETSC_MAX_PATH_LEN + 32], full[PETSC_MAX_PATH_LEN] = "";
+  const Mesh mesh = r->run->mesh;
+  PetscReal *tool;
+  char       file[PETSC_MAX_PATH_LEN + 32], full[PETSC_MAX_PATH_LEN] = "";
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(file, sizeof(file), "%s/mesh-%d.pos", r->directory, r->n + 1));
-  PetscCall(MeshSizesWrite(r->run->mesh, r->size, file));
+  PetscCall(PetscMalloc1(mesh->n_rigid, &tool));
+  PetscCall(ToolSizesFind(r->run->model, r->size, tool));
+  PetscCall(MeshSizesWrite(mesh, r->size, tool, file));
+  PetscCall(PetscFree(tool));
   if (!r->rank) PetscCall(PetscGetFullPath(file, full, sizeof(full)));
   PetscCallMPI(MPI_Bcast(full, sizeof(full), MPI_CHAR, 0, r->run->comm));
   PetscCall(PetscSNPrintf(r->edit[0], EDIT_LENGTH, "mesh.sizes=%s", full));

@@ -83,6 +83,21 @@ for scene, mesh, true in (("ring_in_ring", "n_inner: 8, n_outer: 10", 6.43773),
     check.holds("the surface leaves more than the bodies",
                 abs(shrunk["causes"]["contact surfaces"]) > abs(shrunk["causes"]["bodies"]))
 check.near("the same on all ranks", shrunk["causes"]["contact surfaces"], -9.906608, 1e-4)
+# With friction: the force of a press fit is known as a reaction and as a contact force. A band on a drum: the moment of
+# its friction on coarse elements; reference: extrapolated from meshes 2 and 4 times as fine.
+JOBS, BAND = SCENES.parent / "jobs", 1658.9
+pressed = run(args, JOBS / "shaft_pressed.yaml", out="pressed", overrides=[
+    "output.error=true", "probes=[{name: reaction, reaction: head, component: y}, "
+    "{name: force, contact_force: fit, component: y}, {name: friction, friction_force: fit, component: y}]"]).summary()
+causes = {name: error["causes"] for name, error in pressed["error"].items()}
+for cause in "bodies", "contact surfaces", "penetration":
+    check.near(f"press fit, {cause}: the same of reaction and contact force",
+               causes["force"][cause] / causes["reaction"][cause], 1, 1e-5)
+check.near("press fit: nearly all of it is friction", causes["friction"]["bodies"] / causes["force"]["bodies"], 1, 0.1)
+band = run(args, JOBS / "brake_band.yaml", out="band",
+           overrides=["output.error=true", "mesh.parameters.refine=0.5"]).summary()
+ratio = (BAND - band["probes"]["torque"]) / band["error"]["torque"]["sum"]
+check.holds("moment of friction: effectivity", 0.5 <= ratio <= 2, f"{ratio:.3f}")
 # The load steps of a body that yields, by a second run; the reference has steps of 1/320
 force = {}
 for way, dt in ("true", 0.1), ("history", 0.1), ("true", 1 / 320):
