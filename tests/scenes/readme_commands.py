@@ -133,7 +133,7 @@ FULL = {
     f"{PYTHON} scripts/thin_wall_table.py --record runs/records/thin_walls.csv": table("thin_wall_table", "cook"),
     f"{PYTHON} scripts/smoother_table.py --burnish build/burnish --repeats 5":
     f"{PYTHON} scripts/smoother_table.py --table runs/records/smoothers.csv",
-    f"{PYTHON} scripts/surface_table.py --burnish build/burnish":
+    f"{PYTHON} scripts/surface_table.py --burnish ../before/build/burnish build/burnish --names before after":
     f"{PYTHON} scripts/surface_table.py --table runs/records/surface.csv",
     f"{PYTHON} scripts/physics_table.py --record runs/records/physics.csv": printed("physics_table", "physics"),
     f"{PYTHON} scripts/version_table.py --before ../before --record runs/records/versions.csv":
