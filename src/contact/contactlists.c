@@ -390,6 +390,8 @@ static PetscErrorCode PairTellWork(const ContactPair *pair)
 PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion)
 {
   PetscFunctionBeginUser;
+  contact->u_begun = u;
+  contact->t_begun = t;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
@@ -779,7 +781,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
     PetscReal    needed = next;
     PetscBool    agrees = PETSC_TRUE, late = PETSC_FALSE, serve = PETSC_FALSE;
 
-    if (pair->friction) PetscCall(FrictionAnchorLate(pair, t, &late));
+    if (pair->friction) PetscCall(FrictionAnchorLate(pair, u, t, contact->u_begun, contact->t_begun, &late));
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     PetscCall(PairTakeOffsets(pair, u, t, needed, PETSC_FALSE));
     if (pair->next) PetscCall(PairListsServe(pair, u, t, needed, PETSC_FALSE, &serve));

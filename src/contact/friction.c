@@ -363,24 +363,17 @@ static void AddSlip(const ContactPair *pair, PetscInt q, PetscReal t, PetscReal 
   for (int d = 0; d < 3; d++) slip[d] += scale * (v[d] - off[d]);
 }
 
-/* Anchors slave point q where it is. */
-static PetscErrorCode AnchorPoint(ContactPair *pair, PetscInt q, PetscReal t)
+/* Finds the place of the master at which slave point q is anchored: that below it. face[q] < 0: there is none. */
+static PetscErrorCode AnchorFind(ContactPair *pair, PetscInt q)
 {
   Friction            f = pair->friction;
   const FrictionFoot *foot;
   PetscBool           found = PETSC_FALSE;
-  FrictionFrame       frame;
-  PetscReal           v[3];
 
   PetscFunctionBeginUser;
   f->face[q] = f->at[q] = -1;
   if (pair->factor[q] == 0 || PetscIsNanReal(pair->point_gap[q])) PetscFunctionReturn(PETSC_SUCCESS);
   if (!pair->master) {
-    PetscReal X[3], u[3];
-
-    PlainPlace(pair, q, X, u);
-    for (int d = 0; d < 3; d++) X[d] += u[d] + (d < pair->mesh->dim ? pair->mesh->centre[d] : 0);
-    ToolPlace(pair, t, X, &f->place[3 * q]);
     f->face[q] = 0;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -391,9 +384,34 @@ static PetscErrorCode AnchorPoint(ContactPair *pair, PetscInt q, PetscReal t)
   f->face[q] = pair->lists->facet[pair->lists->facet_ptr[q] + f->facet[q]].tag;
   f->at[q]   = NeighbourListsFindFace(pair->lists, f->face[q]);
   for (int a = 0; a < 2; a++) f->xi[2 * q + a] = foot->xi[a];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Slave point q slips from where the points of the lists are now. */
+static void AnchorTake(ContactPair *pair, PetscInt q, PetscReal t)
+{
+  Friction      f = pair->friction;
+  FrictionFrame frame;
+  PetscReal     v[3], X[3], u[3];
+
+  if (f->face[q] < 0) return;
+  if (!pair->master) {
+    PlainPlace(pair, q, X, u);
+    for (int d = 0; d < 3; d++) X[d] += u[d] + (d < pair->mesh->dim ? pair->mesh->centre[d] : 0);
+    ToolPlace(pair, t, X, &f->place[3 * q]);
+    return;
+  }
   AnchorDistance(pair, q, t, v);
   FrictionAnchorFrame(pair, q, &frame);
   FrictionFrameTake(&frame, v, &f->off[3 * q]);
+}
+
+/* Anchors slave point q where it is. */
+static PetscErrorCode AnchorPoint(ContactPair *pair, PetscInt q, PetscReal t)
+{
+  PetscFunctionBeginUser;
+  PetscCall(AnchorFind(pair, q));
+  AnchorTake(pair, q, t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -638,37 +656,51 @@ static PetscBool TermPresses(const ContactPair *pair, PetscInt c, PetscReal t)
   return (PetscBool)(value.stiffness > 0);
 }
 
-/*@
-  FrictionAnchorLate - anchors slave points of pressed terms that had no master near when the step began.
-
-  Not collective
-
-  Input Parameters:
-+ pair - the pair, projected
-- t    - load parameter
-
-  Output Parameter:
-. made - there are such points; the step must be solved on
-
-  Note:
-  They slip from here on. How far they have slipped since the touch, within this step, is not known.
-@*/
-PetscErrorCode FrictionAnchorLate(ContactPair *pair, PetscReal t, PetscBool *made)
+/* Finds anchors for the slave points of pressed terms that have none. Returns how many it has found. */
+static PetscErrorCode FindLate(ContactPair *pair, PetscReal t, PetscInt late[], PetscInt *n)
 {
-  Friction f = pair->friction;
+  const Friction f = pair->friction;
 
   PetscFunctionBeginUser;
-  *made = PETSC_FALSE;
+  *n = 0;
   for (PetscInt c = 0; c < pair->n; c++) {
     if (!TermPresses(pair, c, t)) continue;
     for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
       const PetscInt q = pair->term_point[k];
 
       if (!FrictionTermTakes(pair, k) || f->face[q] >= 0) continue;
-      PetscCall(AnchorPoint(pair, q, t));
-      *made = (PetscBool)(*made || f->face[q] >= 0);
+      PetscCall(AnchorFind(pair, q));
+      if (f->face[q] >= 0) late[(*n)++] = q;
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far a term was open over the place of its anchors when the step began, in the planes of contact at hand. */
+static PetscReal LateOpening(const ContactPair *pair, PetscInt c, const FrictionInput *in)
+{
+  PetscReal opening = 0, area = 0;
+
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && pair->master; k++) {
+    const PetscInt q = pair->term_point[k];
+    FrictionFrame  frame;
+    PetscReal      v[3];
+
+    if (!FrictionTermTakes(pair, k) || pair->friction->face[q] < 0) continue;
+    FrictionAnchorFrame(pair, q, &frame);
+    FrictionFrameCarry(&frame, &pair->friction->off[3 * q], v);
+    area += pair->term_weight[k] * pair->factor[q];
+    for (int d = 0; d < 3; d++) opening += pair->term_weight[k] * pair->factor[q] * v[d] * in->normal[d];
+  }
+  return area > 0 ? PetscMax(0, opening / area) : 0;
+}
+
+/* Begins the step of terms that press and have anchors only now. *made: there are such terms. */
+static PetscErrorCode BeginLate(ContactPair *pair, PetscReal t, PetscBool *made)
+{
+  const Friction f = pair->friction;
+
+  PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n; c++) { /* terms share points */
     FrictionInput in = {.stiffness = 0};
 
@@ -676,9 +708,52 @@ PetscErrorCode FrictionAnchorLate(ContactPair *pair, PetscReal t, PetscBool *mad
     f->guide[c] = FrictionTermGuide(pair, c);
     PetscCall(TermSlip(pair, c, t, &in, &f->anchored[c]));
     if (!f->anchored[c]) continue;
+    f->began[c] = LateOpening(pair, c, &in);
+    for (int d = 0; d < 3; d++) in.slip[d] = 0; /* the slip since the step began counts */
     KeepTraction(pair, c, t, &in);
     *made = PETSC_TRUE;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FrictionAnchorLate - anchors slave points of pressed terms that had no master near when the step began.
+
+  Collective
+
+  Input Parameters:
++ pair    - the pair, projected at u and t
+. u       - local displacements (length), ghosts included
+. t       - load parameter
+. u_begun - local displacements at which the step began (length)
+- t_begun - its load parameter
+
+  Output Parameter:
+. made - there are such points on this rank; the step must be solved on
+
+  Note:
+  They are anchored at the place of the master where they are now, and slip from where they were over it when the step
+  began, as the points do that had a master near. So their friction does not depend on the iterate that finds them.
+@*/
+PetscErrorCode FrictionAnchorLate(ContactPair *pair, const PetscReal *u, PetscReal t, const PetscReal *u_begun,
+                                  PetscReal t_begun, PetscBool *made)
+{
+  PetscInt *late, n, any;
+  PetscBool moved;
+
+  PetscFunctionBeginUser;
+  *made = PETSC_FALSE;
+  PetscCall(PetscMalloc1(pair->lists->n_slaves, &late));
+  PetscCall(FindLate(pair, t, late, &n));
+  PetscCallMPI(MPI_Allreduce(&n, &any, 1, MPIU_INT, MPI_MAX, pair->mesh->comm));
+  if (any) {
+    PetscCall(NeighbourListsUpdate(pair->search, pair->lists, u_begun, t_begun, &moved));
+    for (PetscInt i = 0; i < n; i++) AnchorTake(pair, late[i], t_begun);
+    PetscCall(NeighbourListsUpdate(pair->search, pair->lists, u, t, &moved));
+  }
+  PetscCall(PetscFree(late));
+  *made = (PetscBool)(n > 0);
+  PetscCall(BeginLate(pair, t, made));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

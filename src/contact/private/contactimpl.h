@@ -159,21 +159,23 @@ typedef struct {
 } ContactProduct;
 
 struct _n_Contact {
-  Mesh            mesh;
-  Scene           scene;
-  Loads           loads;
-  int             n_pairs;
-  ContactPair    *pairs;
-  ContactWork     work;
-  BlockMatrix     blocks;     /* the last tangent */
-  ContactVectors  border;     /* the first variations of its terms */
-  ContactVectors  one;        /* room for one of them */
-  ContactProduct *product;    /* of each pair; NULL: no product is asked for */
-  PetscBool       transposed; /* it is one with the transposed tangent */
-  PetscReal      *outer;      /* forces of tools and mirror images are added here; NULL: nobody asks */
-  PetscReal      *hold;       /* forces that drive the tools of pairs are added here; NULL: nobody asks */
-  PetscLogEvent   event_search, event_project, event_residual, event_tangent;
-  PetscLogEvent   event_fit, event_offset, event_adjust, event_touch; /* only where the scene calls for the effect */
+  Mesh             mesh;
+  Scene            scene;
+  Loads            loads;
+  int              n_pairs;
+  ContactPair     *pairs;
+  const PetscReal *u_begun; /* local displacements at which the load step began, of the model */
+  PetscReal        t_begun; /* its load parameter */
+  ContactWork      work;
+  BlockMatrix      blocks;     /* the last tangent */
+  ContactVectors   border;     /* the first variations of its terms */
+  ContactVectors   one;        /* room for one of them */
+  ContactProduct  *product;    /* of each pair; NULL: no product is asked for */
+  PetscBool        transposed; /* it is one with the transposed tangent */
+  PetscReal       *outer;      /* forces of tools and mirror images are added here; NULL: nobody asks */
+  PetscReal       *hold;       /* forces that drive the tools of pairs are added here; NULL: nobody asks */
+  PetscLogEvent    event_search, event_project, event_residual, event_tangent;
+  PetscLogEvent    event_fit, event_offset, event_adjust, event_touch; /* only where the scene calls for the effect */
 };
 
 /* A face of the slave points around a node, the node's number in it, and the face's reference normal at the node. */
@@ -288,7 +290,8 @@ void           FrictionTravelBegin(ContactPair *, PetscReal t);
 PetscBool      FrictionTermLeaves(const ContactPair *, PetscInt term);
 PetscReal      FrictionTermEnergy(const ContactPair *, PetscInt term, const FrictionInput *, const FrictionTraction *,
                                   PetscReal area);
-PetscErrorCode FrictionAnchorLate(ContactPair *, PetscReal t, PetscBool *made);
+PetscErrorCode FrictionAnchorLate(ContactPair *, const PetscReal *u, PetscReal t, const PetscReal *u_begun,
+                                  PetscReal t_begun, PetscBool *made);
 void           FrictionAnchorFrame(const ContactPair *, PetscInt q, FrictionFrame *);
 PetscErrorCode FrictionTerm(const ContactPair *, PetscInt term, PetscReal t, FrictionInput *, FrictionTraction *,
                             PetscBool *acts);
