@@ -356,6 +356,11 @@ JOBS = [
         Answer("grip", 4667, 2.6, "limit"),  # it varies by that with the mesh
         Answer("set", 7985.5, 0.26, "limit"),
     ], steps=12, pairs=2, picture=["--mirror", "x"]),
+    Job("wave_spring", "wave spring pressed flat", [Answer("force", 42.034, 0.01, "limit")], steps=12, pairs=2),
+    Job("sheet_in_nip", "sheet pulled through a nip", [
+        Answer("pull", 4.36, 0.05, "limit"),
+        Answer("nip", 10.73, 0.01, "limit"),
+    ], steps=20, pairs=2),
     Job("bottle_cap", "cap snapped over a neck", [Answer("force", 198.1, 0.05, "limit")], steps=8,
         picture=["--mirror", "x"]),
 ]
