@@ -78,7 +78,7 @@ static PetscErrorCode MultigridNumberNodes(Multigrid m)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(m->mesh->comm, &rank));
   PetscCall(MeshGetGlobalDofs(m->mesh, &dofs));
-  PetscCall(VecCreateMPI(m->mesh->comm, m->mesh->n_free, PETSC_DETERMINE, &m->number));
+  PetscCall(MeshCreateVector(m->mesh, &m->number));
   PetscCall(VecGetOwnershipRange(m->number, &begin, &end));
   m->n_free = end - begin;
   PetscCall(PetscMalloc1(m->n_free, &m->row));

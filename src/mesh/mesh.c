@@ -5,6 +5,7 @@
 #include "gmsh.h"
 #include "meshdistribution.h"
 #include "meshimport.h"
+#include "meshplex.h"
 #include "meshtools.h"
 #include "pressurenodesimpl.h"
 #include "base/refusal.h"
@@ -151,8 +152,10 @@ static PetscErrorCode MeshBuild(Scene scene, const char *file, SliceMesh *slice,
   PetscCall(PartitionBodies(scene, slice, &part, mesh));
   PetscCall(MeshDistribute(slice, part, mesh));
   PetscCall(PetscFree(part));
+  PetscCall(MeshPlexCreate(mesh));
   PetscCall(MeshToolsMeasureBolts(scene, mesh));
   PetscCall(FreeAllDofs(mesh));
+  PetscCall(MeshPlexView(mesh));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -169,11 +172,14 @@ static PetscErrorCode MeshBuild(Scene scene, const char *file, SliceMesh *slice,
   Output Parameter:
 . created - to be destroyed with MeshDestroy()
 
+  Options Database Key:
+. -mesh_dm_view - views the DMPlex
+
   Note:
-  The local section treats every dof as free until MeshSetConstraints() is called. Refuses damaged files, elements that
-  are not available, bodies without cells, cells without a body, mixed orders, a two-dimensional mesh that is not in its
-  plane, and loads or contact on surfaces that are rigid or lie between cells. After a refusal there is no mesh, and its
-  memory is free.
+  The DM treats every dof as free until MeshSetConstraints() is called. Refuses damaged files, elements that are not
+  available, bodies without cells, cells without a body, mixed orders, a two-dimensional mesh that is not in its plane,
+  and loads or contact on surfaces that are rigid or lie between cells. After a refusal there is no mesh, and its memory
+  is free.
 @*/
 PetscErrorCode MeshCreate(MPI_Comm comm, Scene scene, const char *file, Mesh *created)
 {
@@ -225,6 +231,7 @@ PetscErrorCode MeshDestroy(Mesh *destroyed)
   PetscCall(PetscFree(mesh->global_dofs));
   PetscCall(PetscFree(mesh->work));
   PetscCall(PetscSFDestroy(&mesh->node_sf));
+  PetscCall(DMDestroy(&mesh->dm));
   PetscCall(PetscFree(*destroyed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

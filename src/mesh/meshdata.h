@@ -60,6 +60,7 @@ typedef struct {
 
 typedef struct {
   MPI_Comm comm;
+  DM       dm; /* DMPlex, see meshplex.h */
   int      dim, order;
   PetscInt n_nodes, n_owned, n_global;
   PetscInt n_free; /* free dofs that this rank owns, after MeshSetConstraints() */
@@ -92,7 +93,7 @@ typedef struct {
   Partition    partition;
   char        *notes; /* on rank 0: what a converter changed, in lines; NULL: nothing */
   /* The fields below are for the files of this folder only. */
-  PetscSF    node_sf;     /* from ghost nodes to their owners' nodes */
+  PetscSF    node_sf;     /* from ghost nodes to their owners' nodes, as the DM's between points */
   PetscInt  *global_dofs; /* NULL until MeshSetConstraints() */
   PetscReal *work;        /* n_nodes*dim */
 } *Mesh;

@@ -238,29 +238,15 @@ static PetscErrorCode FindOtherOwners(Mesh mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Creates the SF between the copies of a node. */
-static PetscErrorCode CreateNodeSF(Mesh mesh)
+/* Counts the nodes that belong to this rank. */
+static PetscErrorCode CountOwned(Mesh mesh)
 {
-  PetscInt     n_ghosts = 0, *leaf;
-  PetscSFNode *remote;
-  PetscMPIInt  rank;
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) n_ghosts += mesh->node_owner[i] != rank;
-  mesh->n_owned = mesh->n_nodes - n_ghosts;
-  PetscCall(PetscMalloc1(n_ghosts, &leaf));
-  PetscCall(PetscMalloc1(n_ghosts, &remote));
-  n_ghosts = 0;
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
-    if (mesh->node_owner[i] == rank) continue;
-    leaf[n_ghosts]     = i;
-    remote[n_ghosts++] = (PetscSFNode){.rank = mesh->node_owner[i], .index = mesh->node_owner_local[i]};
-  }
-  PetscCall(PetscSFCreate(mesh->comm, &mesh->node_sf));
-  PetscCall(
-    PetscSFSetGraph(mesh->node_sf, mesh->n_nodes, n_ghosts, leaf, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
-  PetscCall(PetscSFSetUp(mesh->node_sf));
+  mesh->n_owned = 0;
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) mesh->n_owned += mesh->node_owner[i] == rank;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -298,7 +284,7 @@ static PetscErrorCode CreateNodes(SliceMesh *slice, Mesh mesh)
   PetscCall(MeshToolsPlaceNodes(mesh));
   PressureNodesPlace(mesh);
   PetscCall(FindOtherOwners(mesh));
-  PetscCall(CreateNodeSF(mesh));
+  PetscCall(CountOwned(mesh));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

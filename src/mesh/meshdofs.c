@@ -1,5 +1,6 @@
-/* Unknowns of a mesh: global numbers, and exchange of nodal values through the SF of the nodes. */
+/* Unknowns of a mesh: their vectors, and exchange of nodal values through the SF of the nodes. */
 #include "mesh/meshdofs.h"
+#include "meshplex.h"
 
 /* Creates the MPI type of a node's values, `block` reals, to be freed with NodeTypeFree(). The values are reals,
    because MPI would treat two 64-bit integers as its pair type. One value is the basic type itself: PetscSF cannot sum
@@ -50,32 +51,6 @@ static PetscErrorCode AddNodes(Mesh mesh, PetscInt block, const PetscReal *value
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers the free dofs globally: those of rank 0 come first, and on each rank they have the order of its nodes. */
-static PetscErrorCode NumberDofs(Mesh mesh, const PetscBool constrained[])
-{
-  const PetscInt n    = mesh->n_nodes * mesh->dim;
-  PetscInt       next = 0;
-  PetscMPIInt    rank;
-  MPI_Datatype   integers;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
-  PetscCall(PetscFree(mesh->global_dofs));
-  PetscCall(PetscMalloc1(n, &mesh->global_dofs));
-  mesh->n_free = 0;
-  for (PetscInt i = 0; i < n; i++) mesh->n_free += mesh->node_owner[i / mesh->dim] == rank && !constrained[i];
-  PetscCallMPI(MPI_Exscan(&mesh->n_free, &next, 1, MPIU_INT, MPI_SUM, mesh->comm));
-  if (!rank) next = 0;
-  for (PetscInt i = 0; i < n; i++)
-    mesh->global_dofs[i] = mesh->node_owner[i / mesh->dim] == rank && !constrained[i] ? next++ : -1;
-  PetscCallMPI(MPI_Type_contiguous(mesh->dim, MPIU_INT, &integers));
-  PetscCallMPI(MPI_Type_commit(&integers));
-  PetscCall(PetscSFBcastBegin(mesh->node_sf, integers, mesh->global_dofs, mesh->global_dofs, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(mesh->node_sf, integers, mesh->global_dofs, mesh->global_dofs, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&integers));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   MeshSetConstraints - sets which dofs are prescribed and numbers the free ones.
 
@@ -99,7 +74,7 @@ PetscErrorCode MeshSetConstraints(Mesh mesh, const PetscBool *constrained)
   for (PetscInt i = 0; i < n; i++) votes[i] = constrained[i] ? 1 : 0;
   PetscCall(MeshSumNodes(mesh, mesh->dim, votes));
   for (PetscInt i = 0; i < n; i++) agreed[i] = votes[i] > 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(NumberDofs(mesh, agreed));
+  PetscCall(MeshPlexNumberDofs(mesh, agreed));
   PetscCall(PetscFree2(votes, agreed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -122,6 +97,27 @@ PetscErrorCode MeshGetGlobalDofs(Mesh mesh, const PetscInt **dofs)
 {
   PetscFunctionBeginUser;
   *dofs = mesh->global_dofs;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MeshCreateVector - creates a vector over the free dofs.
+
+  Collective
+
+  Input Parameter:
+. mesh - the mesh, after MeshSetConstraints()
+
+  Output Parameter:
+. x - 0; the caller destroys it
+
+  Note:
+  VecGetDM() returns the mesh's DMPlex, also for its duplicates.
+@*/
+PetscErrorCode MeshCreateVector(Mesh mesh, Vec *x)
+{
+  PetscFunctionBeginUser;
+  PetscCall(DMCreateGlobalVector(mesh->dm, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -12,6 +12,26 @@ static const char *DimensionName(int mesh_dim, int dim)
 }
 
 /*@
+  MeshGroupLabel - returns the name of the DM's label that marks a group.
+
+  Not collective
+
+  Input Parameters:
++ mesh  - only its dimension is read
+- group - only its name and dimension are read
+
+  Output Parameter:
+. label - name of the label
+
+  Note:
+  The label has the value 1 on the points of the group's nodes. Volumes have none.
+@*/
+void MeshGroupLabel(Mesh mesh, const MeshGroup *group, char label[MESH_TEXT])
+{
+  snprintf(label, MESH_TEXT, "%s %s", DimensionName(mesh->dim, group->dim), group->name);
+}
+
+/*@
   MeshFindBody - finds a body of the scene by its name.
 
   Not collective

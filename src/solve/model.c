@@ -41,7 +41,7 @@ static PetscErrorCode ModelBuild(Model model, PetscInt phase)
   PetscCall(ProblemCreate(scene, mesh, phase, &model->problem));
   model->contact = model->problem->contact;
   PetscCall(PetscCalloc2(n, &model->u, n, &model->work->accepted_u));
-  PetscCall(MatCreateVecs(model->problem->A, &model->x, NULL));
+  PetscCall(MeshCreateVector(mesh, &model->x));
   PetscCall(VecDuplicate(model->x, &model->work->accepted_x));
   PetscCall(VecDuplicate(model->x, &model->work->look_ahead));
   PetscCall(VecDuplicate(model->x, &model->work->residual));

@@ -65,7 +65,8 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, PetscInt phase, Problem *ou
   PetscCall(ElasticityMatrix(problem->elasticity, NULL, NULL, &problem->P));
   problem->A = problem->P;
   PetscCall(PetscObjectReference((PetscObject)problem->A));
-  PetscCall(MatCreateVecs(problem->A, &problem->diagonal, &problem->undeformed));
+  PetscCall(MeshCreateVector(mesh, &problem->diagonal));
+  PetscCall(VecDuplicate(problem->diagonal, &problem->undeformed));
   PetscCall(MatGetDiagonal(problem->P, problem->undeformed));
   PetscCall(FreeModesCreate(mesh, scene, problem->loads, &problem->modes));
   if (problem->contact)

@@ -116,7 +116,7 @@ static void Turn(const char *name, int held, const double axis[3], double angle)
   }
   assert_int_equal(MeshSetConstraints(mesh, constrained), 0);
   assert_int_equal(MeshGetGlobalDofs(mesh, &dof), 0);
-  assert_int_equal(VecCreateMPI(mesh->comm, mesh->n_free, PETSC_DETERMINE, &x), 0);
+  assert_int_equal(MeshCreateVector(mesh, &x), 0);
   assert_int_equal(VecGetOwnershipRange(x, &first, &end), 0);
   for (PetscInt i = 0; i < mesh->n_nodes * dim; i++)
     if (dof[i] >= first && dof[i] < end)

@@ -293,6 +293,61 @@ static double NodeValue(Mesh mesh, PetscInt i, int k)
   return (double)(mesh->node_id[i] * mesh->dim + k + 1);
 }
 
+/* Each point of the DMPlex is a cell with all its nodes, or a node. Its SF knows the owners, a label the group cut_x.
+ */
+static void CheckPlex(Mesh mesh, const MeshGroup *held)
+{
+  const PetscInt    *cone, *leaf;
+  const PetscSFNode *remote;
+  PetscInt           from, to, n, *id;
+  PetscSF            sf;
+
+  assert_int_equal(DMPlexGetChart(mesh->dm, &from, &to), 0);
+  assert_true(from == 0 && to == mesh->n_cells + mesh->n_nodes);
+  assert_int_equal(DMPlexGetDepthStratum(mesh->dm, 1, &from, &to), 0);
+  assert_true(to - from == mesh->n_cells && (from == 0 || from == to));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    assert_int_equal(DMPlexGetConeSize(mesh->dm, c, &n), 0);
+    assert_int_equal(n, mesh->cell_ptr[c + 1] - mesh->cell_ptr[c]);
+    assert_int_equal(DMPlexGetCone(mesh->dm, c, &cone), 0);
+    for (PetscInt k = 0; k < n; k++) assert_int_equal(cone[k], mesh->n_cells + mesh->cell_nodes[mesh->cell_ptr[c] + k]);
+  }
+  assert_int_equal(DMGetStratumSize(mesh->dm, "surface cut_x", 1, &n), 0);
+  assert_int_equal(n, held->n_nodes);
+
+  assert_int_equal(PetscMalloc1(mesh->n_cells + mesh->n_nodes, &id), 0);
+  for (PetscInt p = 0; p < mesh->n_cells + mesh->n_nodes; p++)
+    id[p] = p < mesh->n_cells || mesh->node_owner[p - mesh->n_cells] != rank ? -1 : mesh->node_id[p - mesh->n_cells];
+  assert_int_equal(DMGetPointSF(mesh->dm, &sf), 0);
+  assert_int_equal(PetscSFGetGraph(sf, NULL, &n, &leaf, &remote), 0);
+  assert_int_equal(n, mesh->n_nodes - mesh->n_owned);
+  for (PetscInt i = 0; i < n; i++) assert_int_equal(remote[i].rank, mesh->node_owner[leaf[i] - mesh->n_cells]);
+  assert_int_equal(PetscSFBcastBegin(sf, MPIU_INT, id, id, MPI_REPLACE), 0);
+  assert_int_equal(PetscSFBcastEnd(sf, MPIU_INT, id, id, MPI_REPLACE), 0);
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) assert_int_equal(id[mesh->n_cells + i], mesh->node_id[i]);
+  assert_int_equal(PetscFree(id), 0);
+}
+
+/* The DM of a vector distributes the same values to the same dofs as the mesh. */
+static void CheckDistribution(Mesh mesh, Vec x, const PetscReal *u, const PetscInt *dofs)
+{
+  const PetscScalar *values;
+  PetscInt           n;
+  DM                 dm;
+  Vec                local;
+
+  assert_int_equal(VecGetDM(x, &dm), 0);
+  assert_ptr_equal(dm, mesh->dm);
+  assert_int_equal(DMGetLocalVector(dm, &local), 0);
+  assert_int_equal(VecGetSize(local, &n), 0);
+  assert_int_equal(n, mesh->n_nodes * mesh->dim);
+  assert_int_equal(DMGlobalToLocal(dm, x, INSERT_VALUES, local), 0);
+  assert_int_equal(VecGetArrayRead(local, &values), 0);
+  for (PetscInt i = 0; i < n; i++) assert_true(dofs[i] < 0 || PetscRealPart(values[i]) == u[i]);
+  assert_int_equal(VecRestoreArrayRead(local, &values), 0);
+  assert_int_equal(DMRestoreLocalVector(dm, &local), 0);
+}
+
 /* Only the lowest rank says which dofs are supported. All ranks must agree, number each free dof once, and exchange
    values without loss. */
 static void CheckDofs(Mesh mesh, Scene scene)
@@ -305,6 +360,7 @@ static void CheckDofs(Mesh mesh, Scene scene)
   PetscReal       *u, *ones;
   PetscScalar     *values;
   Vec              x, F;
+  DM               dm;
 
   assert_int_equal(PetscCalloc1(n, &constrained), 0);
   assert_int_equal(PetscMalloc2(n, &u, n, &ones), 0);
@@ -315,8 +371,10 @@ static void CheckDofs(Mesh mesh, Scene scene)
   assert_int_equal(MeshSetConstraints(mesh, constrained), 0);
   assert_int_equal(MeshGetGlobalDofs(mesh, &dofs), 0);
   for (PetscInt i = 0; i < held->n_nodes; i++) assert_int_equal(dofs[held->nodes[i] * mesh->dim], -1);
-  assert_int_equal(VecCreateMPI(mesh->comm, mesh->n_free, PETSC_DETERMINE, &x), 0);
+  assert_int_equal(MeshCreateVector(mesh, &x), 0);
   assert_int_equal(VecDuplicate(x, &F), 0);
+  assert_int_equal(VecGetDM(F, &dm), 0);
+  assert_ptr_equal(dm, mesh->dm);
   assert_int_equal(VecGetSize(x, &total), 0);
   assert_true((double)total == (double)(mesh->n_global * mesh->dim) - Sum((double)n_held));
   assert_int_equal(VecGetOwnershipRange(x, &first, &last), 0);
@@ -333,6 +391,7 @@ static void CheckDofs(Mesh mesh, Scene scene)
   assert_int_equal(MeshGlobalToLocal(mesh, x, u), 0);
   for (PetscInt i = 0; i < n; i++)
     assert_true(u[i] == (dofs[i] < 0 ? -7 : NodeValue(mesh, i / mesh->dim, (int)(i % mesh->dim))));
+  CheckDistribution(mesh, x, u, dofs);
 
   /* a 1 from every copy gives the number of copies, in the vector and as nodal sum, and both agree */
   assert_int_equal(MeshLocalToGlobal(mesh, ones, F), 0);
@@ -407,6 +466,7 @@ static void test_elements(void **state)
     CheckAgainstFile(mesh, file);
     CheckOwners(mesh);
     CheckGroupNodes(mesh);
+    CheckPlex(mesh, Group(mesh, scene, "cut_x"));
     CheckDofs(mesh, scene);
     assert_int_equal(MeshCheckQuality(mesh, scene), 0);
     snprintf(cells_text, sizeof(cells_text), "%d %s\n", cells, test->element);
@@ -559,6 +619,7 @@ static void test_mixed_types(void **state)
     CheckAgainstFile(mesh, file);
     CheckOwners(mesh);
     CheckGroupNodes(mesh);
+    CheckPlex(mesh, Group(mesh, scene, "cut_x"));
     CheckDofs(mesh, scene);
     assert_int_equal(MeshCheckQuality(mesh, scene), 0);
     for (int k = 0; k < 2; k++) CheckReport(mesh, scene, cases[t].row[k], cases[t].report[k]);

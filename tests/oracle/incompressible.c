@@ -419,7 +419,7 @@ static PetscErrorCode SolveLinear(Mesh mesh, Elasticity e, PetscReal *f, PetscRe
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &du));
-  PetscCall(VecCreateMPI(mesh->comm, mesh->n_free, PETSC_DETERMINE, &R));
+  PetscCall(MeshCreateVector(mesh, &R));
   PetscCall(VecDuplicate(R, &dx));
   PetscCall(ElasticityResidual(e, u, f, NULL, NULL, &ok));
   PetscCall(MeshLocalToGlobal(mesh, f, R));

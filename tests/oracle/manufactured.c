@@ -372,7 +372,7 @@ static PetscErrorCode Newton(Mesh mesh, Elasticity e, const PetscReal *load, Pet
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &f));
   PetscCall(PetscCalloc1(n, &du));
-  PetscCall(VecCreateMPI(mesh->comm, mesh->n_free, PETSC_DETERMINE, &R));
+  PetscCall(MeshCreateVector(mesh, &R));
   PetscCall(VecDuplicate(R, &dx));
   PetscCall(KSPCreate(mesh->comm, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));

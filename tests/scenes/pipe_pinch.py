@@ -11,13 +11,16 @@ FIELDS = ("displacement", "stress", "von_mises", "contact/crown/gap", "contact/c
           "contact/crown/penalty", "contact/crown/pressure", "contact/crown/normal")
 
 args = arguments()
-finished = run(args, SCENES.parent.parent / "runs" / "pipe_pinch.yaml", "-snes_monitor", "-snes_view", "-log_view")
+finished = run(args, SCENES.parent.parent / "runs" / "pipe_pinch.yaml", "-snes_monitor", "-snes_view", "-mesh_dm_view",
+               "-log_view")
 check = Check()
 rows = {round(row["t"], 9): row for row in finished.steps()}
 for t, force in REFERENCE.items():
     check.near(f"plate force at t = {t}", rows[t]["plate_force"], force, 0.01 * force)
 check.holds("20 steps, none failed", finished.summary()["steps"] == 20 and finished.summary()["steps_failed"] == 0)
 text = finished.text
+check.holds("a DMPlex on these ranks",
+            re.search(rf"DM Object: mesh.*{args.ranks} MPI process", text) and re.search(r"type: plex", text))
 check.holds("newtonls with the model's line search", re.search(r"type: newtonls", text)
             and re.search(r"SNESLineSearch Object.*\n *type: shell", text))
 check.holds("MUMPS", re.search(r"PC Object.*\n *type: shell\n.*mumps", text))
