@@ -2,7 +2,8 @@
 
    MeshCellSizes() gives the present ones, MeshSizesWrite() writes wanted ones: each node gets the geometric mean of
    those of its cells, and then at most what its neighbours' sizes and a bounded growth allow. gmsh interpolates between
-   the corners of the cells. Rigid tools have a size each, and do not become coarser. The file does not depend on the number of ranks. */
+   the corners of the cells. Rigid tools have a size each, and do not become coarser. The file does not depend on the
+   number of ranks. */
 #pragma once
 #include "mesh/meshdata.h"
 
