@@ -2,8 +2,6 @@
 #include "report/probevariation.h"
 #include "probeimpl.h"
 
-static const char SharedNodes[] = "slave and master of the pair share nodes";
-
 /* A reaction is the residual at the prescribed dofs; that of a tool is none of these. */
 static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional *f, const char **why)
 {
@@ -28,21 +26,18 @@ static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the slave nodes of a pair on this rank, ghosts included. *shared: the master has some of them too. */
-static PetscErrorCode MarkSlaves(Probes probes, const Probe *probe, PetscReal *mark, PetscBool *shared)
+/* Says why a pair's forces cannot be told apart by the nodes that they act on; NULL: they can. */
+static PetscErrorCode FindShared(Probes probes, const Probe *probe, const char **why)
 {
-  const Mesh   mesh = probes->model->mesh;
   ContactPlace place;
   ContactSides sides;
   PetscInt     joined;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < probe->group->n_nodes; i++) mark[probe->group->nodes[i]] = 1;
-  PetscCall(MeshSumNodes(mesh, 1, mark));
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) mark[n] = mark[n] > 0;
   PetscCall(ContactPairJoined(probes->model->contact, probe->pair, &joined, &place));
   ContactPairSides(probes->model->contact, probe->pair, &sides);
-  *shared = (PetscBool)(joined > 0 || (sides.master && sides.master->group == sides.slave->group));
+  if (joined > 0 || (sides.master && sides.master->group == sides.slave->group))
+    *why = "slave and master of the pair share nodes";
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -51,18 +46,16 @@ static PetscErrorCode VaryContactForce(Probes probes, const Probe *probe, Functi
 {
   const Mesh mesh = probes->model->mesh;
   PetscReal *mark;
-  PetscBool  shared;
 
   PetscFunctionBeginUser;
+  PetscCall(FindShared(probes, probe, why));
+  if (*why) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(mesh->n_nodes, &mark));
-  PetscCall(MarkSlaves(probes, probe, mark, &shared));
-  if (shared)
-    *why = SharedNodes;
-  else {
-    PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->pressed));
-    f->pair = probe->pair;
-    for (PetscInt n = 0; n < mesh->n_nodes; n++) f->pressed[n * mesh->dim + probe->scene->component] = mark[n];
-  }
+  for (PetscInt i = 0; i < probe->group->n_nodes; i++) mark[probe->group->nodes[i]] = 1;
+  PetscCall(MeshSumNodes(mesh, 1, mark));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->pressed));
+  f->pair = probe->pair;
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) f->pressed[n * mesh->dim + probe->scene->component] = mark[n] > 0;
   PetscCall(PetscFree(mark));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,17 +105,11 @@ static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functi
   const Mesh   mesh = probes->model->mesh;
   const int    dim  = mesh->dim;
   ContactNodes slaves;
-  PetscReal   *mark, *share, area;
-  PetscBool    shared;
+  PetscReal   *share, area;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(mesh->n_nodes, &mark));
-  PetscCall(MarkSlaves(probes, probe, mark, &shared));
-  PetscCall(PetscFree(mark));
-  if (shared) {
-    *why = SharedNodes;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  PetscCall(FindShared(probes, probe, why));
+  if (*why) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProbeMeanWeights(probes, probe, &slaves, &share, &area));
   PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->pressed));
   f->pair = probe->pair;
@@ -158,17 +145,10 @@ static PetscErrorCode VaryFriction(Probes probes, const Probe *probe, Functional
   const Mesh   mesh = probes->model->mesh;
   const int    dim  = mesh->dim;
   ContactNodes slaves;
-  PetscReal   *mark;
-  PetscBool    shared;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(mesh->n_nodes, &mark));
-  PetscCall(MarkSlaves(probes, probe, mark, &shared));
-  PetscCall(PetscFree(mark));
-  if (shared) {
-    *why = SharedNodes;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  PetscCall(FindShared(probes, probe, why));
+  if (*why) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactGetNodes(probes->model->contact, probe->pair, probes->model->u, &slaves));
   PetscCall(MeshCreateLocal(mesh, dim, &f->pressed));
   f->pair = probe->pair;
