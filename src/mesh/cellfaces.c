@@ -222,7 +222,7 @@ static PetscErrorCode GroupFaces(PetscInt first, PetscInt n_corners, const Petsc
   Collective
 
   Input Parameter:
-. slice - after SliceMeshRead()
+. slice - after SliceRead()
 
   Output Parameter:
 . slice - cell_faces has each face once for each cell that has it; those whose lowest corner is the i-th id of this

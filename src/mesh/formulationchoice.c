@@ -23,7 +23,7 @@ static void FindServed(Scene scene, const SliceMesh *slice, PetscBool *served)
 
   Input Parameters:
 + scene - its bodies, of which formulation may change
-. slice - after SliceMeshRead()
+. slice - after SliceRead()
 - mesh  - its communicator
 
   Note:

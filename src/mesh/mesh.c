@@ -12,6 +12,7 @@
 #include "slicegroups.h"
 #include "slicelinks.h"
 #include "slicemiddles.h"
+#include "sliceread.h"
 #include "slicerigid.h"
 #include <string.h>
 
@@ -71,7 +72,7 @@ static PetscErrorCode ReadFile(Scene scene, const char *file, SliceMesh *slice, 
   Complaint complaint = {""};
 
   PetscFunctionBeginUser;
-  PetscCall(SliceMeshRead(scene, file, slice, mesh, &complaint));
+  PetscCall(SliceRead(scene, file, slice, mesh, &complaint));
   PetscCall(ComplaintRefuse(mesh->comm, &complaint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

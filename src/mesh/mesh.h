@@ -2,7 +2,7 @@
    every node, physical groups by name, and gmsh's tags as keys that do not depend on the number of ranks. It knows no
    physics. MeshGenerate() makes the file, MeshCreate() reads, checks and distributes it, MeshDestroy() frees the mesh.
 
-   The steps are these. gmsh.h makes the file. gmshfile.h reads it and shares it out. slicemesh.h checks it against the
+   The steps are these. gmsh.h makes the file. gmshfile.h reads it and shares it out. sliceread.h checks it against the
    scene. cellfaces.h finds the cells that share faces, slicemiddles.h checks middle nodes. slicegroups.h and
    slicerigid.h find groups and rigid tools. partition.h decides which rank gets which cell, and meshdistribution.h
    distributes the mesh. meshplex.h makes the DMPlex of what each rank has then, which numbers the unknowns. The headers

@@ -248,7 +248,7 @@ static PetscErrorCode SetComponents(Scene scene, const SliceMesh *slice, Mesh me
 
   Input Parameters:
 + scene - its bodies, of which condensed and component are set
-. slice - after SliceMeshRead()
+. slice - after SliceRead()
 - mesh  - has_pressures is set
 @*/
 PetscErrorCode PressureNodesExist(Scene scene, const SliceMesh *slice, Mesh mesh)

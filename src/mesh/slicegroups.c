@@ -42,7 +42,7 @@ static PetscErrorCode ShareGroup(Mesh mesh, const GmshPhysical *physical, MeshGr
   Input Parameters:
 + scene - its contact pairs may ask for the skins of bodies, which are the last groups
 . mesh  - its groups are set
-- slice - after SliceMeshRead()
+- slice - after SliceRead()
 @*/
 PetscErrorCode SliceGroupsShare(Scene scene, Mesh mesh, const SliceMesh *slice)
 {

@@ -107,7 +107,7 @@ not its middle node.
 
   Input Parameters:
 + file  - name of the mesh, for the complaint
-- slice - after SliceMeshRead()
+- slice - after SliceRead()
 
   Output Parameter:
 . complaint - of the nodes with the lowest tags

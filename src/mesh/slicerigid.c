@@ -164,7 +164,7 @@ static PetscErrorCode CreateNodes(const SliceMesh *slice, Mesh mesh, MeshRigid *
 
   Input Parameters:
 + scene - its rigid bodies
-. slice - after SliceMeshRead()
+. slice - after SliceRead()
 - mesh  - with groups, centre and dimension; its rigid tools are set
 
   Note:

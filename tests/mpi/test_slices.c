@@ -1,7 +1,7 @@
 /* Slices of a mesh before distribution: no rank, and not the first one either, holds many more of the cells, the nodes
    and the faces than the mean, also where tags have gaps and do not follow the order of the file. Together the slices
    are the whole mesh. */
-#include "slicemesh.h"
+#include "sliceread.h"
 #include "cellfaces.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -109,7 +109,7 @@ static void CheckSlices(int spread)
   assert_int_equal(PetscNew(&mesh), 0);
   mesh->comm = PETSC_COMM_WORLD;
   mesh->dim  = 3;
-  assert_int_equal(SliceMeshRead(scene, path, &slice, mesh, &complaint), 0);
+  assert_int_equal(SliceRead(scene, path, &slice, mesh, &complaint), 0);
   assert_string_equal(complaint.text, "");
   ExpectShare("cells", slice.n_cells, CELLS);
   ExpectShare("nodes", slice.gmsh.n_nodes, NODES);

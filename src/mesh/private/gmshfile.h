@@ -1,49 +1,12 @@
 /* Reads gmsh's .msh files (format 4.1, text and binary) into plain arrays. The first rank reads the file piece by
    piece, and each rank keeps a part of it. It knows nothing of scenes and bodies. GmshRead() reads a file,
-   GmshFreeElements() and GmshFreeBlocks() free elements, GmshReset() all arrays. GmshFileLoad() loads any file as text.
+   GmshFileLoad() loads any file as text.
 
    DMPlex's reader is not used, because this one keeps gmsh's tags, which are the keys that do not depend on the number
    of ranks, keeps second-order nodes in gmsh's order, reads groups of every dimension, and describes what is wrong with
    a file. */
 #pragma once
-#include "base/complaint.h"
-#include "kernels/element.h"
-
-typedef struct {
-  int      dim;
-  PetscInt tag;
-  char    *name; /* of a group without a name: its number */
-} GmshPhysical;
-
-/* The elements of one type on one geometric entity: how many there are, and those of this rank. The ranks have them in
-   the order of the file. */
-typedef struct {
-  int            dim;
-  const Element *element;                /* NULL: the elements are points */
-  int            nodes;                  /* per element */
-  PetscInt       n_all, first_tag;       /* number in the file, tag of the first one */
-  PetscInt       n, *tag;                /* of this rank */
-  PetscInt      *connectivity;           /* n*nodes places among all nodes by ascending tag, in gmsh's node order */
-  int            n_physicals, *physical; /* indices into GmshMesh.physicals */
-  /* For each group: -1 if the group names the entity with a minus sign, which reverses its normals. The node order of
-     the elements is not changed. */
-  int *sign;
-} GmshBlock;
-
-typedef struct {
-  PetscInt      n_nodes, *node_tag; /* of this rank: ascending, and larger than those of lower ranks */
-  PetscReal    *coords;             /* n_nodes*3 */
-  PetscInt     *node_start;         /* for each rank, how many nodes lower ranks have; behind them the number of all */
-  int           n_physicals;
-  GmshPhysical *physicals; /* by descending dimension, then by tag; on the first rank only */
-  int           n_blocks;
-  GmshBlock    *blocks; /* those that belong to a physical group */
-  char         *notes; /* on the first rank: lines of the file's comments that start with "note: ", without these words;
-                          may be NULL */
-} GmshMesh;
+#include "gmshmesh.h"
 
 PetscErrorCode GmshRead(MPI_Comm, const char *file, GmshMesh *, Complaint *);
-PetscErrorCode GmshFreeElements(GmshBlock *);
-PetscErrorCode GmshFreeBlocks(GmshMesh *);
-PetscErrorCode GmshReset(GmshMesh *);
 PetscErrorCode GmshFileLoad(const char *file, char **data, size_t *size);

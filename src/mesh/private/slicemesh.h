@@ -3,10 +3,10 @@
    the slice of one rank, which knows its nodes too. Each node has a home, the rank to whose part of gmsh's nodes it
    belongs, where things that several slices know of it meet.
 
-   SliceMeshRead() fills it; CellFacesCreate() and SliceGroupsFind() add faces and groups. SliceMeshFreeCells() frees
-   cells and faces, SliceMeshReset() all. */
+   SliceRead() fills it; CellFacesCreate() and SliceGroupsFind() add faces and groups. SliceMeshFreeCells() frees cells
+   and faces, SliceMeshReset() all. */
 #pragma once
-#include "gmshfile.h"
+#include "gmshmesh.h"
 #include "mesh/meshdata.h"
 
 /* Most corners of a face of a cell: those of a quadrangle. */
@@ -36,7 +36,7 @@ typedef struct {
 typedef struct {
   MPI_Comm    comm;
   PetscMPIInt rank, size;
-  GmshMesh    gmsh; /* its elements are those of lower dimension than the bodies', after SliceMeshRead() */
+  GmshMesh    gmsh; /* its elements are those of lower dimension than the bodies', after SliceRead() */
   /* Nodes of cells whose home is this rank: their ids follow on home_start[rank]. */
   PetscInt  n_homes, *home; /* place among this rank's part of gmsh's nodes */
   PetscInt *home_start;     /* first id of each rank, and the number of all nodes */
@@ -61,7 +61,6 @@ typedef struct {
   int *marks;
 } SliceMesh;
 
-PetscErrorCode  SliceMeshRead(Scene, const char *file, SliceMesh *, Mesh, Complaint *);
 PetscErrorCode  SliceMeshCellCounts(const SliceMesh *, PetscMPIInt **counts, PetscMPIInt **starts);
 PetscErrorCode  SliceMeshFreeCells(SliceMesh *);
 PetscErrorCode  SliceMeshReset(SliceMesh *);
