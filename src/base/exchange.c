@@ -46,8 +46,8 @@ static PetscErrorCode ShareCounts(MPI_Comm comm, PetscMPIInt size, const Portion
 
   Output Parameters:
 + n_arrived - number of records that came
-- arrived   - the records, in the order of the ranks from which they come, and of one rank in its order; to be freed
-with PetscFree()
+- arrived   - the records, in the order of the ranks from which they come, and of one rank in its order; to be
+  freed with PetscFree()
 @*/
 PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const PetscMPIInt to[], ExchangePack pack,
                                const void *context, PetscInt *n_arrived, void **arrived)
@@ -113,5 +113,31 @@ PetscErrorCode ExchangeSources(MPI_Comm comm, PetscInt n, const PetscMPIInt to[]
   for (PetscMPIInt r = 0; r < size; r++)
     for (PetscMPIInt i = 0; i < receive.count[r]; i++) (*from)[receive.start[r] + i] = r;
   PetscCall(PetscFree4(send.count, send.start, receive.count, receive.start));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ExchangeStarts - numbers things through all ranks.
+
+  Collective
+
+  Input Parameters:
++ comm - the ranks
+- n    - how many this rank has
+
+  Output Parameter:
+. start - for each rank, how many lower ranks have; behind them the number of all [ranks + 1]; to be freed with
+  PetscFree()
+@*/
+PetscErrorCode ExchangeStarts(MPI_Comm comm, PetscInt n, PetscInt **start)
+{
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc1(size + 1, start));
+  (*start)[0] = 0;
+  PetscCallMPI(MPI_Allgather(&n, 1, MPIU_INT, *start + 1, 1, MPIU_INT, comm));
+  for (PetscMPIInt r = 0; r < size; r++) (*start)[r + 1] += (*start)[r];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

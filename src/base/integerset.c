@@ -81,6 +81,34 @@ PetscErrorCode IntegerSetCreate(int n_lists, const PetscInt size[], const PetscI
 }
 
 /*@
+  IntegersLast - finds the last of ascending integers that is not larger than a value.
+
+  Not collective
+
+  Input Parameters:
++ n         - number of integers
+. ascending - the integers
+- value     - the value
+
+  Note:
+  Returns its index, 0 where all are larger.
+@*/
+PetscInt IntegersLast(PetscInt n, const PetscInt ascending[], PetscInt value)
+{
+  PetscInt low = 0, high = n; /* it is in [low, high) */
+
+  while (high - low > 1) {
+    const PetscInt middle = low + (high - low) / 2;
+
+    if (value >= ascending[middle])
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/*@
   IntegerSetPlace - finds the place of an integer among those of a set.
 
   Not collective
@@ -94,22 +122,12 @@ PetscErrorCode IntegerSetCreate(int n_lists, const PetscInt size[], const PetscI
 @*/
 PetscInt IntegerSetPlace(const IntegerSet *set, PetscInt value)
 {
-  PetscInt low = 0, high = set->n; /* it is in [low, high) */
-
   if (set->bits) {
     const PetscInt at = value - set->value[0];
 
     return set->before[at / WORD] + __builtin_popcountll(set->bits[at / WORD] & (((uint64_t)1 << at % WORD) - 1));
   }
-  while (high - low > 1) {
-    const PetscInt middle = low + (high - low) / 2;
-
-    if (value >= set->value[middle])
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
+  return IntegersLast(set->n, set->value, value);
 }
 
 /*@

@@ -575,7 +575,7 @@ PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, co
 
 /*@
   ContactStepMarkPredicted - notes what presses at the end of a step, for ContactHoldExpected(), and of one that
-predicts for ContactUnpredictedEnergy().
+  predicts for ContactUnpredictedEnergy().
 
   Not collective
 

@@ -136,7 +136,7 @@ PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscR
 
 /*@
   ToolSizesFind - finds sizes of the elements of rigid tools: the mean of what the elements are to have that may meet
-it.
+  it.
 
   Collective
 
@@ -149,7 +149,7 @@ it.
 
   Note:
   The mean is the geometric one over the cells at the slaves of the pairs whose master the tool is. A mesh of a tool
-that remains as it is would leave an error which no finer mesh of the bodies takes away.
+  that remains as it is would leave an error which no finer mesh of the bodies takes away.
 @*/
 PetscErrorCode ToolSizesFind(Model model, const PetscReal *size, PetscReal *tool)
 {

@@ -1,6 +1,7 @@
 /* Reference elements. The table below holds what a manual lists: corners, edges, faces and orders. Middle nodes, shape
    functions at quadrature points and fits are derived from it once, on first use. */
 #include "kernels/element.h"
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -434,4 +435,37 @@ const Element *ElementFromGmsh(int gmsh_type)
 void ElementShape(ElementType type, const double *xi, double *N, double *dN, double *d2N)
 {
   ElementShapeOf(ElementGet(type), xi, N, dN, d2N);
+}
+
+/*@
+  ElementCornerType - returns the first-order type of a cell or a face, whose nodes are its corners.
+
+  Not collective
+
+  Input Parameters:
++ dim     - of the cell or face, 1 to 3
+- corners - it has
+@*/
+ElementType ElementCornerType(int dim, int corners)
+{
+  if (dim == 1) return ELEMENT_EDGE2;
+  if (dim == 2) return corners == 3 ? ELEMENT_TRI3 : ELEMENT_QUAD4;
+  return corners == 4 ? ELEMENT_TET4 : ELEMENT_HEX8;
+}
+
+/*@
+  ElementRegularSize - returns the length of an edge of the regular element of a measure.
+
+  Not collective
+
+  Input Parameters:
++ dim     - of the element, 1 to 3
+. corners - of the element
+- measure - its length, area or volume
+@*/
+double ElementRegularSize(int dim, int corners, double measure)
+{
+  if (dim == 1) return measure;
+  if (dim == 2) return sqrt(corners == 3 ? 4 * measure / sqrt(3) : measure);
+  return pow(corners == 4 ? 6 * sqrt(2) * measure : measure, 1 / 3.0);
 }

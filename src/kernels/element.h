@@ -2,7 +2,7 @@
 
    ElementGet() gives the table of a cell, ElementGetFace() that of a face, ElementGetProducts() that of a cell with
    points for products of fields, ElementFromGmsh() translates gmsh's number of an element type. ElementShape()
-   evaluates shape functions at any point.
+   evaluates shape functions at any point. ElementCornerType() and ElementRegularSize() know elements by their corners.
 
    The order of nodes is gmsh's for every element and face (gmsh's manual, "Node ordering"). The nodes of a face are
    listed so that its normal points out of the cell. The normal follows from the order of the nodes by the right-hand
@@ -53,3 +53,5 @@ const Element *ElementGetFace(ElementType);
 const Element *ElementGetProducts(ElementType);
 const Element *ElementFromGmsh(int gmsh_type);
 void           ElementShape(ElementType, const double *xi, double *N, double *dN, double *d2N);
+ElementType    ElementCornerType(int dim, int corners);
+double         ElementRegularSize(int dim, int corners, double measure);

@@ -1,7 +1,6 @@
 /* The mesh of a file: its groups, and its nodes and elements, which the ranks share. */
 #include "gmshmesh.h"
 #include "base/exchange.h"
-#include "base/integerset.h"
 #include "tagranges.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -220,10 +219,7 @@ static PetscErrorCode SortNodes(MPI_Comm comm, const char *file, Portions *porti
   }
   PetscCall(PetscFree(nodes));
   PetscCall(PetscFree2(order, tags));
-  PetscCall(PetscMalloc1(size + 1, &mesh->node_start));
-  mesh->node_start[0] = 0;
-  PetscCallMPI(MPI_Allgather(&mesh->n_nodes, 1, MPIU_INT, mesh->node_start + 1, 1, MPIU_INT, comm));
-  for (PetscMPIInt r = 0; r < size; r++) mesh->node_start[r + 1] += mesh->node_start[r];
+  PetscCall(ExchangeStarts(comm, mesh->n_nodes, &mesh->node_start));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -242,8 +238,18 @@ static PetscErrorCode TakeElements(Portions *portions, GmshMesh *mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Lists the tags of the nodes of this rank's elements. */
-static PetscErrorCode ListTags(const GmshMesh *mesh, IntegerSet *tags)
+/*@
+  GmshListNodes - lists the nodes of all elements, tags or places as the blocks have them.
+
+  Not collective
+
+  Input Parameter:
+. mesh - the mesh
+
+  Output Parameter:
+. nodes - each of them once; to be freed with IntegerSetDestroy()
+@*/
+PetscErrorCode GmshListNodes(const GmshMesh *mesh, IntegerSet *nodes)
 {
   PetscInt        *size;
   const PetscInt **list;
@@ -254,7 +260,7 @@ static PetscErrorCode ListTags(const GmshMesh *mesh, IntegerSet *tags)
     size[b] = mesh->blocks[b].n * mesh->blocks[b].nodes;
     list[b] = mesh->blocks[b].connectivity;
   }
-  PetscCall(IntegerSetCreate(mesh->n_blocks, size, list, tags));
+  PetscCall(IntegerSetCreate(mesh->n_blocks, size, list, nodes));
   PetscCall(PetscFree2(size, list));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -320,7 +326,7 @@ static PetscErrorCode PlaceNodes(MPI_Comm comm, const char *file, GmshMesh *mesh
   char      *used;
 
   PetscFunctionBeginUser;
-  PetscCall(ListTags(mesh, &tags));
+  PetscCall(GmshListNodes(mesh, &tags));
   PetscCall(PetscCalloc1(mesh->n_nodes, &used));
   PetscCall(FindNodes(comm, mesh, tags.n, tags.value, &places, used));
   for (int b = 0; b < mesh->n_blocks; b++) {

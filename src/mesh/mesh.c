@@ -37,7 +37,7 @@
 
   Note:
   A mesh is made once for each content and kept as mesh-HASH.msh. Refuses a file that gmsh or the converter refuses.
-Refuses a .geo that runs programs or writes files, unless `trust` is set.
+  Refuses a .geo that runs programs or writes files, unless `trust` is set.
 @*/
 PetscErrorCode MeshGenerate(MPI_Comm comm, Scene scene, const char *directory, PetscBool trust, char *file,
                             PetscReal *seconds)

@@ -31,17 +31,6 @@ static void PackCell(const void *context, PetscInt c, void *packed)
   for (int k = 0; k < block->nodes; k++) record[CELL_HEADER + k] = slice->id[SliceMeshCellNodes(slice, c)[k]];
 }
 
-static void PackFace(const void *context, PetscInt f, void *packed)
-{
-  const SliceFace *face = &((const SliceMesh *)context)->faces[f];
-  SliceFace       *to   = packed;
-
-  to->cell   = face->cell;
-  to->group  = face->group;
-  to->tag    = face->tag;
-  to->number = face->number;
-}
-
 static PetscErrorCode SendCells(Mesh mesh, const SliceMesh *slice, const PetscMPIInt part[], Cargo *cargo)
 {
   PetscMPIInt *to;
@@ -52,8 +41,8 @@ static PetscErrorCode SendCells(Mesh mesh, const SliceMesh *slice, const PetscMP
                             &cargo->n_cells, (void **)&cargo->cells));
   PetscCall(PetscMalloc1(slice->n_faces, &to));
   for (PetscInt f = 0; f < slice->n_faces; f++) to[f] = part[slice->faces[f].cell - slice->cell_start[slice->rank]];
-  PetscCall(ExchangeRecords(mesh->comm, sizeof(SliceFace), slice->n_faces, to, PackFace, slice, &cargo->n_faces,
-                            (void **)&cargo->faces));
+  PetscCall(ExchangeRecords(mesh->comm, sizeof(SliceFace), slice->n_faces, to, SliceMeshPackFace, slice->faces,
+                            &cargo->n_faces, (void **)&cargo->faces));
   PetscCall(PetscFree(to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -13,13 +13,6 @@ enum { SIZES_SWEEPS = 50 };
 
 enum { CORNERS = 8, CORNER_WIDTH = 4 /* node and place */, RECORD = 3 + CORNERS * CORNER_WIDTH };
 
-/* The first-order type of a cell, whose nodes are its corners */
-static ElementType CornerType(int dim, int corners)
-{
-  if (dim == 2) return corners == 3 ? ELEMENT_TRI3 : ELEMENT_QUAD4;
-  return corners == 4 ? ELEMENT_TET4 : ELEMENT_HEX8;
-}
-
 /*@
   MeshCellSizes - measures the elements.
 
@@ -37,17 +30,12 @@ void MeshCellSizes(Mesh mesh, PetscReal *size, PetscReal *measure)
   const Geometry flat = mesh->dim == 2 ? GEOMETRY_PLANE_STRAIN : GEOMETRY_SOLID;
 
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const ElementType type = CornerType(mesh->dim, ElementGet(mesh->cell_type[c])->corners);
+    const ElementType type = ElementCornerType(mesh->dim, ElementGet(mesh->cell_type[c])->corners);
     PetscReal         x[ELEMENT_MAX_NODES * 3];
 
     MeshCellCoordinates(mesh, c, x);
     measure[c] = CellVolume(type, mesh->dim, flat, x);
-    if (type == ELEMENT_TRI3)
-      size[c] = PetscSqrtReal(4 * measure[c] / PetscSqrtReal(3));
-    else if (type == ELEMENT_TET4)
-      size[c] = PetscPowReal(6 * PetscSqrtReal(2) * measure[c], 1 / 3.0);
-    else
-      size[c] = mesh->dim == 2 ? PetscSqrtReal(measure[c]) : PetscPowReal(measure[c], 1 / 3.0);
+    size[c]    = ElementRegularSize(mesh->dim, ElementGet(type)->corners, measure[c]);
   }
 }
 

@@ -218,18 +218,6 @@ static PetscErrorCode FindFaces(Scene scene, const char *file, SliceMesh *slice,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void PackFace(const void *context, PetscInt i, void *packed)
-{
-  const SliceFace *face = &((const SliceFace *)context)[i];
-  SliceFace       *to   = packed;
-
-  to->cell   = face->cell;
-  to->group  = face->group;
-  to->tag    = face->tag;
-  to->order  = face->order;
-  to->number = face->number;
-}
-
 /* Gives the slices the faces of their cells. */
 static PetscErrorCode CollectFaces(Scene scene, const char *file, SliceMesh *slice, Mesh mesh, Complaint *complaint)
 {
@@ -244,7 +232,7 @@ static PetscErrorCode CollectFaces(Scene scene, const char *file, SliceMesh *sli
   PetscCall(FindFaces(scene, file, slice, mesh, n, elements, &n_faces, faces, complaint));
   PetscCall(PetscFree(elements));
   for (PetscInt f = 0; f < n_faces; f++) to[f] = SliceMeshRankOf(slice, slice->cell_start, faces[f].cell);
-  PetscCall(ExchangeRecords(slice->comm, sizeof(SliceFace), n_faces, to, PackFace, faces, &slice->n_faces,
+  PetscCall(ExchangeRecords(slice->comm, sizeof(SliceFace), n_faces, to, SliceMeshPackFace, faces, &slice->n_faces,
                             (void **)&slice->faces));
   PetscCall(PetscFree2(faces, to));
   PetscFunctionReturn(PETSC_SUCCESS);

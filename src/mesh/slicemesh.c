@@ -68,6 +68,30 @@ PetscErrorCode SliceMeshSF(const SliceMesh *slice, const PetscInt start[], Petsc
 }
 
 /*@
+  SliceMeshPackFace - writes one of an array of faces of groups where ExchangeRecords() sends it from.
+
+  Not collective
+
+  Input Parameters:
++ faces - the array, of SliceFace
+- i     - number of the face
+
+  Output Parameter:
+. packed - the face; what lies between its fields is left as it is, so that no byte is undefined
+@*/
+void SliceMeshPackFace(const void *faces, PetscInt i, void *packed)
+{
+  const SliceFace *face = &((const SliceFace *)faces)[i];
+  SliceFace       *to   = packed;
+
+  to->cell   = face->cell;
+  to->group  = face->group;
+  to->tag    = face->tag;
+  to->order  = face->order;
+  to->number = face->number;
+}
+
+/*@
   SliceMeshReversedNode - returns the node at place k of a plane cell, a face or a curve whose sense is reversed.
 
   Not collective

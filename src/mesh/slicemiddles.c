@@ -101,7 +101,7 @@ static PetscErrorCode FindTag(const SliceMesh *slice, PetscInt id, PetscInt *tag
 
 /*@
   SliceMiddlesCheck - complains of two nodes in the middle of one edge or face. This occurs where cells share it, but
-not its middle node.
+  not its middle node.
 
   Collective
 

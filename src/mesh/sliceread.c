@@ -1,7 +1,6 @@
 /* Reads the mesh, and shares cells and nodes out by their tags. */
 #include "sliceread.h"
 #include "base/exchange.h"
-#include "base/integerset.h"
 #include "gmshfile.h"
 #include "slicechecks.h"
 #include "sliceclockwise.h"
@@ -110,17 +109,6 @@ static PetscErrorCode NumberCells(Scene scene, const char *file, SliceMesh *slic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Shares the numbers that ranks have of something: start of each rank, and the number of all. */
-static PetscErrorCode ShareStarts(const SliceMesh *slice, PetscInt n, PetscInt **start)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(slice->size + 1, start));
-  (*start)[0] = 0;
-  PetscCallMPI(MPI_Allgather(&n, 1, MPIU_INT, *start + 1, 1, MPIU_INT, slice->comm));
-  for (PetscMPIInt r = 0; r < slice->size; r++) (*start)[r + 1] += (*start)[r];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Nodes */
 
 /* Lists the places of the slice's nodes among gmsh's, and numbers them in the cells by this list. */
@@ -151,25 +139,8 @@ static PetscErrorCode NumberHomes(SliceMesh *slice, PetscSF sf, PetscInt id[])
   PetscCall(PetscMalloc1(slice->gmsh.n_nodes, &slice->home));
   for (PetscInt i = 0; i < slice->gmsh.n_nodes; i++)
     if (id[i] > 0) slice->home[slice->n_homes++] = i;
-  PetscCall(ShareStarts(slice, slice->n_homes, &slice->home_start));
+  PetscCall(ExchangeStarts(slice->comm, slice->n_homes, &slice->home_start));
   for (PetscInt i = 0; i < slice->n_homes; i++) id[slice->home[i]] = slice->home_start[slice->rank] + i;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Lists the places of the nodes of the elements of lower dimension. */
-static PetscErrorCode ListElementNodes(const GmshMesh *gmsh, IntegerSet *places)
-{
-  PetscInt        *size;
-  const PetscInt **list;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(gmsh->n_blocks, &size, gmsh->n_blocks, &list));
-  for (int b = 0; b < gmsh->n_blocks; b++) {
-    size[b] = gmsh->blocks[b].n * gmsh->blocks[b].nodes;
-    list[b] = gmsh->blocks[b].connectivity;
-  }
-  PetscCall(IntegerSetCreate(gmsh->n_blocks, size, list, places));
-  PetscCall(PetscFree2(size, list));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -182,7 +153,7 @@ static PetscErrorCode FindElementIds(SliceMesh *slice, const PetscInt id[])
   PetscSF         sf;
 
   PetscFunctionBeginUser;
-  PetscCall(ListElementNodes(gmsh, &places));
+  PetscCall(GmshListNodes(gmsh, &places)); /* the cells are gone */
   PetscCall(PetscMalloc1(places.n, &ids));
   PetscCall(SliceMeshSF(slice, gmsh->node_start, places.n, places.value, &sf));
   PetscCall(PetscSFBcastBegin(sf, MPIU_INT, id, ids, MPI_REPLACE));
@@ -311,7 +282,7 @@ PetscErrorCode SliceRead(Scene scene, const char *file, SliceMesh *slice, Mesh m
   PetscCall(ReadCells(scene, file, slice, complaint));
   PetscCall(ComplaintAnywhere(slice->comm, complaint, &failed));
   if (failed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ShareStarts(slice, slice->n_cells, &slice->cell_start));
+  PetscCall(ExchangeStarts(slice->comm, slice->n_cells, &slice->cell_start));
   if (slice->cell_start[slice->size] < slice->size)
     Complain(complaint, "%s: %" PetscInt_FMT " cells cannot be shared out to %d ranks; run with fewer", file,
              slice->cell_start[slice->size], slice->size);

@@ -1,5 +1,6 @@
 /* Ranges of tags, see tagranges.h. They come from samples of the tags of all ranks. */
 #include "tagranges.h"
+#include "base/integerset.h"
 
 /* Samples for each range. Parts then differ by a few per cent of the mean. */
 enum { TAG_SAMPLES = 64 };
@@ -78,15 +79,5 @@ PetscErrorCode TagRangesChoose(MPI_Comm comm, PetscInt n, const PetscInt tags[],
 @*/
 PetscMPIInt TagRangesRank(PetscMPIInt size, const PetscInt first[], PetscInt tag)
 {
-  PetscMPIInt low = 0, high = size; /* it is one of the ranks [low, high) */
-
-  while (high - low > 1) {
-    const PetscMPIInt middle = (low + high) / 2;
-
-    if (tag >= first[middle])
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
+  return (PetscMPIInt)IntegersLast(size, first, tag);
 }

@@ -9,43 +9,43 @@
 /* The cell is so much larger than the face along it, for the ends of a curve. */
 #define TOOL_LONGER 1.05
 
-/* Unit normal of a face of corners x[n][3] in the plane or in space, and its length. Returns the length. */
-static double FaceNormal(int dim, int n, double x[][3], double normal[3])
+/* Most corners of a face */
+enum { CORNERS = 4 };
+
+/* Unit normal of a face of n corners x[n*dim]. Returns the length of an edge of the regular face of its area. */
+static double FaceSize(int dim, int n, const double *x, double normal[3])
 {
-  double a[3], b[3] = {0, 0, 1}, size = 0;
+  const Geometry flat          = dim == 2 ? GEOMETRY_PLANE_STRAIN : GEOMETRY_SOLID;
+  double         area[CORNERS] = {0}, normals[CORNERS * 3] = {0}, total = 0, length = 0;
 
-  for (int i = 0; i < 3; i++) {
-    a[i] = dim == 2 || n == 3 ? x[1][i] - x[0][i] : x[2][i] - x[0][i];
-    if (dim == 3) b[i] = n == 3 ? x[2][i] - x[0][i] : x[3][i] - x[1][i];
+  FaceAreaKernel(ElementCornerType(dim - 1, n), dim, flat, x, area, normals);
+  for (int d = 0; d < 3; d++) normal[d] = 0;
+  for (int k = 0; k < n; k++) {
+    total += area[k];
+    for (int d = 0; d < dim; d++) normal[d] += normals[k * dim + d];
   }
-  for (int i = 0; i < 3; i++) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-
-    normal[i] = a[j] * b[k] - a[k] * b[j];
-    size += normal[i] * normal[i];
-  }
-  size = sqrt(size);
-  for (int i = 0; i < 3 && size > 0; i++) normal[i] /= size;
-  return dim == 2 ? size : sqrt(n == 3 ? size * 2 / sqrt(3) : size / 2);
+  for (int d = 0; d < dim; d++) length += normal[d] * normal[d];
+  for (int d = 0; d < dim && length > 0; d++) normal[d] /= sqrt(length);
+  return ElementRegularSize(dim - 1, n, total);
 }
 
 /* Writes a face as a cell with one size. */
-static void WriteFace(int dim, int n, double x[][3], double wanted, FILE *stream)
+static void WriteFace(int dim, int n, const double *x, double wanted, FILE *stream)
 {
   double       normal[3], centre[3] = {0, 0, 0};
-  const double length = FaceNormal(dim, n, x, normal), size = wanted > 0 ? fmin(wanted, length) : length;
+  const double length = FaceSize(dim, n, x, normal), size = wanted > 0 ? fmin(wanted, length) : length;
 
   for (int k = 0; k < n; k++)
-    for (int i = 0; i < 3; i++) centre[i] += x[k][i] / n;
+    for (int d = 0; d < dim; d++) centre[d] += x[k * dim + d] / n;
   fprintf(stream, "S%c(", dim == 2 ? 'Q' : n == 3 ? 'I' : 'H');
   for (int k = 0; k < 2 * n; k++) {
     /* the second side of a plane strip goes back */
-    const double *corner = x[dim == 2 && k >= n ? 2 * n - 1 - k : k % n];
+    const double *corner = &x[(dim == 2 && k >= n ? 2 * n - 1 - k : k % n) * dim];
+    const double  height = (k < n ? -TOOL_HEIGHT : TOOL_HEIGHT) * length;
 
-    for (int i = 0; i < 3; i++)
-      fprintf(stream, k + i ? ",%.12g" : "%.12g",
-              centre[i] + TOOL_LONGER * (corner[i] - centre[i]) +
-                (k < n ? -TOOL_HEIGHT : TOOL_HEIGHT) * length * normal[i]);
+    for (int d = 0; d < 3; d++)
+      fprintf(stream, k + d ? ",%.12g" : "%.12g",
+              d < dim ? centre[d] + TOOL_LONGER * (corner[d] - centre[d]) + height * normal[d] : 0.0);
   }
   fprintf(stream, "){");
   for (int k = 0; k < 2 * n; k++) fprintf(stream, k ? ",%.6g" : "%.6g", size);
@@ -68,13 +68,13 @@ void ToolSizesWrite(Mesh mesh, const PetscReal *wanted, FILE *stream)
     const MeshRigid *tool = &mesh->rigid[r];
 
     for (PetscInt f = 0; f < tool->n_faces; f++) {
-      const int n                    = ElementGet(tool->face_type[f])->corners;
-      double    x[FACE_MAX_NODES][3] = {{0}};
+      const int       dim = mesh->dim, n = ElementGet(tool->face_type[f])->corners;
+      const PetscInt *nodes = &tool->face_nodes[tool->face_ptr[f]];
+      double          x[CORNERS * 3];
 
       for (int k = 0; k < n; k++)
-        for (int i = 0; i < mesh->dim; i++)
-          x[k][i] = (double)(tool->coords[tool->face_nodes[tool->face_ptr[f] + k] * mesh->dim + i] + mesh->centre[i]);
-      WriteFace(mesh->dim, n, x, (double)wanted[r], stream);
+        for (int d = 0; d < dim; d++) x[k * dim + d] = (double)(tool->coords[nodes[k] * dim + d] + mesh->centre[d]);
+      WriteFace(dim, n, x, (double)wanted[r], stream);
     }
   }
 }

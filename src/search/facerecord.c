@@ -1,5 +1,6 @@
 /* Faces and node keys: making, sending and sorting them. */
 #include "search/facerecord.h"
+#include "base/exchange.h"
 
 /*@
   FaceRecordFromSurface - makes a record of a face of a surface, with its nodes' keys and reference positions.
@@ -39,36 +40,22 @@ void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry,
   for (int i = 0; offset && i < FACE_RULE_POINTS * dim; i++) record->offset[i] = offset[f * FACE_RULE_POINTS * dim + i];
 }
 
-/* Sends count[r] records to each rank r; send holds them rank after rank. The records that arrive are in the order
-   of the ranks from which they come. */
-static PetscErrorCode ExchangeRecords(MPI_Comm comm, const PetscInt count[], const FaceRecord *send, PetscInt *n,
-                                      FaceRecord **received)
-{
-  PetscMPIInt  size, *send_count, *send_start, *receive_count, *receive_start;
-  PetscInt     total = 0;
-  MPI_Datatype type;
+/* The faces that are sent, and of what surface. */
+typedef struct {
+  ContactSurface      surface;
+  const NodeGeometry *geometry;
+  const PetscReal    *offset;
+  const PetscInt     *faces;
+  PetscMPIInt         rank;
+} Sending;
 
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMalloc4(size, &send_count, size, &send_start, size, &receive_count, size, &receive_start));
-  for (PetscMPIInt r = 0; r < size; r++) {
-    PetscCall(PetscMPIIntCast(total, &send_start[r]));
-    PetscCall(PetscMPIIntCast(count[r], &send_count[r]));
-    total += count[r];
-  }
-  PetscCallMPI(MPI_Alltoall(send_count, 1, MPI_INT, receive_count, 1, MPI_INT, comm));
-  *n = 0;
-  for (PetscMPIInt r = 0; r < size; r++) {
-    PetscCall(PetscMPIIntCast(*n, &receive_start[r]));
-    *n += receive_count[r];
-  }
-  PetscCall(PetscMalloc1(*n, received));
-  PetscCallMPI(MPI_Type_contiguous((int)sizeof(FaceRecord), MPI_BYTE, &type));
-  PetscCallMPI(MPI_Type_commit(&type));
-  PetscCallMPI(MPI_Alltoallv(send, send_count, send_start, type, *received, receive_count, receive_start, type, comm));
-  PetscCallMPI(MPI_Type_free(&type));
-  PetscCall(PetscFree4(send_count, send_start, receive_count, receive_start));
-  PetscFunctionReturn(PETSC_SUCCESS);
+static void PackFace(const void *context, PetscInt i, void *packed)
+{
+  const Sending *sending = context;
+  FaceRecord    *record  = packed;
+
+  FaceRecordFromSurface(sending->surface, sending->geometry, sending->offset, sending->faces[i], record);
+  record->home = sending->rank;
 }
 
 /*@
@@ -93,27 +80,21 @@ static PetscErrorCode ExchangeRecords(MPI_Comm comm, const PetscInt count[], con
 PetscErrorCode FaceRecordsShare(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset,
                                 const PetscInt count[], const PetscInt faces[], PetscInt *n, FaceRecord **received)
 {
-  const MPI_Comm comm = surface->mesh->comm;
-  PetscMPIInt    size, rank;
+  const MPI_Comm comm    = surface->mesh->comm;
+  Sending        sending = {.surface = surface, .geometry = geometry, .offset = offset, .faces = faces};
+  PetscMPIInt    size, *to;
   PetscInt       total = 0;
-  FaceRecord    *send;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_rank(comm, &sending.rank));
   for (PetscMPIInt r = 0; r < size; r++) total += count[r];
-  PetscCall(PetscMalloc1(total, &send));
-  for (PetscInt i = 0; i < total; i++) {
-    FaceRecordFromSurface(surface, geometry, offset, faces[i], &send[i]);
-    send[i].home = rank;
-  }
-  if (size == 1) {
-    *n        = total;
-    *received = send;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(ExchangeRecords(comm, count, send, n, received));
-  PetscCall(PetscFree(send));
+  PetscCall(PetscMalloc1(total, &to));
+  total = 0;
+  for (PetscMPIInt r = 0; r < size; r++)
+    for (PetscInt i = 0; i < count[r]; i++) to[total++] = r;
+  PetscCall(ExchangeRecords(comm, sizeof(FaceRecord), total, to, PackFace, &sending, n, (void **)received));
+  PetscCall(PetscFree(to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

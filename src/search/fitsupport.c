@@ -386,7 +386,7 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
 
   Note:
   None is made on a facet at the tip of a fold. It would know one side of it only and go on past the tip, where the
-sides are nearer to each other than fits are to their facets.
+  sides are nearer to each other than fits are to their facets.
 @*/
 PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, int first, FitProblem *problem, FitResult *result,
                                int *rung)

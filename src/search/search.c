@@ -326,7 +326,7 @@ void SearchKeepFaces(ContactSearch s)
 
 /*@
   SearchAllSides - has lists leave out what lies behind a slave point beyond its own body, because any side of the
-bodies may meet any other one.
+  bodies may meet any other one.
 
   Not collective
 

@@ -3,6 +3,7 @@
    the file. GmshFreeElements() and GmshFreeBlocks() free elements, GmshReset() all arrays. */
 #pragma once
 #include "base/complaint.h"
+#include "base/integerset.h"
 #include "gmshportions.h"
 #include "kernels/element.h"
 
@@ -45,6 +46,7 @@ int            GmshPhysicalIndex(const GmshMesh *, int dim, PetscInt tag);
 PetscErrorCode GmshAddPhysical(GmshMesh *, int dim, PetscInt tag, int *index);
 PetscErrorCode GmshSortPhysicals(GmshMesh *);
 PetscErrorCode GmshJoin(MPI_Comm, const char *file, Portions *, GmshMesh *, Complaint *);
+PetscErrorCode GmshListNodes(const GmshMesh *, IntegerSet *);
 PetscErrorCode GmshFreeElements(GmshBlock *);
 PetscErrorCode GmshFreeBlocks(GmshMesh *);
 PetscErrorCode GmshReset(GmshMesh *);

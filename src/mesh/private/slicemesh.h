@@ -67,4 +67,5 @@ PetscErrorCode  SliceMeshReset(SliceMesh *);
 const PetscInt *SliceMeshCellNodes(const SliceMesh *, PetscInt cell);
 PetscMPIInt     SliceMeshRankOf(const SliceMesh *, const PetscInt start[], PetscInt id);
 PetscErrorCode  SliceMeshSF(const SliceMesh *, const PetscInt start[], PetscInt n, const PetscInt ids[], PetscSF *);
+void            SliceMeshPackFace(const void *faces, PetscInt i, void *packed);
 int             SliceMeshReversedNode(const Element *, int k);
