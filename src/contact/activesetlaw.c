@@ -47,9 +47,9 @@ PetscReal ActiveSetExcess(ActiveSet p, PetscInt component, PetscReal by[ACTIVE_S
     by[l] = friction->by_slip[a][l - 1];
     in.slip[l - 1] += p->end[l * p->n + i];
   }
-  if (!p->pressed[i]) return excess;
-  in.pressure = -term->penalty * (term->opening + p->end[i]);
-  in.rate     = term->penalty;
+  if (!p->pressed[i] && !(in.fluid > 0)) return excess;
+  in.pressure = p->pressed[i] ? -term->penalty * (term->opening + p->end[i]) : 0;
+  in.rate     = p->pressed[i] ? term->penalty : 0;
   in.state    = p->sticks[i] ? FRICTION_STICKS : FRICTION_DECIDES;
   FrictionEvaluate(&in, &out);
   by[0] -= out.by_gap[a];

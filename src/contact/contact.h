@@ -206,7 +206,7 @@ PetscErrorCode ContactLocateOutside(Contact, char *text, size_t size);
 PetscErrorCode ContactPairWindow(Contact, int pair, ContactWindow *);
 PetscErrorCode ContactPairPenalty(Contact, int pair, PetscReal *least, PetscReal *most);
 /* Fluid between the surfaces */
-PetscErrorCode ContactSetCarried(Contact, int pair, const PetscReal *carried);
+PetscErrorCode ContactSetCarried(Contact, int pair, const PetscReal *carried, const PetscReal *dry);
 PetscErrorCode ContactTermForces(Contact, int pair, PetscReal touch, PetscReal *force);
 /* Control of the load step */
 PetscErrorCode ContactTouches(Contact, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t,

@@ -10,22 +10,29 @@
   Input Parameters:
 + contact - the contact
 . p       - number of the pair
-- carried - carried[n_nodes] by local node: normal force; 0 where no fluid is
+. carried - carried[n_nodes] by local node: normal force; 0 where no fluid is
+- dry     - dry[n_nodes]: 1 where the fluid's load lies ahead of it, on surfaces that touch, else 0; not used without
+            friction
 
   Note:
   A term presses what its penalty and its multiplier give beyond this force. So where the fluid's own load is this
   force, fluid and contact together press as much as the larger of the two, and whether the fluid is there does not
-  matter where the contact alone presses more.
+  matter where the contact alone presses more. Where the surfaces are dry, all of it counts in the bound of friction.
 @*/
-PetscErrorCode ContactSetCarried(Contact contact, int p, const PetscReal *carried)
+PetscErrorCode ContactSetCarried(Contact contact, int p, const PetscReal *carried, const PetscReal *dry)
 {
   ContactPair *pair = &contact->pairs[p];
 
   PetscFunctionBeginUser;
   if (!pair->carried) PetscCall(PetscMalloc1(pair->n, &pair->carried));
+  if (!pair->carried_dry && pair->friction) PetscCall(PetscMalloc1(pair->n, &pair->carried_dry));
   for (PetscInt c = 0; c < pair->n_nodes; c++) { /* a fluid leaves no terms of faces, see ContactFacesServe() */
     pair->carried[c] = carried[pair->node[c]] / pair->whole[c];
     for (PetscInt i = pair->first_side[c]; i < pair->first_side[c + 1]; i++) pair->carried[i] = pair->carried[c];
+    if (!pair->friction) continue;
+    pair->carried_dry[c] = dry[pair->node[c]] * pair->carried[c];
+    for (PetscInt i = pair->first_side[c]; i < pair->first_side[c + 1]; i++)
+      pair->carried_dry[i] = pair->carried_dry[c];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

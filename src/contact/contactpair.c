@@ -478,6 +478,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree(pair->foreseen));
   PetscCall(FrictionDestroy(&pair->friction));
   PetscCall(PetscFree(pair->carried));
+  PetscCall(PetscFree(pair->carried_dry));
   PetscCall(PetscFree(pair->marks));
   PetscCall(PetscFree(pair->reaction));
   PetscFunctionReturn(PETSC_SUCCESS);

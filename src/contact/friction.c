@@ -585,15 +585,28 @@ static PetscReal TermCoefficient(const ContactPair *pair, PetscInt c, PetscReal 
   return scene->mu_pressure.n ? mu * HistoryValue(&scene->mu_pressure, pressure) : mu;
 }
 
+/* What a fluid carries of a term in the contact's place without being between the surfaces (force per area). */
+static PetscReal TermFluid(const ContactPair *pair, PetscInt c)
+{
+  return pair->carried_dry ? pair->carried_dry[c] : 0;
+}
+
+/* Says whether friction may act at a term: it presses, or is dry where a fluid's load lies. */
+static PetscBool TermActs(const ContactPair *pair, PetscInt c, const LawValue *value)
+{
+  return (PetscBool)(value->stiffness > 0 || TermFluid(pair, c) > 0);
+}
+
 /* Fills the law of a term but for its slip, at a pressure. */
 static void TermMaterial(const ContactPair *pair, PetscInt c, PetscReal t, PetscReal pressure, FrictionInput *in)
 {
   *in = (FrictionInput){.cohesion  = pair->scene->cohesion,
                         .limit     = pair->scene->tau_max,
                         .stiffness = pair->friction->stiffness,
-                        .pressure  = pressure};
+                        .pressure  = pressure,
+                        .fluid     = TermFluid(pair, c)};
 
-  in->coefficient = TermCoefficient(pair, c, t, pressure, &in->steepness);
+  in->coefficient = TermCoefficient(pair, c, t, pressure + in->fluid, &in->steepness);
 }
 
 /* Sets the penalty of what sticks for the step: the automatic one with the factor of the state, or, where the scene
@@ -613,7 +626,7 @@ static PetscErrorCode SetStiffness(ContactPair *pair, PetscReal t, PetscReal t_n
     PetscReal area;
 
     ContactTermLaw(pair, c, t, &value, NULL, &area);
-    if (!(value.pressure > 0)) continue;
+    if (!(value.pressure + TermFluid(pair, c) > 0)) continue;
     for (int end = 0; end < 2; end++) {
       FrictionInput in;
 
@@ -653,7 +666,7 @@ static PetscBool TermPresses(const ContactPair *pair, PetscInt c, PetscReal t)
   PetscReal area;
 
   ContactTermLaw(pair, c, t, &value, NULL, &area);
-  return (PetscBool)(value.stiffness > 0);
+  return TermActs(pair, c, &value);
 }
 
 /* Finds anchors for the slave points of pressed terms that have none. Returns how many it has found. */
@@ -815,7 +828,7 @@ PetscErrorCode FrictionTerm(const ContactPair *pair, PetscInt c, PetscReal t, Fr
 
   PetscFunctionBeginUser;
   ContactTermLaw(pair, c, t, &value, NULL, &area);
-  *acts = (PetscBool)(value.stiffness > 0);
+  *acts = TermActs(pair, c, &value);
   if (*acts) PetscCall(FrictionTermAsk(pair, c, t, in, acts));
   if (*acts) TermEvaluate(pair, c, area, in, out);
   PetscFunctionReturn(PETSC_SUCCESS);

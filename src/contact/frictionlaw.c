@@ -176,12 +176,12 @@ static void ApplyMatrix(Matrix m, FrictionTraction *by)
    pressure may be negative and counts with its sign. */
 static double Bound(const FrictionInput *in, double *slope)
 {
-  const double bound = in->cohesion + in->coefficient * in->pressure;
+  const double pressure = in->pressure + in->fluid, bound = in->cohesion + in->coefficient * pressure;
 
   *slope = 0;
-  if (!(in->pressure > 0) && in->state != FRICTION_SLIPS) return 0;
+  if (!(pressure > 0) && in->state != FRICTION_SLIPS) return 0;
   if (in->limit > 0 && bound >= in->limit) return in->limit;
-  *slope = in->coefficient + in->steepness * in->pressure;
+  *slope = in->coefficient + in->steepness * pressure;
   return bound;
 }
 

@@ -12,6 +12,7 @@
        t = b(p) e/|e|       else: it slips
 
    with the bound b = cohesion + mu p, or the limit where that is less. mu may depend on p. Without pressure b is 0.
+   Where a fluid presses in the place of contact but does not come between the surfaces, its pressure counts in p there.
    beta is 1 where the node was in contact when the step began. Else slip counts from the touch only: beta =
    depth/(depth + began) with depth = p/stiffness. So far the node would have gone on without contact, were the surface
    as stiff across as it is along. Near the touch t = p v/began: a node that arrives within the cone of friction sticks,
@@ -36,6 +37,7 @@ typedef struct {
   double kept[2];     /* lengths */
   double grip[2];     /* force per area; 0 without augmentation */
   double pressure;    /* p; none below 0 counts, unless the caller has it slip: in a linear step p is signed */
+  double fluid;       /* pressure of a fluid that is to be counted as one of contact, beside p */
   double expected;    /* pressure that resists turns of the slip where p is not positive and the caller has it slip */
   double rate;        /* -dp/dgap: force per length and area */
   double began;       /* gap less the gap below which there is pressure when the step began, where the node was

@@ -42,17 +42,19 @@ typedef struct {
   int              finer;             /* rule of contact on faces, see FaceRuleGet() */
   PetscBool       *pair;              /* pairs whose slaves are on the surface */
   PetscBool        form[FLUID_FORMS]; /* how they measure contact */
+  PetscBool        friction;          /* one of them has friction */
   char            *from, *to;         /* n: the two ends */
   PetscBool        has_from, has_to;
   FluidState       now, accepted;
-  char            *laid;                           /* n: where the fluid's load lies: wet places and those ahead */
-  PetscBool        shut;                           /* no place was wet any more in this step */
-  PetscReal       *area[FLUID_FORMS];              /* n_nodes: present area of the surface around each node */
-  PetscReal       *wet, *pressing, *pressing_form; /* n_nodes: of the state, by local node */
-  PetscReal       *nodes, *points;                 /* shares for the load, see LoadsSetShares() */
-  PetscReal       *force[FLUID_FORMS];             /* n_nodes: of the contact terms */
-  PetscReal       *weight;                         /* n: reference area of the nodes */
-  PetscReal        pressure, height;               /* of the fluid; of the barrier */
+  char            *laid;       /* n: where the fluid's load lies: wet places and those ahead */
+  char            *lubricated; /* n: places that were wet in this step: friction has what contact presses there */
+  PetscBool        shut;       /* no place was wet any more in this step */
+  PetscReal       *area[FLUID_FORMS];                    /* n_nodes: present area of the surface around each node */
+  PetscReal       *wet, *dry, *pressing, *pressing_form; /* n_nodes: of the state, by local node; dry: laid alone */
+  PetscReal       *nodes, *points;                       /* shares for the load, see LoadsSetShares() */
+  PetscReal       *force[FLUID_FORMS];                   /* n_nodes: of the contact terms */
+  PetscReal       *weight;                               /* n: reference area of the nodes */
+  PetscReal        pressure, height;                     /* of the fluid; of the barrier */
   PetscReal        leak_t, leak_pressure; /* t and pressure at which it was found to leak last; NaN: it was not */
 } Fluid;
 
@@ -169,6 +171,8 @@ static PetscErrorCode Apply(Fluids fluids, Fluid *fluid, const PetscReal *u, Pet
   PetscCall(LoadsPressure(fluids->loads, fluid->number, t, &fluid->pressure));
   PetscCall(SetAreas(fluids, fluid, u));
   SurfaceGraphScatter(fluid->surface, fluid->laid, fluid->wet);
+  SurfaceGraphScatter(fluid->surface, fluid->lubricated, fluid->dry);
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) fluid->dry[i] = fluid->wet[i] * (1 - fluid->dry[i]);
   SurfaceGraphScatter(fluid->surface, fluid->now.form, fluid->pressing_form);
   for (int i = 0; i < fluid->surface->graph.n; i++)
     if (fluid->surface->local[i] >= 0) fluid->pressing[fluid->surface->local[i]] = fluid->now.p[i];
@@ -180,7 +184,7 @@ static PetscErrorCode Apply(Fluids fluids, Fluid *fluid, const PetscReal *u, Pet
 
     if (!fluid->pair[p]) continue;
     for (PetscInt i = 0; i < mesh->n_nodes; i++) carried[i] = fluid->wet[i] * fluid->pressure * area[i];
-    PetscCall(ContactSetCarried(fluids->contact, p, carried));
+    PetscCall(ContactSetCarried(fluids->contact, p, carried, fluid->dry));
   }
   PetscCall(PetscFree(carried));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -276,6 +280,7 @@ static PetscErrorCode LayAhead(Fluid *fluid)
   for (int i = 0; i < graph->n; i++) {
     if (now->wet[i]) stack[top++] = i;
     fluid->laid[i] |= now->wet[i];
+    fluid->lubricated[i] |= now->wet[i];
   }
   while (top) {
     const int i = stack[--top];
@@ -292,8 +297,9 @@ static PetscErrorCode LayAhead(Fluid *fluid)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves one fluid to where it can be at the present solution. *moved: it is where its load did not lie. A load of which
-   no place is wet any more is taken away, once in a step. */
+/* Moves one fluid to where it can be at the present solution. *moved: it is where its load did not lie, or where
+   friction counted its pressure as one of contact. A load of which no place is wet any more is taken away, once in a
+   step. */
 static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, PetscReal t, PetscBool *moved)
 {
   const int n   = fluid->surface->graph.n;
@@ -309,13 +315,15 @@ static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, P
   PetscCall(PetscFree2(open, stack));
   *moved = PETSC_FALSE;
   for (int i = 0; i < n; i++) {
-    *moved = (PetscBool)(*moved || (fluid->now.wet[i] && !fluid->laid[i]));
+    *moved =
+      (PetscBool)(*moved || (fluid->now.wet[i] && (!fluid->laid[i] || (fluid->friction && !fluid->lubricated[i]))));
     wet += fluid->now.wet[i];
     laid += fluid->laid[i];
   }
   if (!wet && laid && !fluid->shut) {
     fluid->shut = *moved = PETSC_TRUE;
     PetscCall(PetscArrayzero(fluid->laid, n));
+    PetscCall(PetscArrayzero(fluid->lubricated, n));
   }
   if (!*moved) PetscCall(FindBarrier(fluid));
   if (!*moved) PetscFunctionReturn(PETSC_SUCCESS);
@@ -418,10 +426,7 @@ static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
                     "%s: the penalty of contact '%s' on '%s' is adjusted or augmented; allowed with where: open: "
                     "a penalty without adjust and augment",
                     SceneWhere(fluids->scene, fluid->load->path, "where"), scene->name, fluid->load->region));
-    if (scene->friction)
-      PetscCall(RefuseInput(fluids->mesh->comm,
-                            "%s: contact '%s' on '%s' has friction; allowed with where: open: a pair without friction",
-                            SceneWhere(fluids->scene, fluid->load->path, "where"), scene->name, fluid->load->region));
+    fluid->friction = (PetscBool)(fluid->friction || scene->friction);
   }
   PetscCall(PetscFree(flag));
   if (!fluid->form[FLUID_NODES] && !fluid->form[FLUID_FACES])
@@ -464,11 +469,11 @@ static PetscErrorCode CreateOne(Fluids fluids, int load, Fluid *fluid)
   PetscCall(SurfaceGraphCreate(mesh, group, &fluid->surface));
   n = fluid->surface->graph.n;
   PetscCall(FindPairs(fluids, fluid));
-  PetscCall(PetscCalloc4(n, &fluid->from, n, &fluid->to, n, &fluid->laid, n, &fluid->weight));
+  PetscCall(PetscCalloc5(n, &fluid->from, n, &fluid->to, n, &fluid->laid, n, &fluid->lubricated, n, &fluid->weight));
   for (int form = 0; form < FLUID_FORMS; form++)
     PetscCall(PetscCalloc2(mesh->n_nodes, &fluid->area[form], mesh->n_nodes, &fluid->force[form]));
-  PetscCall(
-    PetscCalloc3(mesh->n_nodes, &fluid->wet, mesh->n_nodes, &fluid->pressing, mesh->n_nodes, &fluid->pressing_form));
+  PetscCall(PetscCalloc4(mesh->n_nodes, &fluid->wet, mesh->n_nodes, &fluid->dry, mesh->n_nodes, &fluid->pressing,
+                         mesh->n_nodes, &fluid->pressing_form));
   PetscCall(
     PetscCalloc2(group->n_faces * FACE_MAX_NODES, &fluid->nodes, group->n_faces * FACE_MAX_POINTS, &fluid->points));
   PetscCall(StateCreate(n, &fluid->now));
@@ -537,9 +542,9 @@ PetscErrorCode FluidDestroy(Fluids *fluids)
     Fluid *fluid = &(*fluids)->fluid[i];
 
     PetscCall(SurfaceGraphDestroy(&fluid->surface));
-    PetscCall(PetscFree4(fluid->from, fluid->to, fluid->laid, fluid->weight));
+    PetscCall(PetscFree5(fluid->from, fluid->to, fluid->laid, fluid->lubricated, fluid->weight));
     for (int form = 0; form < FLUID_FORMS; form++) PetscCall(PetscFree2(fluid->area[form], fluid->force[form]));
-    PetscCall(PetscFree3(fluid->wet, fluid->pressing, fluid->pressing_form));
+    PetscCall(PetscFree4(fluid->wet, fluid->dry, fluid->pressing, fluid->pressing_form));
     PetscCall(PetscFree2(fluid->nodes, fluid->points));
     PetscCall(PetscFree(fluid->pair));
     PetscCall(PetscFree3(fluid->now.wet, fluid->now.p, fluid->now.form));
@@ -673,6 +678,7 @@ PetscErrorCode FluidBegin(Fluids fluids, const PetscReal *u, PetscReal t)
     PetscCall(StateCopy(fluid->surface->graph.n, &fluid->accepted, &fluid->now));
     fluid->shut = PETSC_FALSE;
     PetscCall(PetscArrayzero(fluid->laid, fluid->surface->graph.n));
+    PetscCall(PetscArrayzero(fluid->lubricated, fluid->surface->graph.n));
     PetscCall(LayAhead(fluid));
     PetscCall(Apply(fluids, fluid, u, t));
   }
@@ -807,6 +813,7 @@ PetscErrorCode FluidRestore(Fluids fluids, const PetscReal *u, PetscReal t)
 
     PetscCall(StateCopy(fluid->surface->graph.n, &fluid->accepted, &fluid->now));
     PetscCall(PetscArraycpy(fluid->laid, fluid->now.wet, fluid->surface->graph.n));
+    PetscCall(PetscArraycpy(fluid->lubricated, fluid->now.wet, fluid->surface->graph.n));
     PetscCall(Apply(fluids, fluid, u, t));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

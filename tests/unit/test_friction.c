@@ -92,17 +92,18 @@ static FrictionInput node(int dim, double coefficient, double began, double grip
   return in;
 }
 
-/* What bounds the traction: mu p; with cohesion and a mu over the pressure too; the limit. */
+/* What bounds the traction: mu p; with cohesion, a fluid's pressure and a mu over the pressure too; the limit. */
 typedef enum { MU, MORE, LIMITED, BOUNDS } Bound;
 
 static double bound_node(Bound bound, FrictionInput *in)
 {
   if (bound == MORE) {
     in->cohesion  = 0.02;
+    in->fluid     = 1.5;
     in->steepness = -0.3 * in->coefficient / in->pressure;
   }
   if (bound == LIMITED) in->limit = 0.6 * in->coefficient * in->pressure;
-  return bound == LIMITED ? in->limit : in->cohesion + in->coefficient * in->pressure;
+  return bound == LIMITED ? in->limit : in->cohesion + in->coefficient * (in->pressure + in->fluid);
 }
 
 static void check_law(int dim, double coefficient, double began, double grip, Bound bound, FrictionState state)

@@ -98,7 +98,8 @@ typedef struct {
   PetscReal *foreseen;              /* pressures of the terms at the end of the last linear step; NaN: not known */
   PetscBool *expected, *arrived;    /* terms that press at the end of the last linear step; of the one before */
 
-  PetscReal   *carried; /* pressure of each term that a fluid carries in the contact's place; NULL: no fluid */
+  PetscReal   *carried;     /* pressure of each term that a fluid carries in the contact's place; NULL: no fluid */
+  PetscReal   *carried_dry; /* of it where surfaces are dry, so that friction counts it; NULL: no fluid or friction */
   ContactState now, accepted;
   PetscReal   *before;  /* gaps of the iterate before, where the penalty is adjusted */
   Anderson     mixing;  /* of the multipliers of one step; NULL: the pair is not augmented */
