@@ -63,9 +63,9 @@ typedef enum { WINDOW_HOLDS, WINDOW_MISSED, WINDOW_AT_BOUND } ContactWindowState
 typedef struct {
   PetscInt points;                                 /* slave points near the master */
   PetscInt plain, wider, degree_2, linear, facets; /* of these, by rung of the ladder of fall-backs */
-  PetscInt within, within_low; /* points not beyond a free edge of the master; of these, without a fit of full degree on a
-                                  surface that is not flat */
-  PetscInt neighbours_min, neighbours_max;
+  PetscInt within, within_low; /* points not beyond a free edge of the master; of these, without a fit of full degree on
+                                  a surface that is not flat */
+  PetscInt  neighbours_min, neighbours_max;
   PetscReal neighbours_mean;
   PetscReal pivot, amplified; /* worst guards: smallest pivot, largest sum of absolute shape values */
   PetscReal smoothing_error;  /* largest distance of a master node near the foot to the fit (length) */
@@ -206,8 +206,10 @@ PetscErrorCode ContactLocateOutside(Contact, char *text, size_t size);
 PetscErrorCode ContactPairWindow(Contact, int pair, ContactWindow *);
 PetscErrorCode ContactPairPenalty(Contact, int pair, PetscReal *least, PetscReal *most);
 /* Fluid between the surfaces */
-PetscErrorCode ContactSetCarried(Contact, int pair, const PetscReal *carried, const PetscReal *dry);
-PetscErrorCode ContactTermForces(Contact, int pair, PetscReal touch, PetscReal *force);
+PetscErrorCode   ContactSetCarried(Contact, int pair, const PetscReal *carried, const PetscReal *dry);
+PetscErrorCode   ContactKeepReactions(Contact, int pair);
+const PetscReal *ContactReactions(Contact, int pair);
+PetscErrorCode   ContactTermForces(Contact, int pair, PetscReal touch, PetscReal *force);
 /* Control of the load step */
 PetscErrorCode ContactTouches(Contact, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t,
                               PetscBool by_area, PetscBool still_open, int *n, Touch **);
@@ -223,6 +225,8 @@ int                 ContactPairFiner(Contact, int pair);
 PetscErrorCode      ContactPairText(Contact, int pair, char *text, size_t size);
 PetscErrorCode      ContactPatchAreas(Contact, int pair, const PetscReal middle[3], PetscReal radius, PetscReal *area);
 PetscErrorCode      ContactPairSurface(Contact, int pair, const MeshGroup **slave, PetscReal *mean_face_size);
+const MeshGroup    *ContactPairMaster(Contact, int pair);
+PetscBool           ContactPairToolMoves(Contact, int pair);
 PetscErrorCode      ContactPairTermStiffness(Contact, int pair, PetscReal *stiffness);
 PetscErrorCode      ContactPairClosed(Contact, int pair, const PetscInt *label, PetscInt n, PetscInt *closed);
 PetscBool           ContactOffsetsLag(Contact);

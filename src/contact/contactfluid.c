@@ -69,6 +69,42 @@ PetscErrorCode ContactTermForces(Contact contact, int p, PetscReal touch, PetscR
 }
 
 /*@
+  ContactKeepReactions - has a pair keep the forces on its master's nodes from now on.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+@*/
+PetscErrorCode ContactKeepReactions(Contact contact, int p)
+{
+  ContactPair *pair = &contact->pairs[p];
+
+  PetscFunctionBeginUser;
+  if (!pair->reaction) PetscCall(MeshCreateLocal(pair->mesh, pair->mesh->dim, &pair->reaction));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactReactions - returns the normal forces on the nodes of a pair's master in the state of the last residual.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Note:
+  They are by node of the mesh, reaction[n_nodes*dim], and complete at owned nodes. It returns NULL where nobody has
+  asked for them (ContactKeepReactions()).
+@*/
+const PetscReal *ContactReactions(Contact contact, int p)
+{
+  return contact->pairs[p].reaction;
+}
+
+/*@
   ContactPairFiner - tells how fine the quadrature rule of a pair's slave is, see FaceRuleGet().
 
   Not collective

@@ -444,6 +444,39 @@ PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slav
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ContactPairMaster - returns the master surface of a pair if it deforms.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Note:
+  It returns NULL where the master is rigid.
+@*/
+const MeshGroup *ContactPairMaster(Contact contact, int p)
+{
+  const ContactSurface master = contact->pairs[p].master;
+
+  return master && !master->rigid ? master->group : NULL;
+}
+
+/*@
+  ContactPairToolMoves - says whether the master of a pair is a rigid tool that forces move.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+@*/
+PetscBool ContactPairToolMoves(Contact contact, int p)
+{
+  return (PetscBool)(contact->pairs[p].tool != NULL);
+}
+
 /* What is counted of the fits of a pair, so that one sum and one maximum over the ranks complete it. */
 typedef struct {
   PetscInt rung[RUNGS + 1]; /* slave points by rung, then those that only facets serve */

@@ -1,9 +1,9 @@
 /* Fluids that enter between surfaces in contact, see fluid.h. */
 #include "solve/fluid.h"
 #include "base/refusal.h"
+#include "fluidimpl.h"
 #include "kernels/elementkernel.h"
 #include "search/facequadrature.h"
-#include "search/surfacegraph.h"
 
 /* Pressures that differ by less than this part of the fluid's are the same. It is above what the tolerance of the
    solver leaves, and far below what matters. */
@@ -19,53 +19,6 @@
 #define FLUID_OPEN 1e-9
 /* Formulas are tried at the ends of so many intervals of t for negative pressures. */
 enum { FLUID_SAMPLES = 16 };
-/* The last accepted states before a leak, from which its pressure is extrapolated */
-enum { FLUID_STATES = 2 };
-
-/* How a pair measures contact: at nodes, with the areas of shape functions, or on faces, with those of hat functions */
-enum { FLUID_NODES, FLUID_FACES, FLUID_FORMS };
-
-/* What a fluid is in one state. It is what cutbacks and checkpoints keep. */
-typedef struct {
-  char      *wet, *form;             /* n: by node of the graph; form: of the pair that presses most */
-  PetscReal *p;                      /* n: what contact alone presses; 0 where it presses less than the fluid there */
-  PetscInt   n_sealed;               /* accepted states without a leak, FLUID_STATES at most */
-  PetscReal  sealed_p[FLUID_STATES]; /* pressure of the fluid in them, the last one first */
-  PetscReal  barrier[FLUID_STATES];  /* and the pressure with which it would have leaked */
-} FluidState;
-
-typedef struct {
-  int              number; /* of the load in the scene */
-  const SceneLoad *load;
-  const MeshGroup *group;
-  SurfaceGraph     surface;
-  int              finer;             /* rule of contact on faces, see FaceRuleGet() */
-  PetscBool       *pair;              /* pairs whose slaves are on the surface */
-  PetscBool        form[FLUID_FORMS]; /* how they measure contact */
-  PetscBool        friction;          /* one of them has friction */
-  char            *from, *to;         /* n: the two ends */
-  PetscBool        has_from, has_to;
-  FluidState       now, accepted;
-  char            *laid;       /* n: where the fluid's load lies: wet places and those ahead */
-  char            *lubricated; /* n: places that were wet in this step: friction has what contact presses there */
-  PetscBool        shut;       /* no place was wet any more in this step */
-  PetscReal       *area[FLUID_FORMS];                    /* n_nodes: present area of the surface around each node */
-  PetscReal       *wet, *dry, *pressing, *pressing_form; /* n_nodes: of the state, by local node; dry: laid alone */
-  PetscReal       *nodes, *points;                       /* shares for the load, see LoadsSetShares() */
-  PetscReal       *force[FLUID_FORMS];                   /* n_nodes: of the contact terms */
-  PetscReal       *weight;                               /* n: reference area of the nodes */
-  PetscReal        pressure, height;                     /* of the fluid; of the barrier */
-  PetscReal        leak_t, leak_pressure; /* t and pressure at which it was found to leak last; NaN: it was not */
-} Fluid;
-
-struct _n_Fluids {
-  Mesh    mesh;
-  Scene   scene;
-  Loads   loads;
-  Contact contact;
-  int     n;
-  Fluid  *fluid;
-};
 
 /* Adds the areas around the nodes of a face. */
 static void FaceAreas(Fluids fluids, int form, int finer, ElementType type, const PetscReal *x, PetscReal *area)
@@ -170,7 +123,10 @@ static PetscErrorCode Apply(Fluids fluids, Fluid *fluid, const PetscReal *u, Pet
   PetscFunctionBeginUser;
   PetscCall(LoadsPressure(fluids->loads, fluid->number, t, &fluid->pressure));
   PetscCall(SetAreas(fluids, fluid, u));
-  SurfaceGraphScatter(fluid->surface, fluid->laid, fluid->wet);
+  for (int i = 0; i < fluid->surface->graph.n; i++) {
+    fluid->share[i] = fluid->laid[i] ? FluidShare(fluid, i) : 0;
+    if (fluid->surface->local[i] >= 0) fluid->wet[fluid->surface->local[i]] = fluid->share[i];
+  }
   SurfaceGraphScatter(fluid->surface, fluid->lubricated, fluid->dry);
   for (PetscInt i = 0; i < mesh->n_nodes; i++) fluid->dry[i] = fluid->wet[i] * (1 - fluid->dry[i]);
   SurfaceGraphScatter(fluid->surface, fluid->now.form, fluid->pressing_form);
@@ -221,6 +177,8 @@ static PetscErrorCode Measure(Fluids fluids, Fluid *fluid, const PetscReal *u, P
   PetscCall(SurfaceGraphGather(s, fluid->force[0], fluid->now.p));
   for (int i = 0; i < s->graph.n; i++)
     if (fluid->laid[i]) fluid->now.p[i] = fluid->now.p[i] > same ? fluid->now.p[i] + fluid->pressure : 0;
+  PetscCall(FluidMeasureReactions(fluids, fluid, u));
+  for (int i = 0; i < s->graph.n; i++) fluid->now.p[i] = PetscMax(fluid->now.p[i], fluid->now.react[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -268,7 +226,8 @@ static PetscBool ReachesEnd(const Fluid *fluid)
 
 /* Lays the fluid's load on wet places and on those to which the contact pressure rises from them. Contact presses more
    than the fluid there, so that this changes no force, and Newton's method itself finds how far the front moves up to
-   the crest of the pressure. Where the load lies it stays until the step ends. */
+   the crest of the pressure. Where the load lies it stays until the step ends. A master that deforms would lack what
+   the contact does not press ahead; there the load lies on wet places alone. */
 static PetscErrorCode LayAhead(Fluid *fluid)
 {
   const PassageGraph *graph = &fluid->surface->graph;
@@ -282,7 +241,7 @@ static PetscErrorCode LayAhead(Fluid *fluid)
     fluid->laid[i] |= now->wet[i];
     fluid->lubricated[i] |= now->wet[i];
   }
-  while (top) {
+  while (top && !fluid->deforms) {
     const int i = stack[--top];
 
     for (int k = graph->ptr[i]; k < graph->ptr[i + 1]; k++) {
@@ -315,8 +274,8 @@ static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, P
   PetscCall(PetscFree2(open, stack));
   *moved = PETSC_FALSE;
   for (int i = 0; i < n; i++) {
-    *moved =
-      (PetscBool)(*moved || (fluid->now.wet[i] && (!fluid->laid[i] || (fluid->friction && !fluid->lubricated[i]))));
+    *moved = (PetscBool)(*moved || (fluid->now.wet[i] && !fluid->laid[i]) || FluidShareChanges(fluid, i) ||
+                         (fluid->now.wet[i] && fluid->friction && !fluid->lubricated[i]));
     wet += fluid->now.wet[i];
     laid += fluid->laid[i];
   }
@@ -335,23 +294,25 @@ static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, P
 static PetscErrorCode StateCreate(int n, FluidState *state)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc3(n, &state->wet, n, &state->p, n, &state->form));
+  PetscCall(PetscCalloc4(n, &state->wet, n, &state->p, n, &state->form, n, &state->react));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode StateCopy(int n, const FluidState *from, FluidState *to)
 {
   char      *wet = to->wet, *form = to->form;
-  PetscReal *p = to->p;
+  PetscReal *p = to->p, *react = to->react;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(wet, from->wet, n));
   PetscCall(PetscArraycpy(p, from->p, n));
+  PetscCall(PetscArraycpy(react, from->react, n));
   PetscCall(PetscArraycpy(form, from->form, n));
-  *to      = *from;
-  to->wet  = wet;
-  to->p    = p;
-  to->form = form;
+  *to       = *from;
+  to->wet   = wet;
+  to->p     = p;
+  to->react = react;
+  to->form  = form;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -394,15 +355,16 @@ static PetscErrorCode ReadEnd(Fluids fluids, Fluid *fluid, const char *key, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the pairs whose slaves are on the surface. */
+/* Finds the pairs whose slaves or masters are on the surface. A master that is no slave measures at its nodes. */
 static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
 {
   const Contact contact = fluids->contact;
+  PetscBool     reacts;
   char         *flag;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(fluid->surface->graph.n, &flag));
-  PetscCall(PetscCalloc1(ContactPairs(contact), &fluid->pair));
+  PetscCall(PetscCalloc2(ContactPairs(contact), &fluid->pair, ContactPairs(contact), &fluid->reacts));
   for (int p = 0; p < ContactPairs(contact); p++) {
     const SceneContact *scene = ContactPairScene(contact, p);
     const MeshGroup    *slave;
@@ -429,11 +391,13 @@ static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
     fluid->friction = (PetscBool)(fluid->friction || scene->friction);
   }
   PetscCall(PetscFree(flag));
-  if (!fluid->form[FLUID_NODES] && !fluid->form[FLUID_FACES])
+  PetscCall(FluidFindMasters(fluids, fluid, &reacts));
+  if (!fluid->form[FLUID_NODES] && !fluid->form[FLUID_FACES] && !reacts)
     PetscCall(RefuseInput(fluids->mesh->comm,
-                          "%s: '%s' is the slave of no contact pair; allowed with where: open: the slave of one or "
-                          "more pairs (of a pair whose master it is, exchange slave and master)",
+                          "%s: '%s' is in no contact pair; allowed with where: open: the slave of one or more pairs, "
+                          "or a master that deforms",
                           SceneWhere(fluids->scene, fluid->load->path, "surface"), fluid->load->region));
+  if (!fluid->form[FLUID_FACES]) fluid->form[FLUID_NODES] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -470,6 +434,7 @@ static PetscErrorCode CreateOne(Fluids fluids, int load, Fluid *fluid)
   n = fluid->surface->graph.n;
   PetscCall(FindPairs(fluids, fluid));
   PetscCall(PetscCalloc5(n, &fluid->from, n, &fluid->to, n, &fluid->laid, n, &fluid->lubricated, n, &fluid->weight));
+  PetscCall(PetscCalloc1(n, &fluid->share));
   for (int form = 0; form < FLUID_FORMS; form++)
     PetscCall(PetscCalloc2(mesh->n_nodes, &fluid->area[form], mesh->n_nodes, &fluid->force[form]));
   PetscCall(PetscCalloc4(mesh->n_nodes, &fluid->wet, mesh->n_nodes, &fluid->dry, mesh->n_nodes, &fluid->pressing,
@@ -523,6 +488,7 @@ PetscErrorCode FluidCreate(Mesh mesh, Scene scene, Loads loads, Contact contact,
   PetscCall(PetscCalloc1(n, &fluids->fluid));
   for (int l = 0; l < scene->n_loads; l++)
     if (scene->loads[l].open) PetscCall(CreateOne(fluids, l, &fluids->fluid[fluids->n++]));
+  for (int i = 0; i < fluids->n; i++) PetscCall(FluidCheckMasters(fluids, &fluids->fluid[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -542,13 +508,14 @@ PetscErrorCode FluidDestroy(Fluids *fluids)
     Fluid *fluid = &(*fluids)->fluid[i];
 
     PetscCall(SurfaceGraphDestroy(&fluid->surface));
+    PetscCall(PetscFree(fluid->share));
     PetscCall(PetscFree5(fluid->from, fluid->to, fluid->laid, fluid->lubricated, fluid->weight));
     for (int form = 0; form < FLUID_FORMS; form++) PetscCall(PetscFree2(fluid->area[form], fluid->force[form]));
     PetscCall(PetscFree4(fluid->wet, fluid->dry, fluid->pressing, fluid->pressing_form));
     PetscCall(PetscFree2(fluid->nodes, fluid->points));
-    PetscCall(PetscFree(fluid->pair));
-    PetscCall(PetscFree3(fluid->now.wet, fluid->now.p, fluid->now.form));
-    PetscCall(PetscFree3(fluid->accepted.wet, fluid->accepted.p, fluid->accepted.form));
+    PetscCall(PetscFree2(fluid->pair, fluid->reacts));
+    PetscCall(PetscFree4(fluid->now.wet, fluid->now.p, fluid->now.form, fluid->now.react));
+    PetscCall(PetscFree4(fluid->accepted.wet, fluid->accepted.p, fluid->accepted.form, fluid->accepted.react));
   }
   PetscCall(PetscFree((*fluids)->fluid));
   PetscCall(PetscFree(*fluids));
@@ -764,6 +731,30 @@ PetscErrorCode FluidReaches(Fluids fluids, PetscReal t_0, PetscReal t, PetscReal
 }
 
 /*@
+  FluidSettle - ends a solve: the fluids' loads lie where they are wet alone, so that contact shows what it presses on
+dry surfaces. No force changes.
+
+  Collective
+
+  Input Parameters:
++ fluids - may be NULL
+. u      - local displacements of the solution, u[n_nodes*dim] (length), at which FluidMove() has moved nothing
+- t      - its load parameter
+@*/
+PetscErrorCode FluidSettle(Fluids fluids, const PetscReal *u, PetscReal t)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; fluids && i < fluids->n; i++) {
+    Fluid *fluid = &fluids->fluid[i];
+
+    PetscCall(PetscArraycpy(fluid->laid, fluid->now.wet, fluid->surface->graph.n));
+    PetscCall(PetscArraycpy(fluid->lubricated, fluid->now.wet, fluid->surface->graph.n));
+    PetscCall(Apply(fluids, fluid, u, t));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   FluidAccept - makes the present wet places those of the accepted state.
 
   Collective
@@ -860,6 +851,8 @@ PetscErrorCode FluidArchive(Fluids fluids, Archive archive)
     state->n_sealed = wet[n];
     PetscCall(PetscSNPrintf(name, sizeof(name), "fluid/%d/pressure", i));
     PetscCall(ArchiveReals(archive, name, n, state->p));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "fluid/%d/reaction", i));
+    PetscCall(ArchiveReals(archive, name, n, state->react));
     for (int k = 0; k < FLUID_STATES; k++) {
       state->sealed_p[k] = values[k];
       state->barrier[k]  = values[FLUID_STATES + k];

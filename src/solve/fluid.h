@@ -5,8 +5,12 @@
    (ContactSetCarried()), so that both together press max(P, contact). A place that becomes wet or dry where contact
    presses P changes no force. Where contact presses more again, the fluid retreats.
 
+   Where the master deforms, the fluid is a load on both surfaces. On the master it makes up for what the reactions of
+   the slave's contact lack (fluidmaster.c).
+
    FluidCreate() makes the fluids of a scene, FluidStart() finds the ends that the state before any load shows.
-   FluidBegin() begins a load step, FluidMove() wets and dries the surfaces at a solution, until nothing changes.
+   FluidBegin() begins a load step, FluidMove() wets and dries the surfaces at a solution, until nothing changes, and
+   FluidSettle() ends the solve.
    FluidAccept(), FluidRestore() and FluidArchive() treat the wet places as the other parts of the state.
    FluidGetReport() says where a fluid is, and when it leaked. */
 #pragma once
@@ -33,6 +37,7 @@ PetscErrorCode FluidBegin(Fluids, const PetscReal *u, PetscReal t);
 PetscErrorCode FluidMove(Fluids, const PetscReal *u, PetscReal t, PetscBool *moved);
 PetscErrorCode FluidReaches(Fluids, PetscReal t_0, PetscReal t, PetscReal dt_min, PetscBool *reaches,
                             PetscBool *closely);
+PetscErrorCode FluidSettle(Fluids, const PetscReal *u, PetscReal t);
 PetscErrorCode FluidAccept(Fluids, const PetscReal *u, PetscReal t);
 PetscErrorCode FluidRestore(Fluids, const PetscReal *u, PetscReal t);
 PetscErrorCode FluidArchive(Fluids, Archive);

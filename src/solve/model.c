@@ -260,6 +260,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscFunctionBeginUser;
   PetscCall(LinearSolverRelease(work->solver));
   ToolsAccept(model->mesh, model->u, model->t);
+  PetscCall(FluidSettle(model->problem->fluids, model->u, model->t));
   PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t, &path));
   if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u, model->t, &path));
   if (SceneBreaks(model->scene, model->t)) ElasticityForgetFlow(model->problem->elasticity);

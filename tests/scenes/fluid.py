@@ -12,13 +12,16 @@ from harness import Check, arguments, run, run_in_parts, SCENES
 
 args = arguments(("cases", "few: quick ones", ("few", "all")))
 check = Check()
-SCENE, SEAL = SCENES / "uplift.yaml", SCENES.parent / "jobs" / "seal_leak.yaml"
+SCENE, SEAL, JOINT = SCENES / "uplift.yaml", SCENES.parent / "jobs" / "seal_leak.yaml", SCENES / "joint.yaml"
 SOLID = ("mesh.parameters.solid=1", "geometry=solid",
          "supports=[{surface: pin, ux: 0}, {surface: sides, uz: 0}]",
          "contact.0.master={plane: {point: [0, 0, 0], normal: [0, 1, 0]}}")
+SOLID_JOINT = ("mesh.parameters={n: 12, solid: 1}", "geometry=solid",
+               "supports=[{surface: pin, ux: 0}, {surface: sides, uz: 0}, {surface: base, ux: 0, uy: 0}]")
 WEDGE = ("mesh.parameters.s=0.1", "supports=[{surface: left, ux: 0}]", "loads.0.pressure=1", "loads.1.pressure=2*t",
          "stepping.initial=0.1", "bodies.0.material.E=1e6")
 DRAWN = "contact.0.master={plane: {point: [0, 0], normal: [0, 1], motion: [{ux: 1}]}}"
+PUSHED = "contact.0.master={plane: {point: [0, 0], normal: [0, 1], free: [uy], force: [0, 1]}}"
 SURFACE = "contact.0.formulation=surface_to_surface"
 
 
@@ -64,6 +67,23 @@ def dragged(name, face, ground, *overrides):
         check.near(f"{name}: on the dry part at {P:g}", drag, 0.3 * (10 - 10 * P * row["area"]), 1e-6)
 
 
+def joint(name, face, error, *overrides):
+    """Two blocks that deform: the fluid presses on the upper one as contact lacks, exactly, and on the lower one, whose
+    base then bears all of the load, within half a face of the front. Stopped after each step and restarted it is the
+    same."""
+    result = run(args, JOINT, out=name, overrides=overrides)
+    depth = 2 if "geometry=solid" in overrides else 1
+    for row in result.steps():
+        P, load = 0.8 * row["t"], 10 * depth
+        check.near(f"{name}: contact at {P:.3g}", row["force"] + 10 * depth * P * row["upper"], load, error * load)
+        check.near(f"{name}: base at {P:.3g}", row["base"], load, depth * (P * face / 2 + 10 * error))
+    check.holds(f"{name}: it has come in", result.summary()["probes"]["lower"] > 0.6)
+    end = run_in_parts(args, JOINT, f"{name}_stopped", overrides).summary()
+    for key in "base", "force", "lower":
+        check.near(f"{name}: restarted, {key}", end["probes"][key], result.summary()["probes"][key],
+                   (0 if args.ranks == 1 else 1e-7) * 10)
+
+
 def open_and_closed():
     """Open: what the plain pressure does. Closed: nothing."""
     held = ("mesh.parameters={n: 8, s: 0.1}", "kinematics=finite", "bodies.0.material={law: svk, E: 100, nu: 0.3}",
@@ -104,7 +124,8 @@ def closed(formulation, held, fluid, kind, *bounds):
 
 def seal(name, reference, error, *overrides):
     """The gasket of the jobs, the same on one rank, and stopped after each step and restarted. reference: leak pressure
-    with steps of dt_max: 0.001, as it depends on the steps, with friction more."""
+    with steps of dt_max: 0.001, as it depends on the steps; with friction by up to the part by which P may change in
+    the step of the leak."""
     whole = run(args, SEAL, out=name, overrides=overrides)
     figures = whole.summary()
     check.near(f"{name}: leak pressure, as with short steps", figures["fluids"][0]["leak_pressure"], reference,
@@ -122,13 +143,14 @@ def seal(name, reference, error, *overrides):
                    (0 if args.ranks == 1 else 1e-7) * figures["fluids"][0][key])
 
 
-def refused(what, message, *overrides):
-    result = run(args, SCENE, "-check", out="refused", overrides=overrides, must=None)
+def refused(what, message, *overrides, scene=SCENE):
+    result = run(args, scene, "-check", out="refused", overrides=overrides, must=None)
     check.holds(f"refused: {what}", result.status == 1 and message in result.text, result.text.strip()[:300])
 
 
 front("flat", 0.003, "mesh.parameters.n=40")
 leak("wedge", 0.002, "mesh.parameters.n=40")
+joint("joint", 0.5, 1e-6, "contact.0.formulation=node_to_surface")
 dragged("dragged", 0.25, DRAWN, "mesh.parameters.n=40")
 if args.cases == "all":
     front("flat_second_order", 0.001, "mesh.order=2")
@@ -144,16 +166,24 @@ if args.cases == "all":
     dragged("dragged_second_order", 0.5, DRAWN, "mesh.order=2")
     dragged("dragged_faces_second_order", 0.5, DRAWN, "mesh.order=2", SURFACE)
     dragged("dragged_solid", 0.5, DRAWN.replace("0, 0]", "0, 0, 0]").replace("0, 1]", "0, 1, 0]"), *SOLID[:3])
+    joint("joint_faces_second_order", 0.5, 1e-6, "mesh.order=2")
+    joint("joint_finite", 0.5, 1e-3, "kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk")
+    joint("joint_friction", 0.5, 1e-6, "contact.0.friction={mu: 0.3}")
+    joint("joint_solid", 0.83, 1e-6, *SOLID_JOINT)
     open_and_closed()
     seal("seal", 2.616, 1e-3)
-    seal("seal_friction", 2.654, 2e-3, "contact.0.friction={mu: 0.1}")
+    seal("seal_friction", 2.654, 1e-2, "contact.0.friction={mu: 0.1}")
     seal("seal_faces", 2.74117, 1e-3, "mesh.order=1", SURFACE)
     refused("both ends open or closed", "of the 2 ends of 'bottom' 0 are open",
             "loads.1={surface: bottom, pressure: 1, where: open}")
     refused("an end off the surface", "has no node in common", "loads.1.to=top")
     refused("an end without a node", "has no node there", "loads.1.to=[3.21, 0]")
     refused("the same end twice", "have a node in common", "loads.1.to=left")
-    refused("no contact", "is the slave of no contact pair", "loads.1.surface=top", "probes=[]")
-    refused("an adjusted penalty", "adjusted or augmented", "contact.0.penalty={augment: true, g_max: 1e-6, unit: length}")
+    refused("no contact", "is in no contact pair", "loads.1.surface=top", "probes=[]")
+    refused("an adjusted penalty", "adjusted or augmented",
+            "contact.0.penalty={augment: true, g_max: 1e-6, unit: length}")
+    refused("a master that deforms without the fluid", "the fluid presses on 'bottom' alone",
+            "loads=[{surface: bottom, pressure: 1, where: open, from: left}]", "probes=[]", scene=JOINT)
+    refused("a tool that forces move", "is a tool that forces move", PUSHED)
     refused("suction in a formula", "allowed with where: open: 0 or more", "loads.1.pressure=-t")
 check.finish()

@@ -1,0 +1,137 @@
+/* Fluids on masters that deform: the fluid presses on both sides of the gap that it fills. On the slave contact and
+   fluid are weighed term by term. On the master there are no terms, but the reactions of those of the slave: where they
+   press less than the fluid, its load makes up for the rest. */
+#include "base/refusal.h"
+#include "fluidimpl.h"
+#include "kernels/elementkernel.h"
+
+/* Shares of the load that change by less than this between two solves are the same. It is far below what a face leaves
+   open where the front crosses it. */
+#define FLUID_SHARE 1e-3
+/* Nodes whose area, as a vector, is below this part of their share of the faces around have none, as corners of
+   second-order triangles: neither loads nor reactions say anything of them. */
+#define FLUID_NO_AREA 0.01
+
+/* Finds the pairs whose masters are on the surface and deform, and has them keep their reactions. */
+PetscErrorCode FluidFindMasters(Fluids fluids, Fluid *fluid, PetscBool *found)
+{
+  const Contact contact = fluids->contact;
+  char         *flag;
+
+  PetscFunctionBeginUser;
+  *found = PETSC_FALSE;
+  PetscCall(PetscMalloc1(fluid->surface->graph.n, &flag));
+  for (int p = 0; p < ContactPairs(contact); p++) {
+    const MeshGroup *master = ContactPairMaster(contact, p);
+    PetscInt         n      = 0;
+
+    if (master) PetscCall(SurfaceGraphGroup(fluid->surface, master, flag, &n));
+    fluid->reacts[p] = (PetscBool)(n > 0);
+    if (!n) continue;
+    *found = PETSC_TRUE;
+    PetscCall(ContactKeepReactions(contact, p));
+  }
+  PetscCall(PetscFree(flag));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses a master on which the fluid should press, but does not. Says whether one of them deforms. */
+PetscErrorCode FluidCheckMasters(Fluids fluids, Fluid *fluid)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < ContactPairs(fluids->contact); p++) {
+    const SceneContact *scene  = ContactPairScene(fluids->contact, p);
+    PetscBool           served = PETSC_FALSE;
+
+    fluid->deforms = (PetscBool)(fluid->deforms || fluid->reacts[p]);
+    if (!fluid->pair[p]) continue;
+    if (ContactPairToolMoves(fluids->contact, p))
+      PetscCall(RefuseInput(fluids->mesh->comm,
+                            "%s: the master of contact '%s' is a tool that forces move, and the fluid on '%s' would "
+                            "press on it too; allowed with where: open: a tool whose motion is given",
+                            SceneWhere(fluids->scene, fluid->load->path, "where"), scene->name, fluid->load->region));
+    for (int i = 0; i < fluids->n; i++) served = (PetscBool)(served || fluids->fluid[i].reacts[p]);
+    if (ContactPairMaster(fluids->contact, p) && !served)
+      PetscCall(
+        RefuseInput(fluids->mesh->comm,
+                    "%s: the fluid presses on '%s' alone, but the master '%s' of contact '%s' deforms; allowed: "
+                    "another load with where: open and this pressure on '%s', or on a surface that has it",
+                    SceneWhere(fluids->scene, fluid->load->path, "where"), fluid->load->region, scene->master,
+                    scene->name, scene->master));
+    if (ContactPairMaster(fluids->contact, p)) fluid->deforms = PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The areas of the surface's nodes as vectors, and their shares of the faces around: 4 numbers for each local node. */
+static PetscErrorCode AreaVectors(Fluids fluids, const Fluid *fluid, const PetscReal *u, PetscReal *area)
+{
+  const Mesh mesh = fluids->mesh;
+  const int  dim  = mesh->dim;
+  PetscInt   nodes[FACE_MAX_NODES];
+  PetscReal  x[3 * FACE_MAX_NODES], v[3 * FACE_MAX_NODES];
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < fluid->group->n_faces; f++) {
+    const ElementType type                 = MeshFaceNodes(mesh, fluid->group, f, nodes);
+    const int         n                    = ElementGet(type)->nodes;
+    PetscReal         part[FACE_MAX_NODES] = {0}, normal[3 * FACE_MAX_NODES] = {0}, all = 0;
+
+    MeshGatherNodes(mesh, n, nodes, mesh->coords, x);
+    if (u) MeshGatherNodes(mesh, n, nodes, u, v);
+    for (int i = 0; i < n * dim && u; i++) x[i] += v[i];
+    FaceAreaKernel(type, dim, fluids->scene->geometry, x, part, normal);
+    for (int a = 0; a < n; a++) all += part[a];
+    for (int a = 0; a < n; a++) {
+      for (int d = 0; d < dim; d++) area[4 * nodes[a] + d] += normal[a * dim + d];
+      area[4 * nodes[a] + 3] += all / n;
+    }
+  }
+  PetscCall(MeshSumNodes(mesh, 4, area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds what the reactions press at the nodes, in the state of the last residual. */
+PetscErrorCode FluidMeasureReactions(Fluids fluids, Fluid *fluid, const PetscReal *u)
+{
+  const SurfaceGraph s   = fluid->surface;
+  const int          dim = fluids->mesh->dim;
+  PetscReal         *area, *press;
+  PetscBool          any = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < ContactPairs(fluids->contact); p++) any = (PetscBool)(any || fluid->reacts[p]);
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(4 * fluids->mesh->n_nodes, &area, fluids->mesh->n_nodes, &press));
+  PetscCall(AreaVectors(fluids, fluid, fluids->scene->kinematics == KINEMATICS_SMALL ? NULL : u, area));
+  for (int p = 0; p < ContactPairs(fluids->contact); p++) {
+    const PetscReal *reaction = ContactReactions(fluids->contact, p);
+
+    if (!fluid->reacts[p]) continue;
+    for (int i = 0; i < s->graph.n; i++) {
+      const PetscInt   node   = s->local[i];
+      const PetscReal *vector = &area[4 * node];
+      PetscReal        square = 0;
+
+      if (!s->own[i]) continue;
+      for (int d = 0; d < dim; d++) square += PetscSqr(vector[d]);
+      if (square < PetscSqr(FLUID_NO_AREA * vector[3])) continue;
+      for (int d = 0; d < dim; d++) press[node] -= reaction[node * dim + d] * vector[d] / square;
+    }
+  }
+  PetscCall(SurfaceGraphGather(s, press, fluid->now.react));
+  PetscCall(PetscFree2(area, press));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The part of its load that the fluid has at a node of the surface: what reactions leave of its pressure. */
+PetscReal FluidShare(const Fluid *fluid, int i)
+{
+  return fluid->pressure > 0 ? PetscMax(0, 1 - fluid->now.react[i] / fluid->pressure) : 1;
+}
+
+/* Says whether the load has another part of it at a node where it lies. */
+PetscBool FluidShareChanges(const Fluid *fluid, int i)
+{
+  return (PetscBool)(fluid->laid[i] && PetscAbsReal(FluidShare(fluid, i) - fluid->share[i]) > FLUID_SHARE);
+}
