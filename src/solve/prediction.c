@@ -103,6 +103,52 @@ PetscErrorCode ModelExtrapolate(Model model, PetscReal t, PetscReal *u, Vec x, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Makes new contact lists at (u, t) on the way, if the present ones do not reach there. */
+static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t, SolveReport *report)
+{
+  PetscReal motion;
+  PetscBool ok, within;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProblemResidual(model->problem, u, t, t, &ok));
+  PetscCall(ContactListsReach(model->contact, &within));
+  if (within) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ProblemMotion(model->problem, model->work->accepted_u, model->work->accepted_t, u, t, &motion));
+  TimingBegin(TIMING_SEARCH);
+  PetscCall(ContactListsRenew(model->contact, u, t, PetscMax(motion, model->problem->expected)));
+  TimingEnd(TIMING_SEARCH);
+  report->regathered++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes the lists again with which the way to model->t begins. */
+static PetscErrorCode ModelReturnLists(Model model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ProblemGatherLists(model->problem, model->work->accepted_u, model->work->accepted_t, model->t,
+                               model->problem->expected));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes new contact lists at the extrapolated state u, if the present ones do not reach there. A fit from which its
+   slave point has slid away sees a rim of its points only: gaps are right, but their variations are those of rounding,
+   and so would be the tangent. An extrapolation that loses a slave point behind its master is not used. */
+static PetscErrorCode ModelReachExtrapolated(Model model, const PetscReal *u, PetscBool *renewed, SolveReport *report)
+{
+  const PetscInt before = report->regathered;
+  PetscBool      lost   = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *renewed = PETSC_FALSE;
+  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelReachOn(model, u, model->t, report));
+  PetscCall(ContactRestore(model->contact)); /* the step holds what was in contact in the accepted state */
+  *renewed = (PetscBool)(report->regathered > before);
+  if (*renewed) PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
+  if (lost) model->work->extrapolated = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A linear step from the extrapolated state, which is Newton's first iteration from there. That state is in no
    equilibrium: an extrapolation changes volumes by a little, and what that does to the pressure of stiff ones must not
    get into the tangent, which has that of the accepted state. Three rings on each other (quad9, nu 0.499) take 32
@@ -115,6 +161,7 @@ static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *re
   const StressReference accepted = {work->solved, 0, 0}, *reference = NULL;
   const PetscInt        n = model->mesh->n_nodes * model->mesh->dim;
   PetscReal            *u, *v, turn;
+  PetscBool             renewed = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (work->rubber && !ProblemIsPlastic(model->problem)) reference = &accepted;
@@ -122,12 +169,14 @@ static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *re
   PetscCall(ModelExtrapolate(model, model->t, u, model->x, &work->extrapolated));
   if (work->extrapolated)
     PetscCall(ProblemInOrder(model->problem, work->accepted_u, work->accepted_t, u, model->t, &work->extrapolated));
+  if (work->extrapolated) PetscCall(ModelReachExtrapolated(model, u, &renewed, report));
   if (work->extrapolated) {
     PetscCall(ModelStepLoads(model, u, reference, model->t, (PetscBool)(model->contact != NULL), PETSC_FALSE, report));
     PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
     PetscCall(ModelLargestTurn(model, u, v, &turn));
     work->extrapolated = (PetscBool)(report->result == SOLVE_CONVERGED && turn <= MODEL_FARTHEST);
   }
+  if (renewed && !work->extrapolated) PetscCall(ModelReturnLists(model));
   PetscCall(PetscFree2(u, v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -177,28 +226,11 @@ PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscCall(ModelPredictFromExtrapolation(model, report));
   if (model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
   *report = before;
+  if (model->contact) PetscCall(ContactRestore(model->contact));
   PetscCall(VecCopy(model->work->accepted_x, model->x));
   PetscCall(ModelStepLoads(model, model->work->accepted_u, NULL, model->work->accepted_t,
                            (PetscBool)(model->contact != NULL), touching, report));
   if (touching && report->result == SOLVE_CONVERGED) PetscCall(ModelStepToTouch(model, report));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Makes new contact lists at (u, t) on the way, if the present ones do not reach there. */
-static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t, SolveReport *report)
-{
-  PetscReal motion;
-  PetscBool ok, within;
-
-  PetscFunctionBeginUser;
-  PetscCall(ProblemResidual(model->problem, u, t, t, &ok));
-  PetscCall(ContactListsReach(model->contact, &within));
-  if (within) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ProblemMotion(model->problem, model->work->accepted_u, model->work->accepted_t, u, t, &motion));
-  TimingBegin(TIMING_SEARCH);
-  PetscCall(ContactListsRenew(model->contact, u, t, PetscMax(motion, model->problem->expected)));
-  TimingEnd(TIMING_SEARCH);
-  report->regathered++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -338,9 +370,7 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
   else if (!settled) {
     report->result       = result;
     model->work->softens = PETSC_TRUE;
-    if (keeps)
-      PetscCall(ProblemGatherLists(model->problem, model->work->accepted_u, model->work->accepted_t, model->t,
-                                   model->problem->expected));
+    if (keeps) PetscCall(ModelReturnLists(model));
     PetscCall(ModelPredictPieces(model, x, PETSC_TRUE, PETSC_FALSE, &pieces, &settled, report));
   }
   if ((pieces || model->work->unsettled) && model->contact && report->result != SOLVE_FAR)
