@@ -839,9 +839,14 @@ PetscErrorCode ModelSolveSlowly(Model model, PetscReal t, SolveReport *report)
 @*/
 PetscErrorCode ModelLookAhead(Model model, PetscReal t, PetscReal *u, SolveReport *report)
 {
+  const PetscInt regathered = report->regathered;
+
   PetscFunctionBeginUser;
   PetscCall(ModelDepart(model, t));
   PetscCall(ModelPredict(model, report));
+  if (report->regathered > regathered)
+    PetscCall(ProblemGatherLists(model->problem, model->work->accepted_u, model->work->accepted_t, t,
+                                 model->problem->expected));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(PetscArraycpy(u, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(model->x, model->work->look_ahead));
