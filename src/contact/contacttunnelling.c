@@ -15,6 +15,17 @@ static PetscReal DepthThatCounts(const ContactPair *pair, PetscInt c, PetscInt q
   return pair->scene->listed ? LOST_OF_ENTERED * SEARCH_ENTERED * pair->slaves->height[q] : pair->size[c];
 }
 
+/* Gap of slave point q. Where its fit does not reach there any more, it is that over the facets. */
+static PetscReal ReachedGap(const ContactPair *pair, PetscInt q)
+{
+  PetscBool found = PETSC_FALSE;
+
+  if (NeighbourListsSlip(pair->lists, q) > NEIGHBOUR_LISTS_MARGIN &&
+      !ContactPointEvaluate(pair, pair->facets, pair->lists, q, -1, SMOOTHER_GAP, &found) && found)
+    return pair->work->result.gap;
+  return pair->point_gap[q];
+}
+
 /* Says whether the search has lost slave point q of a term. That is so where the present lists find it behind the
    master by more than counts, the next lists find it away from the master or in front of it, and it has
    not left past a free edge. Its term would vanish, and nothing would hold the bodies apart. A term that does not press
@@ -26,7 +37,7 @@ static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, Pets
   const PetscReal      offset = ContactTermOffset(pair, c, t);
   PetscBool            found  = PETSC_FALSE;
 
-  *lost = (ContactLost){offset - pair->point_gap[q], NAN, pair->size[c], pair->node[c]};
+  *lost = (ContactLost){offset - ReachedGap(pair, q), NAN, pair->size[c], pair->node[c]};
   if (!(lost->depth > DepthThatCounts(pair, c, q))) return PETSC_FALSE;
   if (pair->master && next->facet_ptr[q] == next->facet_ptr[q + 1]) return PETSC_TRUE;
   if (pair->next_factor[q] == 0) return PETSC_FALSE;
