@@ -221,6 +221,24 @@ static PetscBool IsThere(const CertifiedPair *pair, PetscReal t)
   return (PetscBool)(!presence->n || HistoryValue(presence, t) == 1);
 }
 
+/* Judges whether faces of one deformable side fold over themselves. */
+static void JudgeFolds(const Side side, int s, Finding *worst)
+{
+  const ContactSurface surface = side->surface;
+  Finding              here    = {.kind = FINDING_NONE};
+  PetscInt             first   = 0;
+
+  for (PetscInt f = 0; f < surface->n_faces && !surface->rigid; f++) {
+    int       node[PIECE_MAX][3];
+    const int n = PieceDivide(surface->faces[f].type, node);
+
+    FoldFinding(side->dim, n, &side->pieces[first], &here);
+    first += n;
+  }
+  here.side = s;
+  TakeFinding(&here, worst);
+}
+
 /* Judges one pair on this rank. */
 static PetscErrorCode JudgePair(Certificate certificate, CertifiedPair *pair, const PetscReal *const u[2],
                                 const PetscReal t[2], Finding *worst)
@@ -230,7 +248,10 @@ static PetscErrorCode JudgePair(Certificate certificate, CertifiedPair *pair, co
 
   PetscFunctionBeginUser;
   PetscCall(FindPressed(certificate, pair, t[1], &overlap));
-  for (int s = 0; s < sides; s++) PetscCall(SideMove(pair->side[s], u, t));
+  for (int s = 0; s < sides; s++) {
+    PetscCall(SideMove(pair->side[s], u, t));
+    JudgeFolds(pair->side[s], s, worst);
+  }
   if (pair->side[1] && !SidesMeet(pair, overlap)) PetscFunctionReturn(PETSC_SUCCESS);
   for (int s = 0; s < sides; s++) PetscCall(SideMeasure(pair->side[s], certificate->pressed));
   if (!pair->side[1]) JudgeAnalytic(certificate, pair, u, t, overlap, worst);
@@ -300,6 +321,28 @@ static PetscErrorCode IsAtEnd(Certificate certificate, const Finding *finding, c
   PetscCall(FreeEdgesCreate(mesh, certificate->scene, of->scene, of->slave->group, &edges));
   *ends = (PetscBool)(FreeEdgesDistance(edges, X) <= CERTIFICATE_AT_END * of->slave->mean_size);
   PetscCall(FreeEdgesDestroy(&edges));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Writes which face has folded, and where. */
+static PetscErrorCode DescribeFold(Certificate certificate, const Finding *finding, int pair, char *text, size_t size)
+{
+  const PetscReal *centre = certificate->mesh->centre;
+  char             about[96];
+  ContactSides     of;
+
+  PetscFunctionBeginUser;
+  ContactPairSides(certificate->contact, pair, &of);
+  if (finding->tag[1])
+    PetscCall(
+      PetscSNPrintf(about, sizeof(about), "the line of the nodes %ld and %ld", finding->tag[0], finding->tag[1]));
+  else
+    PetscCall(PetscSNPrintf(about, sizeof(about), "node %ld", finding->tag[0]));
+  PetscCall(PetscSNPrintf(text, size, "contact '%s': face %ld of '%s' folds over itself about %s (%.5g, %.5g, %.5g)",
+                          ContactPairName(certificate->contact, pair), finding->face,
+                          finding->side && of.scene->master ? of.scene->master : of.scene->slave, about,
+                          (double)(finding->X[0] + centre[0]), (double)(finding->X[1] + centre[1]),
+                          (double)(finding->X[2] + centre[2])));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -388,7 +431,7 @@ PetscErrorCode CertificateCheck(Certificate certificate, const PetscReal *u_0, P
     figures->over_h = PetscMax(figures->over_h, worst.over_h);
     figures->ratio  = PetscMax(figures->ratio, worst.ratio);
   } else {
-    PetscCall(Describe(certificate, &worst, pair, text, size));
+    PetscCall((worst.kind == FINDING_FOLDED ? DescribeFold : Describe)(certificate, &worst, pair, text, size));
   }
   TimingEnd(TIMING_CERTIFICATE);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -374,6 +374,29 @@ static void DotOfMoving(double c[3][3], const double r0[3], const double r1[3], 
   poly[3] = Dot(c[2], dr);
 }
 
+/* Changes of side of a moving point to the plane of a moving piece. */
+static int PlaneCrossings(int dim, const Place start[], const Place end[], const Place from, const Place to,
+                          Crossing roots[SWEEP_MAX])
+{
+  static const double axis[3] = {0, 0, 1};
+  double              a0[3], a1[3], b0[3], b1[3], r0[3], r1[3], c[3][3], poly[4];
+
+  Minus(start[1], start[0], a0);
+  Minus(end[1], end[0], a1);
+  if (dim == 3) {
+    Minus(start[2], start[0], b0);
+    Minus(end[2], end[0], b1);
+  } else { /* its product with the tangent is the normal of a segment */
+    memcpy(b0, axis, sizeof(b0));
+    memcpy(b1, axis, sizeof(b1));
+  }
+  CrossOfMoving(a0, a1, b0, b1, c);
+  Minus(from, start[0], r0);
+  Minus(to, end[0], r1);
+  DotOfMoving(c, r0, r1, poly);
+  return Roots(poly, roots);
+}
+
 /*@
   SweepPoint - finds when a moving point crosses a moving piece.
 
@@ -396,25 +419,10 @@ static void DotOfMoving(double c[3][3], const double r0[3], const double r1[3], 
 @*/
 int SweepPoint(int dim, const Place start[], const Place end[], const Place from, const Place to, Crossing crossing[])
 {
-  static const double axis[3] = {0, 0, 1};
-  double              a0[3], a1[3], b0[3], b1[3], r0[3], r1[3], c[3][3], poly[4];
-  Crossing            roots[SWEEP_MAX];
-  int                 n, kept = 0;
+  Crossing  roots[SWEEP_MAX];
+  const int n    = PlaneCrossings(dim, start, end, from, to, roots);
+  int       kept = 0;
 
-  Minus(start[1], start[0], a0);
-  Minus(end[1], end[0], a1);
-  if (dim == 3) {
-    Minus(start[2], start[0], b0);
-    Minus(end[2], end[0], b1);
-  } else { /* its product with the tangent is the normal of a segment */
-    memcpy(b0, axis, sizeof(b0));
-    memcpy(b1, axis, sizeof(b1));
-  }
-  CrossOfMoving(a0, a1, b0, b1, c);
-  Minus(from, start[0], r0);
-  Minus(to, end[0], r1);
-  DotOfMoving(c, r0, r1, poly);
-  n = Roots(poly, roots);
   for (int k = 0; k < n; k++) {
     double x[3][3], p[3];
 
@@ -423,6 +431,52 @@ int SweepPoint(int dim, const Place start[], const Place end[], const Place from
     if (OverPiece(dim, (const double(*)[3])x, p)) crossing[kept++] = roots[k];
   }
   return kept;
+}
+
+/* Are two places on the same side of a hinge in their common plane? In two dimensions the hinge is a point. */
+static int SameSide(int dim, const Place x[], const Place p)
+{
+  double hinge[3] = {0, 0, 1}, a[3], b[3], c[3], d[3];
+
+  if (dim == 3) Minus(x[1], x[0], hinge);
+  Minus(x[dim - 1], x[0], a);
+  Minus(p, x[0], b);
+  Cross(hinge, a, c);
+  Cross(hinge, b, d);
+  return Dot(c, d) > 0;
+}
+
+/*@
+  SweepHinge - says whether two moving pieces that share a vertex in the plane, an edge in space, have turned through
+  each other.
+
+  Not collective
+
+  Input Parameters:
++ dim   - 2 or 3
+. start - vertices of the first piece at 0, the shared ones first
+. end   - at 1
+. from  - the other piece's vertex that is not shared, at 0
+- to    - at 1
+
+  Note:
+  They are closed where they lie in one plane and on one side of what they share. They have turned through each other
+  after an odd number of such times.
+@*/
+int SweepHinge(int dim, const Place start[], const Place end[], const Place from, const Place to)
+{
+  Crossing  roots[SWEEP_MAX];
+  const int n      = PlaneCrossings(dim, start, end, from, to, roots);
+  int       closed = 0;
+
+  for (int k = 0; k < n; k++) {
+    double x[3][3], p[3];
+
+    for (int a = 0; a < dim; a++) Between(start[a], end[a], roots[k].s, x[a]);
+    Between(from, to, roots[k].s, p);
+    closed += SameSide(dim, (const double(*)[3])x, p);
+  }
+  return closed % 2;
 }
 
 /* Closest points of two straight lines: their places on the edges, 0 to 1; 0 for parallel edges. */

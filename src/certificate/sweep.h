@@ -5,9 +5,9 @@
    piece is where its normal points (element.h). Positions have three components, in two dimensions the third is 0.
 
    SweepPoint() finds when a moving point crosses a moving piece, SweepEdges() when a moving edge crosses a moving edge,
-   PieceClosest() the point of a piece that is closest to a place, PiecePierce() where an edge stands through a piece.
-   PieceHeight() measures how far a piece is from a smooth surface with the normals of its vertices. PieceDivide()
-   divides faces into pieces. */
+   SweepHinge() whether two pieces have turned through each other about what they share. PieceClosest() finds the point
+   of a piece that is closest to a place, PiecePierce() where an edge stands through a piece. PieceHeight() measures how
+   far a piece is from a smooth surface with the normals of its vertices. PieceDivide() divides faces into pieces. */
 #pragma once
 #include "kernels/element.h"
 
@@ -45,5 +45,6 @@ void   PieceAcross(const Place x[], int a, const double one[3], const double oth
 int    PieceClosest(int dim, const Place x[], const Place p, Place closest);
 int    PiecePierce(int dim, const Place x[], const double normal[3], const Place edge[2], double *at, int *inward);
 int    SweepPoint(int dim, const Place start[], const Place end[], const Place from, const Place to, Crossing[]);
+int    SweepHinge(int dim, const Place start[], const Place end[], const Place from, const Place to);
 int    EdgesAcross(const Place a[2], const Place b[2], double at[2], double normal[3]);
 int    SweepEdges(const Place a0[2], const Place a1[2], const Place b0[2], const Place b1[2], EdgeEnd *);

@@ -3,7 +3,8 @@
    LookAt() gathers the pieces that a point or an edge may meet, PointStand() finds the closest one at one of the two
    states, JudgeDepth() judges that. PointFinding() follows a point along the step, EdgeFinding() judges an edge,
    against the faces and, if asked, the edges of the other side. EdgeOnEdges() judges an edge that stands across edges,
-   EdgePassage() one that has crossed a body in the step. Each keeps the worst of what was found. */
+   EdgePassage() one that has crossed a body in the step. FoldFinding() judges the pieces of one face, which turn
+   through each other where it folds. Each keeps the worst of what was found. */
 #pragma once
 #include "base/boxtree.h"
 #include "base/vectors.h"
@@ -32,17 +33,17 @@
 /* Depths below this part of a face are round-off. */
 #define STAND_ROUND_OFF 1e-6
 
-typedef enum { FINDING_NONE, FINDING_DEPTH, FINDING_PASSED, FINDING_EDGES, FINDING_KINDS } FindingKind;
+typedef enum { FINDING_NONE, FINDING_DEPTH, FINDING_PASSED, FINDING_EDGES, FINDING_FOLDED, FINDING_KINDS } FindingKind;
 
 /* The worst that was found. */
 typedef struct {
   FindingKind kind;    /* FINDING_NONE: within what is allowed */
-  double      ratio;   /* depth over what is allowed; of a passage at least 1 */
+  double      ratio;   /* depth over what is allowed; of a passage at least 1, of a fold INFINITY */
   double      depth;   /* length */
   double      allowed; /* length */
   double      over_h;  /* depth without what geometry explains, over the size of the smaller face */
   long        tag[2];  /* gmsh's tags of the point or of an edge; of a tool -1 - tag. The second is 0 for a point */
-  long        face;    /* gmsh's tag of the face that was passed or is stood in */
+  long        face;    /* gmsh's tag of the face that was passed or is stood in, or is folded about the point or edge */
   int         side;    /* that of the point or edge: 0 the slave's, 1 the master's */
   Place       X;       /* reference place (length) */
 } Finding;
@@ -99,3 +100,4 @@ void   EdgePassage(Look *, const Edge *, const Box, Finding *worst);
 void   PassageFinding(const Look *, const Point *, long second, const Event *in, const Event *out, double depth,
                       Finding *worst);
 void   EdgeFinding(Look *, const Edge *, int crossings, Finding *worst);
+void   FoldFinding(int dim, int n, const Piece pieces[], Finding *worst);
