@@ -379,7 +379,7 @@ static void NormalsAcrossEdges(void **context)
 {
   const Place  flank[3] = {{0, 0, 0}, {3, 0, 0}, {-1, 1, -1}};
   const double ridge[3] = {0, 0, 5}, slope = sqrt(0.5);
-  double       across[3], angles = 0;
+  double       across[3], angles           = 0;
 
   (void)context;
   for (int a = 0; a < 3; a++) angles += PieceAngle(flank, a);
@@ -457,7 +457,7 @@ static void EdgesAcrossEdgesAreFound(void **context)
   assert_int_equal(finding.kind, FINDING_EDGES);
   assert_true(fabs(finding.depth - 0.2) < 1e-12);
   assert_int_equal(MoveWedge(&plate, AT(0, 0, -0.09), AT(0, 0, -0.11)).kind, FINDING_EDGES); /* 21: by and by */
-  assert_int_equal(MoveWedge(&plate, AT(3, 0, 0.5), AT(3, 0, -0.5)).kind, FINDING_NONE);    /* beside the bar */
+  assert_int_equal(MoveWedge(&plate, AT(3, 0, 0.5), AT(3, 0, -0.5)).kind, FINDING_NONE);     /* beside the bar */
   Bar(&plate, 0.05); /* 22: through a thin bar, and out beyond its end */
   assert_int_equal(MoveWedge(&plate, AT(0, 0, 1), AT(3.5, 0, -1)).kind, FINDING_PASSED);
   assert_int_equal(MoveWedge(&plate, AT(1.8, 0, 1), AT(3.5, 0, -1)).kind, FINDING_NONE);
@@ -493,6 +493,108 @@ static void PlantedToolsAreFound(void **context)
   assert_int_equal(worst.kind, FINDING_PASSED);
 }
 
+/* A face of second order, cut from a reference face that is bent to a cylinder and turned as a whole. */
+typedef struct {
+  ElementType type;
+  double      along;  /* angle of the direction in which it is bent, from the first axis of the face; in space */
+  double      closes; /* curvature at which pieces on both sides of a middle node lie on each other */
+} BentFace;
+
+static void BendFace(const BentFace *face, double curvature, double turn, double x[FACE_MAX_NODES][3])
+{
+  const Element *element = ElementGet(face->type);
+  const double   c = cos(face->along), s  = sin(face->along);
+  double         u[FACE_MAX_NODES], least = INFINITY, most = -INFINITY;
+
+  for (int a = 0; a < element->nodes; a++) {
+    u[a]  = c * element->node[a][0] + s * element->node[a][1];
+    least = fmin(least, u[a]);
+    most  = fmax(most, u[a]);
+  }
+  for (int a = 0; a < element->nodes; a++) {
+    const double r = u[a] - 0.5 * (least + most), v = c * element->node[a][1] - s * element->node[a][0];
+    const double bent = curvature == 0 ? r : sin(curvature * r) / curvature,
+                 up   = curvature == 0 ? 0 : (1 - cos(curvature * r)) / curvature;
+
+    x[a][0] = cos(turn) * bent - sin(turn) * up;
+    x[a][1] = element->dim == 1 ? sin(turn) * bent + cos(turn) * up : v;
+    x[a][2] = element->dim == 1 ? 0 : sin(turn) * bent + cos(turn) * up;
+  }
+}
+
+/* Judges a face that is bent from one curvature to another one while it turns as a whole. */
+static Finding FoldFace(const BentFace *face, const double curvature[2], double turn)
+{
+  const int dim = ElementGet(face->type)->dim + 1;
+  double    X[FACE_MAX_NODES][3], x[2][FACE_MAX_NODES][3];
+  int       node[PIECE_MAX][3], n = PieceDivide(face->type, node);
+  Piece     pieces[PIECE_MAX];
+  Finding   worst = {.kind = FINDING_NONE};
+
+  BendFace(face, 0, 0, X);
+  for (int state = 0; state < 2; state++) BendFace(face, curvature[state], state * turn, x[state]);
+  for (int k = 0; k < n; k++) {
+    pieces[k] = (Piece){.face = 42};
+    for (int a = 0; a < dim; a++) {
+      pieces[k].tag[a] = 1 + node[k][a];
+      memcpy(pieces[k].X[a], X[node[k][a]], sizeof(Place));
+      for (int state = 0; state < 2; state++) memcpy(pieces[k].x[state][a], x[state][node[k][a]], sizeof(Place));
+    }
+  }
+  FoldFinding(dim, n, pieces, &worst);
+  return worst;
+}
+
+static const BentFace bent_faces[] = {
+  {ELEMENT_EDGE3, 0, M_PI},           {ELEMENT_TRI6, 0, 2 * M_PI},
+  {ELEMENT_TRI6, M_PI / 2, 2 * M_PI}, {ELEMENT_TRI6, M_PI / 4, 2 * M_PI / sqrt(0.5)},
+  {ELEMENT_QUAD9, 0, M_PI},           {ELEMENT_QUAD9, M_PI / 2, M_PI}};
+enum { BENT_FACES = sizeof(bent_faces) / sizeof(*bent_faces) };
+
+static void FoldedFacesAreFound(void **context)
+{
+  (void)context;
+  for (int k = 0; k < BENT_FACES; k++) {
+    const BentFace *face = &bent_faces[k];
+
+    for (int sign = -1; sign <= 1; sign += 2) {
+      for (double turn = 0; turn < 3; turn += 0.5) {
+        const double closing[2] = {sign * 0.8 * face->closes, sign * 1.02 * face->closes},
+                     jump[2]    = {sign * 0.6 * face->closes, sign * 1.3 * face->closes};
+        const Finding worst     = FoldFace(face, closing, turn);
+
+        assert_int_equal(worst.kind, FINDING_FOLDED);
+        assert_true(worst.face == 42 && worst.tag[0] > 0 && (worst.tag[1] > 0) == (face->type != ELEMENT_EDGE3));
+        assert_int_equal(FoldFace(face, jump, 0).kind, FINDING_FOLDED);
+      }
+    }
+  }
+}
+
+/* Faces that are bent nearly as far, in any direction, bent back, bent the other way, and turned at the same time. */
+static void BentFacesAreNotFolded(void **context)
+{
+  (void)context;
+  for (int k = 0; k < BENT_FACES; k++) {
+    BentFace     face  = bent_faces[k];
+    const double along = face.along;
+
+    for (double part = -0.98; part < 1; part += 0.07) {
+      for (double turn = 0; turn < 3; turn += 0.5) {
+        const double more[2] = {0.6 * part * face.closes, part * face.closes}, less[2] = {more[1], more[0]},
+                     other[2] = {part * face.closes, -part * face.closes};
+
+        assert_int_equal(FoldFace(&face, more, turn).kind, FINDING_NONE);
+        assert_int_equal(FoldFace(&face, less, turn).kind, FINDING_NONE);
+        assert_int_equal(FoldFace(&face, other, 0).kind, FINDING_NONE);
+        face.along = along + turn;
+        assert_int_equal(FoldFace(&face, (double[2]){0.3 * more[1], 0.5 * more[1]}, turn).kind, FINDING_NONE);
+        face.along = along;
+      }
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -510,6 +612,8 @@ int main(void)
     cmocka_unit_test(NormalsAcrossEdges),
     cmocka_unit_test(EdgesAcrossEdgesAreFound),
     cmocka_unit_test(PlantedToolsAreFound),
+    cmocka_unit_test(FoldedFacesAreFound),
+    cmocka_unit_test(BentFacesAreNotFolded),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
