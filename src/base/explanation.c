@@ -219,6 +219,14 @@ static const Explanation Unsolved[] = {
    "lies against a face there: the bodies would cross without any force.",
    "Give both edges a rounding that the mesh resolves with three or more faces, which meet as faces do. Where faces "
    "press soon after, a larger `certificate.penetration` lets the edges stand in each other until then."},
+  {"B125",
+   {"folds over itself about"},
+   "a face folds over itself",
+   "A face of second order bends to a loop, in which it and its neighbours cross each other. The message names the face "
+   "and the node about which its halves turned through each other. Contact holds faces apart, but not the halves of one "
+   "face. Surfaces that crease ask for more than a face can follow.",
+   "Refine the mesh at the place until the crease has several faces, or take first-order elements, whose creases are at "
+   "nodes, where contact holds both sides apart."},
   {"B202",
    {"the step cannot be certified"},
    "the step cannot be certified",

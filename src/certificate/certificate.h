@@ -5,6 +5,7 @@
    - no point has passed a face of the other side without a contact term having carried it
    - no two faces cross deeper than `certificate.penetration`, less what the shape of faces explains
    - in space, no edge has crossed an edge
+   - no face folds over itself
 
    CertificateCheck() judges a converged solution against the accepted state before it. CertificateGetFigures() gives
    what was found over the run. The certificate only reads; a run with it has the same solution as one without it, but

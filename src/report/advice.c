@@ -477,8 +477,14 @@ static const ChangeKind tries[][ADVICE_CHANGES] = {
   [SOLVE_UNSTABLE]    = {CHANGE_DAMPING, CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK},
   [SOLVE_NAN]         = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK}};
 
-/* What is tried where surfaces cross and no term presses: no penalty and no step acts there. */
+/* What is tried where surfaces cross and no term presses, or a face folds: no penalty and no step acts there. */
 static const ChangeKind unheld[ADVICE_CHANGES] = {CHANGE_SHORTER_MIN, CHANGE_ROLES, CHANGE_FINER_MASTER, CHANGE_CHECK};
+
+/* Was a step refused because a face would fold over itself? Contact has no part in that. */
+static int Folds(const SolveReport *solve)
+{
+  return strstr(solve->detail, "folds over itself") != NULL;
+}
 
 /* Does a line name a change already? */
 static int Names(const AdviceLine *line, ChangeKind change)
@@ -552,7 +558,7 @@ static void AddTries(const RunFigures *figures, Advice *advice)
     first     = changes + (deep > ADVICE_DEEP ? 1 : 3); /* without what makes the penalty stiffer */
     at.factor = (double)(deep / ADVICE_DEEP_WANTED);
   }
-  if (solve->result == SOLVE_UNCERTIFIED && at.pair && !at.pair->quality.nodes) first = unheld;
+  if (solve->result == SOLVE_UNCERTIFIED && at.pair && (!at.pair->quality.nodes || Folds(solve))) first = unheld;
   AddLine(advice, "", &at, first);
   advice->tries = advice->n > 0;
   if (advice->n && advice->lines[0].n > 1 && advice->lines[0].changes[advice->lines[0].n - 1] == CHANGE_CHECK)
