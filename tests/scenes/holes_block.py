@@ -18,9 +18,13 @@ total = sum(energy[name] for name in ("elastic", "contact", "damping"))
 check.near("damped: energies balance", energy["external"] / total, 1, 0.01)
 
 # The block of second order creases within faces. None of them folds over itself in an accepted step.
-looped = run(args, scene, out="looped", must=2, overrides=("mesh.order=2", "contact.0.smoother=diffuse", "output.every=0"))
-check.holds("looped: told with face and place", re.search(
-    r"contact 'any': face \d+ of 'skin of block' folds over itself about node \d+ \(\d[^)]*, 0\); .*\[B125\]\n", looped.text),
-            looped.text[-400:])
-check.holds("looped: refused", looped.summary()["certificate"]["refused"] >= 1)
+FOLDS = r"contact 'any': face \d+ of 'skin of block' folds over itself about node \d+ \(\d[^)]*, 0\); .*\[B125\]\n"
+steps = []
+for ranks in (1, 3):
+    looped = run(args, scene, out=f"looped{ranks}", ranks=ranks, must=2,
+                 overrides=("mesh.order=2", "contact.0.smoother=diffuse", "output.every=0", "stepping.dt_min=0.002"))
+    check.holds(f"looped: told with face and place, {ranks} ranks", re.search(FOLDS, looped.text), looped.text[-400:])
+    check.holds(f"looped: refused, {ranks} ranks", looped.summary()["certificate"]["refused"] >= 1)
+    steps.append(looped.summary()["steps"])
+check.holds("looped: the same steps on all ranks", steps[0] == steps[1], str(steps))
 check.finish()
