@@ -361,6 +361,9 @@ JOBS = [
         Answer("pull", 4.36, 0.05, "limit"),
         Answer("nip", 10.73, 0.01, "limit"),
     ], steps=20, pairs=2),
+    Job("roller_on_pad", "roller on a bonded pad", [
+        Answer("force", 20.18, 0.02, "limit"),
+    ], steps=12, stiff=["stepping.dt_max=0.05", "contact.0.friction.stick={slip: 0.001}"]),
     Job("bottle_cap", "cap snapped over a neck", [Answer("force", 198.1, 0.05, "limit")], steps=8,
         picture=["--mirror", "x"]),
 ]
