@@ -260,7 +260,6 @@ PetscErrorCode ModelAccept(Model model)
   PetscFunctionBeginUser;
   PetscCall(LinearSolverRelease(work->solver));
   ToolsAccept(model->mesh, model->u, model->t);
-  PetscCall(FluidSettle(model->problem->fluids, model->u, model->t));
   PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t, &path));
   if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u, model->t, &path));
   if (SceneBreaks(model->scene, model->t)) ElasticityForgetFlow(model->problem->elasticity);
@@ -274,6 +273,10 @@ PetscErrorCode ModelAccept(Model model)
   if (model->balance) {
     PetscCall(OuterWorkAdd(EnergyBalanceOuter(model->balance), work->accepted_u, work->accepted_t, model->u, model->t));
     EnergyBalanceEnd(model->balance);
+  }
+  if (model->problem->fluids) { /* the work of the step was that of the loads as they lay */
+    PetscCall(FluidSettle(model->problem->fluids, model->u, model->t));
+    PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   }
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);

@@ -32,7 +32,8 @@ PRESSED = "probes.2={name: pressed, contact_force: joint, component: y}"
 SPRINGS = [
     "supports.1={surface: upper_top, spring: [5, 10]}",
     "loads=[{volume: upper, body_force: [0, -2]}, "
-    "{surface: upper_bottom, pressure: 1, where: open, from: [0, 0.52], history: [[0, 0], [0.5, 0], [1, 1]]}]",
+    "{surface: upper_bottom, pressure: 1, where: open, from: [0, 0.52], history: [[0, 0], [0.5, 0], [1, 1]]}, "
+    "{surface: lower_top, pressure: 1, where: open, from: [0, 0.5], history: [[0, 0], [0.5, 0], [1, 1]]}]",
 ]
 MULTIPLIERS = [
     "contact.0.penalty={augment: true, g_max: 0.001, unit: length}", "contact.0.friction={mu: 0.3}",
