@@ -208,7 +208,8 @@ const SchemaKey SchemaKeys[] = {
   {"loads.*.follower", BOOLEAN, .preset = "false", .help = "true: the pressure acts on the deformed face"},
   {"loads.*.where", CHOICE, .values = "everywhere | open", .preset = "everywhere",
    .help = "open: the pressure is that of a fluid that enters between surfaces in contact; it acts where contact "
-           "presses less than the fluid, as far as such places are connected to the wetted end"},
+           "presses less than the fluid, as far as such places are connected to the wetted end; a master that deforms needs "
+           "such a load of its own"},
   {"loads.*.from", TEXT | POINT, .unit = "length",
    .help = "wetted end of where: open, from which the fluid enters: a physical surface with nodes of the loaded one, or "
            "the reference point of a node; the default in two dimensions is the end of the loaded line that is open at "
