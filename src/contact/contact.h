@@ -206,10 +206,9 @@ PetscErrorCode ContactLocateOutside(Contact, char *text, size_t size);
 PetscErrorCode ContactPairWindow(Contact, int pair, ContactWindow *);
 PetscErrorCode ContactPairPenalty(Contact, int pair, PetscReal *least, PetscReal *most);
 /* Fluid between the surfaces */
-PetscErrorCode   ContactSetCarried(Contact, int pair, const PetscReal *carried, const PetscReal *dry);
-PetscErrorCode   ContactKeepReactions(Contact, int pair);
-const PetscReal *ContactReactions(Contact, int pair);
-PetscErrorCode   ContactTermForces(Contact, int pair, PetscReal touch, PetscReal *force);
+PetscErrorCode ContactSetCarried(Contact, int pair, const PetscReal *carried, const PetscReal *dry);
+PetscErrorCode ContactReactions(Contact, int pair, PetscReal *sealing, PetscReal *ahead);
+PetscErrorCode ContactTermForces(Contact, int pair, PetscReal touch, PetscReal *force);
 /* Control of the load step */
 PetscErrorCode ContactTouches(Contact, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t,
                               PetscBool by_area, PetscBool still_open, int *n, Touch **);

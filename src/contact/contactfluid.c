@@ -68,40 +68,57 @@ PetscErrorCode ContactTermForces(Contact contact, int p, PetscReal touch, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the reactions to pressures of the terms. */
+static PetscErrorCode AddReactions(const ContactPair *pair, const PetscReal *pressure, PetscReal *reaction)
+{
+  const int  dim = pair->mesh->dim;
+  PetscReal *point, *values, *own;
+
+  PetscFunctionBeginUser;
+  PetscCall(
+    PetscCalloc3(pair->lists->n_slaves, &point, pair->lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &own));
+  for (PetscInt c = 0; c < pair->n; c++) ContactTermPress(pair, c, pressure[c], point);
+  PetscCall(ContactPointForces(pair, point, values));
+  PetscCall(ContactPointReactions(pair, point, values, own));
+  for (PetscInt i = 0; i < pair->mesh->n_nodes * dim; i++) reaction[i] += own[i];
+  PetscCall(PetscFree3(point, values, own));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  ContactKeepReactions - has a pair keep the forces on its master's nodes from now on.
+  ContactReactions - adds the normal forces on the nodes of a pair's master in the displacements of the last residual.
 
   Collective
 
   Input Parameters:
 + contact - the contact
 - p       - number of the pair
+
+  Input/Output Parameters:
++ sealing - sealing[n_nodes*dim] by node of the mesh, complete at owned nodes: of all that presses where contact
+            presses more than a fluid carries
+- ahead   - likewise: what fluids carry of it
 @*/
-PetscErrorCode ContactKeepReactions(Contact contact, int p)
+PetscErrorCode ContactReactions(Contact contact, int p, PetscReal *sealing, PetscReal *ahead)
 {
-  ContactPair *pair = &contact->pairs[p];
+  const ContactPair *pair = &contact->pairs[p];
+  PetscReal         *all, *carried;
 
   PetscFunctionBeginUser;
-  if (!pair->reaction) PetscCall(MeshCreateLocal(pair->mesh, pair->mesh->dim, &pair->reaction));
+  PetscCall(PetscCalloc2(pair->n, &all, pair->n, &carried));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    LawValue  value;
+    PetscReal area;
+
+    ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
+    if (!(value.pressure > 0)) continue;
+    carried[c] = pair->carried ? pair->carried[c] : 0;
+    all[c]     = value.pressure + carried[c];
+  }
+  PetscCall(AddReactions(pair, all, sealing));
+  PetscCall(AddReactions(pair, carried, ahead));
+  PetscCall(PetscFree2(all, carried));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactReactions - returns the normal forces on the nodes of a pair's master in the state of the last residual.
-
-  Not collective
-
-  Input Parameters:
-+ contact - the contact
-- p       - number of the pair
-
-  Note:
-  They are by node of the mesh, reaction[n_nodes*dim], and complete at owned nodes. It returns NULL where nobody has
-  asked for them (ContactKeepReactions()).
-@*/
-const PetscReal *ContactReactions(Contact contact, int p)
-{
-  return contact->pairs[p].reaction;
 }
 
 /*@

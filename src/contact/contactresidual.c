@@ -163,7 +163,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
   PetscCall(ContactPointForces(pair, pair->point_force, values));
   PairTotal(pair);
-  if (pair->reaction) PetscCall(ContactPointReactions(pair, pair->point_force, values, pair->reaction));
+  if (pair->scene->share < 1) PetscCall(ContactPointReactions(pair, pair->point_force, values, pair->reaction));
   if (pair->friction) PetscCall(FrictionResidual(pair, t, values));
   if (pair->tool) PetscCall(ContactToolForces(pair, values));
   if (contact->hold)

@@ -226,9 +226,9 @@ static PetscBool ReachesEnd(const Fluid *fluid)
 
 /* Lays the fluid's load on wet places and on those to which the contact pressure rises from them. Contact presses more
    than the fluid there, so that this changes no force, and Newton's method itself finds how far the front moves up to
-   the crest of the pressure. Where the load lies it stays until the step ends. A master that deforms would lack what
-   the contact does not press ahead; there the load lies on wet places alone. */
-static PetscErrorCode LayAhead(Fluid *fluid)
+   the crest of the pressure. There it stays until the solution is found. On a master it lies on wet places, and where
+   it brings what the fluid ahead carries of the reactions. */
+static PetscErrorCode LayAhead(Fluid *fluid, PetscBool ahead)
 {
   const PassageGraph *graph = &fluid->surface->graph;
   const FluidState   *now   = &fluid->now;
@@ -238,10 +238,10 @@ static PetscErrorCode LayAhead(Fluid *fluid)
   PetscCall(PetscMalloc1(graph->n, &stack));
   for (int i = 0; i < graph->n; i++) {
     if (now->wet[i]) stack[top++] = i;
-    fluid->laid[i] |= now->wet[i];
+    fluid->laid[i] |= now->wet[i] || fluid->ahead[i] > 0;
     fluid->lubricated[i] |= now->wet[i];
   }
-  while (top && !fluid->deforms) {
+  while (top && ahead) {
     const int i = stack[--top];
 
     for (int k = graph->ptr[i]; k < graph->ptr[i + 1]; k++) {
@@ -254,6 +254,21 @@ static PetscErrorCode LayAhead(Fluid *fluid)
   }
   PetscCall(PetscFree(stack));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes the load from places that are dry again, once in a step, where it matters that it lies there: friction has not
+   counted its pressure, or it lies on a master that deforms. */
+static void Drain(Fluid *fluid, PetscBool *moved)
+{
+  if (fluid->drained) return;
+  for (int i = 0; i < fluid->surface->graph.n; i++) {
+    if (fluid->now.wet[i]) continue;
+    if ((fluid->friction && fluid->lubricated[i]) || (fluid->deforms && fluid->laid[i] && fluid->share[i] > 0))
+      *moved = PETSC_TRUE;
+    fluid->lubricated[i] = 0;
+    if (fluid->deforms) fluid->laid[i] = 0;
+  }
+  fluid->drained = *moved;
 }
 
 /* Moves one fluid to where it can be at the present solution. *moved: it is where its load did not lie, or where
@@ -284,9 +299,10 @@ static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, P
     PetscCall(PetscArrayzero(fluid->laid, n));
     PetscCall(PetscArrayzero(fluid->lubricated, n));
   }
+  if (!*moved) Drain(fluid, moved);
   if (!*moved) PetscCall(FindBarrier(fluid));
   if (!*moved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(LayAhead(fluid));
+  PetscCall(LayAhead(fluid, (PetscBool)(!FluidReacts(fluids, fluid) && !(fluid->deforms && fluid->drained))));
   PetscCall(Apply(fluids, fluid, u, t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -434,7 +450,7 @@ static PetscErrorCode CreateOne(Fluids fluids, int load, Fluid *fluid)
   n = fluid->surface->graph.n;
   PetscCall(FindPairs(fluids, fluid));
   PetscCall(PetscCalloc5(n, &fluid->from, n, &fluid->to, n, &fluid->laid, n, &fluid->lubricated, n, &fluid->weight));
-  PetscCall(PetscCalloc1(n, &fluid->share));
+  PetscCall(PetscCalloc2(n, &fluid->share, n, &fluid->ahead));
   for (int form = 0; form < FLUID_FORMS; form++)
     PetscCall(PetscCalloc2(mesh->n_nodes, &fluid->area[form], mesh->n_nodes, &fluid->force[form]));
   PetscCall(PetscCalloc4(mesh->n_nodes, &fluid->wet, mesh->n_nodes, &fluid->dry, mesh->n_nodes, &fluid->pressing,
@@ -508,7 +524,7 @@ PetscErrorCode FluidDestroy(Fluids *fluids)
     Fluid *fluid = &(*fluids)->fluid[i];
 
     PetscCall(SurfaceGraphDestroy(&fluid->surface));
-    PetscCall(PetscFree(fluid->share));
+    PetscCall(PetscFree2(fluid->share, fluid->ahead));
     PetscCall(PetscFree5(fluid->from, fluid->to, fluid->laid, fluid->lubricated, fluid->weight));
     for (int form = 0; form < FLUID_FORMS; form++) PetscCall(PetscFree2(fluid->area[form], fluid->force[form]));
     PetscCall(PetscFree4(fluid->wet, fluid->dry, fluid->pressing, fluid->pressing_form));
@@ -643,10 +659,11 @@ PetscErrorCode FluidBegin(Fluids fluids, const PetscReal *u, PetscReal t)
     Fluid *fluid = &fluids->fluid[i];
 
     PetscCall(StateCopy(fluid->surface->graph.n, &fluid->accepted, &fluid->now));
-    fluid->shut = PETSC_FALSE;
+    fluid->shut = fluid->drained = PETSC_FALSE;
     PetscCall(PetscArrayzero(fluid->laid, fluid->surface->graph.n));
     PetscCall(PetscArrayzero(fluid->lubricated, fluid->surface->graph.n));
-    PetscCall(LayAhead(fluid));
+    PetscCall(PetscArrayzero(fluid->ahead, fluid->surface->graph.n));
+    PetscCall(LayAhead(fluid, (PetscBool)!fluid->deforms));
     PetscCall(Apply(fluids, fluid, u, t));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -669,12 +686,14 @@ PetscErrorCode FluidMove(Fluids fluids, const PetscReal *u, PetscReal t, PetscBo
 {
   PetscFunctionBeginUser;
   *moved = PETSC_FALSE;
-  for (int i = 0; fluids && i < fluids->n; i++) {
-    PetscBool one;
+  for (int masters = 0; masters < 2; masters++)
+    for (int i = 0; fluids && i < fluids->n; i++) {
+      PetscBool one;
 
-    PetscCall(MoveOne(fluids, &fluids->fluid[i], u, t, &one));
-    *moved = (PetscBool)(*moved || one);
-  }
+      if (FluidReacts(fluids, &fluids->fluid[i]) != (PetscBool)masters) continue;
+      PetscCall(MoveOne(fluids, &fluids->fluid[i], u, t, &one));
+      *moved = (PetscBool)(*moved || one);
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -732,7 +751,7 @@ PetscErrorCode FluidReaches(Fluids fluids, PetscReal t_0, PetscReal t, PetscReal
 
 /*@
   FluidSettle - ends a solve: the fluids' loads lie where they are wet alone, so that contact shows what it presses on
-dry surfaces. No force changes.
+  dry surfaces. No force changes.
 
   Collective
 
@@ -744,13 +763,16 @@ dry surfaces. No force changes.
 PetscErrorCode FluidSettle(Fluids fluids, const PetscReal *u, PetscReal t)
 {
   PetscFunctionBeginUser;
-  for (int i = 0; fluids && i < fluids->n; i++) {
-    Fluid *fluid = &fluids->fluid[i];
+  for (int masters = 0; masters < 2; masters++)
+    for (int i = 0; fluids && i < fluids->n; i++) {
+      Fluid *fluid = &fluids->fluid[i];
 
-    PetscCall(PetscArraycpy(fluid->laid, fluid->now.wet, fluid->surface->graph.n));
-    PetscCall(PetscArraycpy(fluid->lubricated, fluid->now.wet, fluid->surface->graph.n));
-    PetscCall(Apply(fluids, fluid, u, t));
-  }
+      if (FluidReacts(fluids, fluid) != (PetscBool)masters) continue;
+      PetscCall(FluidMeasureReactions(fluids, fluid, u));
+      PetscCall(PetscArraycpy(fluid->laid, fluid->now.wet, fluid->surface->graph.n));
+      PetscCall(PetscArraycpy(fluid->lubricated, fluid->now.wet, fluid->surface->graph.n));
+      PetscCall(Apply(fluids, fluid, u, t));
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -805,6 +827,7 @@ PetscErrorCode FluidRestore(Fluids fluids, const PetscReal *u, PetscReal t)
     PetscCall(StateCopy(fluid->surface->graph.n, &fluid->accepted, &fluid->now));
     PetscCall(PetscArraycpy(fluid->laid, fluid->now.wet, fluid->surface->graph.n));
     PetscCall(PetscArraycpy(fluid->lubricated, fluid->now.wet, fluid->surface->graph.n));
+    PetscCall(PetscArrayzero(fluid->ahead, fluid->surface->graph.n));
     PetscCall(Apply(fluids, fluid, u, t));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

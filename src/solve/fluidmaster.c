@@ -29,10 +29,17 @@ PetscErrorCode FluidFindMasters(Fluids fluids, Fluid *fluid, PetscBool *found)
     fluid->reacts[p] = (PetscBool)(n > 0);
     if (!n) continue;
     *found = PETSC_TRUE;
-    PetscCall(ContactKeepReactions(contact, p));
   }
   PetscCall(PetscFree(flag));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether the surface is a master that deforms. */
+PetscBool FluidReacts(Fluids fluids, const Fluid *fluid)
+{
+  for (int p = 0; p < ContactPairs(fluids->contact); p++)
+    if (fluid->reacts[p]) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 /* Refuses a master on which the fluid should press, but does not. Says whether one of them deforms. */
@@ -91,43 +98,45 @@ static PetscErrorCode AreaVectors(Fluids fluids, const Fluid *fluid, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds what the reactions press at the nodes, in the state of the last residual. */
+/* Finds what the reactions press at the nodes, in the displacements of the last residual. */
 PetscErrorCode FluidMeasureReactions(Fluids fluids, Fluid *fluid, const PetscReal *u)
 {
   const SurfaceGraph s   = fluid->surface;
   const int          dim = fluids->mesh->dim;
-  PetscReal         *area, *press;
-  PetscBool          any = PETSC_FALSE;
+  PetscReal         *area, *press[2], *reaction[2];
 
   PetscFunctionBeginUser;
-  for (int p = 0; p < ContactPairs(fluids->contact); p++) any = (PetscBool)(any || fluid->reacts[p]);
-  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc2(4 * fluids->mesh->n_nodes, &area, fluids->mesh->n_nodes, &press));
+  if (!FluidReacts(fluids, fluid)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc5(4 * fluids->mesh->n_nodes, &area, fluids->mesh->n_nodes, &press[0], fluids->mesh->n_nodes,
+                         &press[1], fluids->mesh->n_nodes * dim, &reaction[0], fluids->mesh->n_nodes * dim,
+                         &reaction[1]));
   PetscCall(AreaVectors(fluids, fluid, fluids->scene->kinematics == KINEMATICS_SMALL ? NULL : u, area));
-  for (int p = 0; p < ContactPairs(fluids->contact); p++) {
-    const PetscReal *reaction = ContactReactions(fluids->contact, p);
+  for (int p = 0; p < ContactPairs(fluids->contact); p++)
+    if (fluid->reacts[p]) PetscCall(ContactReactions(fluids->contact, p, reaction[0], reaction[1]));
+  for (int i = 0; i < s->graph.n; i++) {
+    const PetscInt   node   = s->local[i];
+    const PetscReal *vector = &area[4 * node];
+    PetscReal        square = 0;
 
-    if (!fluid->reacts[p]) continue;
-    for (int i = 0; i < s->graph.n; i++) {
-      const PetscInt   node   = s->local[i];
-      const PetscReal *vector = &area[4 * node];
-      PetscReal        square = 0;
-
-      if (!s->own[i]) continue;
-      for (int d = 0; d < dim; d++) square += PetscSqr(vector[d]);
-      if (square < PetscSqr(FLUID_NO_AREA * vector[3])) continue;
-      for (int d = 0; d < dim; d++) press[node] -= reaction[node * dim + d] * vector[d] / square;
-    }
+    if (!s->own[i]) continue;
+    for (int d = 0; d < dim; d++) square += PetscSqr(vector[d]);
+    if (square < PetscSqr(FLUID_NO_AREA * vector[3])) continue;
+    for (int k = 0; k < 2; k++)
+      for (int d = 0; d < dim; d++) press[k][node] -= reaction[k][node * dim + d] * vector[d] / square;
   }
-  PetscCall(SurfaceGraphGather(s, press, fluid->now.react));
-  PetscCall(PetscFree2(area, press));
+  PetscCall(SurfaceGraphGather(s, press[0], fluid->now.react));
+  PetscCall(SurfaceGraphGather(s, press[1], fluid->ahead));
+  PetscCall(PetscFree5(area, press[0], press[1], reaction[0], reaction[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The part of its load that the fluid has at a node of the surface: what reactions leave of its pressure. */
+/* The part of its load that the fluid has at a node of the surface: what the reactions that seal leave of its pressure,
+   and what contact does not bring there because the slave's fluid carries it. */
 PetscReal FluidShare(const Fluid *fluid, int i)
 {
-  return fluid->pressure > 0 ? PetscMax(0, 1 - fluid->now.react[i] / fluid->pressure) : 1;
+  const PetscReal P = fluid->pressure;
+
+  return P > 0 ? PetscMax(0, 1 - fluid->now.react[i] / P) + fluid->ahead[i] / P : 1;
 }
 
 /* Says whether the load has another part of it at a node where it lies. */

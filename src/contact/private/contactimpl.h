@@ -134,8 +134,7 @@ typedef struct {
   PetscReal  total[3];                     /* force on this rank's terms in the last residual */
   PetscReal  t;                            /* load parameter of the last residual */
   PetscReal *pressure;                     /* what ContactGetNodes() shows: force over area */
-  /* Of the last residual, where the master is a slave as well or a fluid presses on it, else NULL: force on the master
-     by node of the mesh. */
+  /* Of the last residual, where the master is a slave as well, else NULL: force on the master by node of the mesh. */
   PetscReal   *reaction;
   NodeDepths   depths; /* NULL before the first report of depths in the slave */
   ContactWork *work;   /* shared by all pairs */
