@@ -226,9 +226,10 @@ static PetscBool ReachesEnd(const Fluid *fluid)
 
 /* Lays the fluid's load on wet places and on those to which the contact pressure rises from them. Contact presses more
    than the fluid there, so that this changes no force, and Newton's method itself finds how far the front moves up to
-   the crest of the pressure. There it stays until the solution is found. On a master it lies on wet places, and where
-   it brings what the fluid ahead carries of the reactions. */
-static PetscErrorCode LayAhead(Fluid *fluid, PetscBool ahead)
+   the crest of the pressure. There it stays until the solution is found. Where masters deform, the load lies on wet
+   places alone, as both loads would have to be taken back from what lies ahead; on the master also where it brings what
+   the slave's fluid carries at places that are dry again. */
+static PetscErrorCode LayAhead(Fluid *fluid)
 {
   const PassageGraph *graph = &fluid->surface->graph;
   const FluidState   *now   = &fluid->now;
@@ -241,7 +242,7 @@ static PetscErrorCode LayAhead(Fluid *fluid, PetscBool ahead)
     fluid->laid[i] |= now->wet[i] || fluid->ahead[i] > 0;
     fluid->lubricated[i] |= now->wet[i];
   }
-  while (top && ahead) {
+  while (top && !fluid->deforms) {
     const int i = stack[--top];
 
     for (int k = graph->ptr[i]; k < graph->ptr[i + 1]; k++) {
@@ -302,7 +303,7 @@ static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, P
   if (!*moved) Drain(fluid, moved);
   if (!*moved) PetscCall(FindBarrier(fluid));
   if (!*moved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(LayAhead(fluid, (PetscBool)(!FluidReacts(fluids, fluid) && !(fluid->deforms && fluid->drained))));
+  PetscCall(LayAhead(fluid));
   PetscCall(Apply(fluids, fluid, u, t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -663,7 +664,7 @@ PetscErrorCode FluidBegin(Fluids fluids, const PetscReal *u, PetscReal t)
     PetscCall(PetscArrayzero(fluid->laid, fluid->surface->graph.n));
     PetscCall(PetscArrayzero(fluid->lubricated, fluid->surface->graph.n));
     PetscCall(PetscArrayzero(fluid->ahead, fluid->surface->graph.n));
-    PetscCall(LayAhead(fluid, (PetscBool)!fluid->deforms));
+    PetscCall(LayAhead(fluid));
     PetscCall(Apply(fluids, fluid, u, t));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
