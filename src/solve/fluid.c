@@ -178,18 +178,27 @@ static PetscErrorCode Measure(Fluids fluids, Fluid *fluid, const PetscReal *u, P
   for (int i = 0; i < s->graph.n; i++)
     if (fluid->laid[i]) fluid->now.p[i] = fluid->now.p[i] > same ? fluid->now.p[i] + fluid->pressure : 0;
   PetscCall(FluidMeasureReactions(fluids, fluid, u));
-  for (int i = 0; i < s->graph.n; i++) fluid->now.p[i] = PetscMax(fluid->now.p[i], fluid->now.react[i]);
+  PetscCall(FluidFaceSlaves(fluids, fluid, fluids->scene->kinematics == KINEMATICS_SMALL ? NULL : u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says which nodes let the fluid in: those at which contact presses less than the fluid. A fluid without pressure is
-   where the surfaces are apart. */
-static void FindOpen(const Fluid *fluid, char *open)
+/* Says whether a fluid comes in where contact presses so much: less than the fluid. One without pressure is where the
+   surfaces are apart. */
+PetscBool FluidOpen(const Fluid *fluid, PetscReal pressure)
 {
-  const PetscReal  least = (1 - FLUID_SAME) * fluid->pressure;
-  const PetscReal *p     = fluid->now.p;
+  return (PetscBool)(pressure == 0 || pressure < (1 - FLUID_SAME) * fluid->pressure);
+}
 
-  for (int i = 0; i < fluid->surface->graph.n; i++) open[i] = p[i] == 0 || p[i] < least;
+/* Finds where the load belongs: on wet places. On a master it lies beside them and at the end from which the fluid
+   comes too, as the front crosses faces there, of which reactions bear a part. */
+static void FindBearing(Fluid *fluid)
+{
+  const SurfaceGraph s = fluid->surface;
+
+  for (int i = 0; i < s->graph.n; i++) {
+    fluid->bears[i] = fluid->now.wet[i] || (fluid->master && fluid->from[i]);
+    for (int k = s->ptr[i]; k < s->ptr[i + 1] && fluid->master; k++) fluid->bears[i] |= fluid->now.wet[s->adj[k]];
+  }
 }
 
 /* The lowest pressure with which the fluid would reach its other end in the contact as it is. */
@@ -239,7 +248,7 @@ static PetscErrorCode LayAhead(Fluid *fluid)
   PetscCall(PetscMalloc1(graph->n, &stack));
   for (int i = 0; i < graph->n; i++) {
     if (now->wet[i]) stack[top++] = i;
-    fluid->laid[i] |= now->wet[i] || fluid->ahead[i] > 0;
+    fluid->laid[i] |= fluid->bears[i] || fluid->ahead[i] > 0;
     fluid->lubricated[i] |= now->wet[i];
   }
   while (top && !fluid->deforms) {
@@ -263,7 +272,7 @@ static void Drain(Fluid *fluid, PetscBool *moved)
 {
   if (fluid->drained) return;
   for (int i = 0; i < fluid->surface->graph.n; i++) {
-    if (fluid->now.wet[i]) continue;
+    if (fluid->bears[i]) continue;
     if ((fluid->friction && fluid->lubricated[i]) || (fluid->deforms && fluid->laid[i] && fluid->share[i] > 0))
       *moved = PETSC_TRUE;
     fluid->lubricated[i] = 0;
@@ -285,12 +294,13 @@ static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, P
   PetscFunctionBeginUser;
   PetscCall(Measure(fluids, fluid, u, t));
   PetscCall(PetscMalloc2(n, &open, n, &stack));
-  FindOpen(fluid, open);
+  for (int i = 0; i < n; i++) open[i] = FluidOpen(fluid, fluid->now.p[i]);
   PassageFlood(&fluid->surface->graph, open, fluid->from, stack, fluid->now.wet);
+  FindBearing(fluid);
   PetscCall(PetscFree2(open, stack));
   *moved = PETSC_FALSE;
   for (int i = 0; i < n; i++) {
-    *moved = (PetscBool)(*moved || (fluid->now.wet[i] && !fluid->laid[i]) || FluidShareChanges(fluid, i) ||
+    *moved = (PetscBool)(*moved || (fluid->bears[i] && !fluid->laid[i]) || FluidShareChanges(fluid, i) ||
                          (fluid->now.wet[i] && fluid->friction && !fluid->lubricated[i]));
     wet += fluid->now.wet[i];
     laid += fluid->laid[i];
@@ -376,7 +386,6 @@ static PetscErrorCode ReadEnd(Fluids fluids, Fluid *fluid, const char *key, cons
 static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
 {
   const Contact contact = fluids->contact;
-  PetscBool     reacts;
   char         *flag;
 
   PetscFunctionBeginUser;
@@ -408,8 +417,8 @@ static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
     fluid->friction = (PetscBool)(fluid->friction || scene->friction);
   }
   PetscCall(PetscFree(flag));
-  PetscCall(FluidFindMasters(fluids, fluid, &reacts));
-  if (!fluid->form[FLUID_NODES] && !fluid->form[FLUID_FACES] && !reacts)
+  PetscCall(FluidFindMasters(fluids, fluid));
+  if (!fluid->form[FLUID_NODES] && !fluid->form[FLUID_FACES] && !fluid->master)
     PetscCall(RefuseInput(fluids->mesh->comm,
                           "%s: '%s' is in no contact pair; allowed with where: open: the slave of one or more pairs, "
                           "or a master that deforms",
@@ -451,7 +460,7 @@ static PetscErrorCode CreateOne(Fluids fluids, int load, Fluid *fluid)
   n = fluid->surface->graph.n;
   PetscCall(FindPairs(fluids, fluid));
   PetscCall(PetscCalloc5(n, &fluid->from, n, &fluid->to, n, &fluid->laid, n, &fluid->lubricated, n, &fluid->weight));
-  PetscCall(PetscCalloc2(n, &fluid->share, n, &fluid->ahead));
+  PetscCall(PetscCalloc3(n, &fluid->share, n, &fluid->ahead, n, &fluid->bears));
   for (int form = 0; form < FLUID_FORMS; form++)
     PetscCall(PetscCalloc2(mesh->n_nodes, &fluid->area[form], mesh->n_nodes, &fluid->force[form]));
   PetscCall(PetscCalloc4(mesh->n_nodes, &fluid->wet, mesh->n_nodes, &fluid->dry, mesh->n_nodes, &fluid->pressing,
@@ -502,10 +511,14 @@ PetscErrorCode FluidCreate(Mesh mesh, Scene scene, Loads loads, Contact contact,
   fluids->scene   = scene;
   fluids->loads   = loads;
   fluids->contact = contact;
-  PetscCall(PetscCalloc1(n, &fluids->fluid));
+  PetscCall(PetscCalloc2(n, &fluids->fluid, n, &fluids->order));
   for (int l = 0; l < scene->n_loads; l++)
     if (scene->loads[l].open) PetscCall(CreateOne(fluids, l, &fluids->fluid[fluids->n++]));
   for (int i = 0; i < fluids->n; i++) PetscCall(FluidCheckMasters(fluids, &fluids->fluid[i]));
+  n = 0;
+  for (int masters = 0; masters < 2; masters++)
+    for (int i = 0; i < fluids->n; i++)
+      if (fluids->fluid[i].master == (PetscBool)masters) fluids->order[n++] = i;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -525,7 +538,7 @@ PetscErrorCode FluidDestroy(Fluids *fluids)
     Fluid *fluid = &(*fluids)->fluid[i];
 
     PetscCall(SurfaceGraphDestroy(&fluid->surface));
-    PetscCall(PetscFree2(fluid->share, fluid->ahead));
+    PetscCall(PetscFree3(fluid->share, fluid->ahead, fluid->bears));
     PetscCall(PetscFree5(fluid->from, fluid->to, fluid->laid, fluid->lubricated, fluid->weight));
     for (int form = 0; form < FLUID_FORMS; form++) PetscCall(PetscFree2(fluid->area[form], fluid->force[form]));
     PetscCall(PetscFree4(fluid->wet, fluid->dry, fluid->pressing, fluid->pressing_form));
@@ -534,7 +547,7 @@ PetscErrorCode FluidDestroy(Fluids *fluids)
     PetscCall(PetscFree4(fluid->now.wet, fluid->now.p, fluid->now.form, fluid->now.react));
     PetscCall(PetscFree4(fluid->accepted.wet, fluid->accepted.p, fluid->accepted.form, fluid->accepted.react));
   }
-  PetscCall(PetscFree((*fluids)->fluid));
+  PetscCall(PetscFree2((*fluids)->fluid, (*fluids)->order));
   PetscCall(PetscFree(*fluids));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -605,7 +618,7 @@ PetscErrorCode FluidStart(Fluids fluids, const PetscReal *u)
 
   PetscFunctionBeginUser;
   for (int i = 0; fluids && i < fluids->n; i++) {
-    Fluid *fluid = &fluids->fluid[i];
+    Fluid *fluid = &fluids->fluid[fluids->order[i]];
 
     PetscCall(ChooseEnds(fluids, fluid));
     for (int k = 0; k < fluid->surface->graph.n; k++)
@@ -660,6 +673,7 @@ PetscErrorCode FluidBegin(Fluids fluids, const PetscReal *u, PetscReal t)
     Fluid *fluid = &fluids->fluid[i];
 
     PetscCall(StateCopy(fluid->surface->graph.n, &fluid->accepted, &fluid->now));
+    FindBearing(fluid);
     fluid->shut = fluid->drained = PETSC_FALSE;
     PetscCall(PetscArrayzero(fluid->laid, fluid->surface->graph.n));
     PetscCall(PetscArrayzero(fluid->lubricated, fluid->surface->graph.n));
@@ -687,14 +701,12 @@ PetscErrorCode FluidMove(Fluids fluids, const PetscReal *u, PetscReal t, PetscBo
 {
   PetscFunctionBeginUser;
   *moved = PETSC_FALSE;
-  for (int masters = 0; masters < 2; masters++)
-    for (int i = 0; fluids && i < fluids->n; i++) {
-      PetscBool one;
+  for (int i = 0; fluids && i < fluids->n; i++) {
+    PetscBool one;
 
-      if (FluidReacts(fluids, &fluids->fluid[i]) != (PetscBool)masters) continue;
-      PetscCall(MoveOne(fluids, &fluids->fluid[i], u, t, &one));
-      *moved = (PetscBool)(*moved || one);
-    }
+    PetscCall(MoveOne(fluids, &fluids->fluid[fluids->order[i]], u, t, &one));
+    *moved = (PetscBool)(*moved || one);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -764,16 +776,14 @@ PetscErrorCode FluidReaches(Fluids fluids, PetscReal t_0, PetscReal t, PetscReal
 PetscErrorCode FluidSettle(Fluids fluids, const PetscReal *u, PetscReal t)
 {
   PetscFunctionBeginUser;
-  for (int masters = 0; masters < 2; masters++)
-    for (int i = 0; fluids && i < fluids->n; i++) {
-      Fluid *fluid = &fluids->fluid[i];
+  for (int i = 0; fluids && i < fluids->n; i++) {
+    Fluid *fluid = &fluids->fluid[fluids->order[i]];
 
-      if (FluidReacts(fluids, fluid) != (PetscBool)masters) continue;
-      PetscCall(FluidMeasureReactions(fluids, fluid, u));
-      PetscCall(PetscArraycpy(fluid->laid, fluid->now.wet, fluid->surface->graph.n));
-      PetscCall(PetscArraycpy(fluid->lubricated, fluid->now.wet, fluid->surface->graph.n));
-      PetscCall(Apply(fluids, fluid, u, t));
-    }
+    PetscCall(FluidMeasureReactions(fluids, fluid, u));
+    PetscCall(PetscArraycpy(fluid->laid, fluid->bears, fluid->surface->graph.n));
+    PetscCall(PetscArraycpy(fluid->lubricated, fluid->now.wet, fluid->surface->graph.n));
+    PetscCall(Apply(fluids, fluid, u, t));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -791,7 +801,7 @@ PetscErrorCode FluidAccept(Fluids fluids, const PetscReal *u, PetscReal t)
 {
   PetscFunctionBeginUser;
   for (int i = 0; fluids && i < fluids->n; i++) {
-    Fluid      *fluid = &fluids->fluid[i];
+    Fluid      *fluid = &fluids->fluid[fluids->order[i]];
     FluidState *now   = &fluid->now;
 
     PetscCall(Measure(fluids, fluid, u, t));
@@ -826,7 +836,8 @@ PetscErrorCode FluidRestore(Fluids fluids, const PetscReal *u, PetscReal t)
     Fluid *fluid = &fluids->fluid[i];
 
     PetscCall(StateCopy(fluid->surface->graph.n, &fluid->accepted, &fluid->now));
-    PetscCall(PetscArraycpy(fluid->laid, fluid->now.wet, fluid->surface->graph.n));
+    FindBearing(fluid);
+    PetscCall(PetscArraycpy(fluid->laid, fluid->bears, fluid->surface->graph.n));
     PetscCall(PetscArraycpy(fluid->lubricated, fluid->now.wet, fluid->surface->graph.n));
     PetscCall(PetscArrayzero(fluid->ahead, fluid->surface->graph.n));
     PetscCall(Apply(fluids, fluid, u, t));

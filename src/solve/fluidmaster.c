@@ -12,14 +12,13 @@
    second-order triangles: neither loads nor reactions say anything of them. */
 #define FLUID_NO_AREA 0.01
 
-/* Finds the pairs whose masters are on the surface and deform, and has them keep their reactions. */
-PetscErrorCode FluidFindMasters(Fluids fluids, Fluid *fluid, PetscBool *found)
+/* Finds the pairs whose masters are on the surface and deform. */
+PetscErrorCode FluidFindMasters(Fluids fluids, Fluid *fluid)
 {
   const Contact contact = fluids->contact;
   char         *flag;
 
   PetscFunctionBeginUser;
-  *found = PETSC_FALSE;
   PetscCall(PetscMalloc1(fluid->surface->graph.n, &flag));
   for (int p = 0; p < ContactPairs(contact); p++) {
     const MeshGroup *master = ContactPairMaster(contact, p);
@@ -27,19 +26,10 @@ PetscErrorCode FluidFindMasters(Fluids fluids, Fluid *fluid, PetscBool *found)
 
     if (master) PetscCall(SurfaceGraphGroup(fluid->surface, master, flag, &n));
     fluid->reacts[p] = (PetscBool)(n > 0);
-    if (!n) continue;
-    *found = PETSC_TRUE;
+    fluid->master    = (PetscBool)(fluid->master || n > 0);
   }
   PetscCall(PetscFree(flag));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Says whether the surface is a master that deforms. */
-PetscBool FluidReacts(Fluids fluids, const Fluid *fluid)
-{
-  for (int p = 0; p < ContactPairs(fluids->contact); p++)
-    if (fluid->reacts[p]) return PETSC_TRUE;
-  return PETSC_FALSE;
 }
 
 /* Refuses a master on which the fluid should press, but does not. Says whether one of them deforms. */
@@ -106,7 +96,7 @@ PetscErrorCode FluidMeasureReactions(Fluids fluids, Fluid *fluid, const PetscRea
   PetscReal         *area, *press[2], *reaction[2];
 
   PetscFunctionBeginUser;
-  if (!FluidReacts(fluids, fluid)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!fluid->master) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc5(4 * fluids->mesh->n_nodes, &area, fluids->mesh->n_nodes, &press[0], fluids->mesh->n_nodes,
                          &press[1], fluids->mesh->n_nodes * dim, &reaction[0], fluids->mesh->n_nodes * dim,
                          &reaction[1]));
@@ -136,7 +126,8 @@ PetscReal FluidShare(const Fluid *fluid, int i)
 {
   const PetscReal P = fluid->pressure;
 
-  return P > 0 ? PetscMax(0, 1 - fluid->now.react[i] / P) + fluid->ahead[i] / P : 1;
+  if (!(P > 0)) return 1;
+  return (fluid->master && !fluid->bears[i] ? 0 : PetscMax(0, 1 - fluid->now.react[i] / P)) + fluid->ahead[i] / P;
 }
 
 /* Says whether the load has another part of it at a node where it lies. */

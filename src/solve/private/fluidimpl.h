@@ -1,4 +1,5 @@
-/* Fluids between surfaces: what fluid.c (places, load, fronts, leaks) and fluidmaster.c (masters that deform) share. */
+/* Fluids between surfaces: what fluid.c (places, load, fronts, leaks), fluidmaster.c (masters that deform) and
+   fluidfacing.c (where slaves keep fluids from masters) share. */
 #pragma once
 #include "search/surfacegraph.h"
 #include "solve/fluid.h"
@@ -29,12 +30,14 @@ typedef struct {
   PetscBool       *reacts;            /* pairs whose masters are on it and deform: their forces on it are reactions */
   PetscBool        form[FLUID_FORMS]; /* how they measure contact */
   PetscBool        friction;          /* one of the slave's pairs has friction */
+  PetscBool        master;            /* the surface is a master that deforms */
   PetscBool        deforms;           /* one of their masters deforms, or the surface is such a master */
   char            *from, *to;         /* n: the two ends */
   PetscBool        has_from, has_to;
   FluidState       now, accepted;
   char            *laid;       /* n: where the fluid's load lies: wet places and those ahead */
   char            *lubricated; /* n: places that were wet in this step: friction has what contact presses there */
+  char            *bears;      /* n: where the load belongs: wet places, and on masters those beside them */
   PetscBool        shut;       /* no place was wet any more in this step */
   PetscBool        drained;    /* its load was taken from places that were dry again in this step */
   PetscReal       *ahead;      /* n: pressure of the reactions that the slave's fluid carries where it is dry */
@@ -53,13 +56,14 @@ struct _n_Fluids {
   Scene   scene;
   Loads   loads;
   Contact contact;
-  int     n;
+  int     n, *order; /* fluids on slaves alone come first in it: those on masters look at them */
   Fluid  *fluid;
 };
 
-PetscErrorCode FluidFindMasters(Fluids, Fluid *, PetscBool *found);
+PetscErrorCode FluidFindMasters(Fluids, Fluid *);
 PetscErrorCode FluidCheckMasters(Fluids, Fluid *);
-PetscBool      FluidReacts(Fluids, const Fluid *);
+PetscErrorCode FluidFaceSlaves(Fluids, Fluid *, const PetscReal *u);
+PetscBool      FluidOpen(const Fluid *, PetscReal pressure);
 PetscErrorCode FluidMeasureReactions(Fluids, Fluid *, const PetscReal *u);
 PetscReal      FluidShare(const Fluid *, int i);
 PetscBool      FluidShareChanges(const Fluid *, int i);
