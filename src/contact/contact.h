@@ -207,7 +207,7 @@ PetscErrorCode ContactPairWindow(Contact, int pair, ContactWindow *);
 PetscErrorCode ContactPairPenalty(Contact, int pair, PetscReal *least, PetscReal *most);
 /* Fluid between the surfaces */
 PetscErrorCode ContactSetCarried(Contact, int pair, const PetscReal *carried, const PetscReal *dry);
-PetscErrorCode ContactReactions(Contact, int pair, PetscReal *sealing, PetscReal *ahead);
+PetscErrorCode ContactDryReactions(Contact, int pair, PetscReal *reaction);
 PetscErrorCode ContactTermForces(Contact, int pair, PetscReal touch, PetscReal *force);
 /* Control of the load step */
 PetscErrorCode ContactTouches(Contact, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t,

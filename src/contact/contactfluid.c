@@ -68,25 +68,9 @@ PetscErrorCode ContactTermForces(Contact contact, int p, PetscReal touch, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the reactions to pressures of the terms. */
-static PetscErrorCode AddReactions(const ContactPair *pair, const PetscReal *pressure, PetscReal *reaction)
-{
-  const int  dim = pair->mesh->dim;
-  PetscReal *point, *values, *own;
-
-  PetscFunctionBeginUser;
-  PetscCall(
-    PetscCalloc3(pair->lists->n_slaves, &point, pair->lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &own));
-  for (PetscInt c = 0; c < pair->n; c++) ContactTermPress(pair, c, pressure[c], point);
-  PetscCall(ContactPointForces(pair, point, values));
-  PetscCall(ContactPointReactions(pair, point, values, own));
-  for (PetscInt i = 0; i < pair->mesh->n_nodes * dim; i++) reaction[i] += own[i];
-  PetscCall(PetscFree3(point, values, own));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
-  ContactReactions - adds the normal forces on the nodes of a pair's master in the displacements of the last residual.
+  ContactDryReactions - adds the normal forces with which the terms where no fluid carries anything press on the nodes
+of a pair's master, in the displacements of the last residual.
 
   Collective
 
@@ -94,30 +78,30 @@ static PetscErrorCode AddReactions(const ContactPair *pair, const PetscReal *pre
 + contact - the contact
 - p       - number of the pair
 
-  Input/Output Parameters:
-+ sealing - sealing[n_nodes*dim] by node of the mesh, complete at owned nodes: of all that presses where contact
-            presses more than a fluid carries
-- ahead   - likewise: what fluids carry of it
+  Input/Output Parameter:
+. reaction - reaction[n_nodes*dim] by node of the mesh, complete at owned nodes
 @*/
-PetscErrorCode ContactReactions(Contact contact, int p, PetscReal *sealing, PetscReal *ahead)
+PetscErrorCode ContactDryReactions(Contact contact, int p, PetscReal *reaction)
 {
   const ContactPair *pair = &contact->pairs[p];
-  PetscReal         *all, *carried;
+  const int          dim  = pair->mesh->dim;
+  PetscReal         *point, *values, *own;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(pair->n, &all, pair->n, &carried));
+  PetscCall(
+    PetscCalloc3(pair->lists->n_slaves, &point, pair->lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &own));
   for (PetscInt c = 0; c < pair->n; c++) {
     LawValue  value;
     PetscReal area;
 
+    if (pair->carried && pair->carried[c] > 0) continue;
     ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
-    if (!(value.pressure > 0)) continue;
-    carried[c] = pair->carried ? pair->carried[c] : 0;
-    all[c]     = value.pressure + carried[c];
+    ContactTermPress(pair, c, value.pressure, point);
   }
-  PetscCall(AddReactions(pair, all, sealing));
-  PetscCall(AddReactions(pair, carried, ahead));
-  PetscCall(PetscFree2(all, carried));
+  PetscCall(ContactPointForces(pair, point, values));
+  PetscCall(ContactPointReactions(pair, point, values, own));
+  for (PetscInt i = 0; i < pair->mesh->n_nodes * dim; i++) reaction[i] += own[i];
+  PetscCall(PetscFree3(point, values, own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -236,8 +236,7 @@ static PetscBool ReachesEnd(const Fluid *fluid)
 /* Lays the fluid's load on wet places and on those to which the contact pressure rises from them. Contact presses more
    than the fluid there, so that this changes no force, and Newton's method itself finds how far the front moves up to
    the crest of the pressure. There it stays until the solution is found. Where masters deform, the load lies on wet
-   places alone, as both loads would have to be taken back from what lies ahead; on the master also where it brings what
-   the slave's fluid carries at places that are dry again. */
+   places alone, as it would have to be taken back from what lies ahead on both sides. */
 static PetscErrorCode LayAhead(Fluid *fluid)
 {
   const PassageGraph *graph = &fluid->surface->graph;
@@ -248,7 +247,7 @@ static PetscErrorCode LayAhead(Fluid *fluid)
   PetscCall(PetscMalloc1(graph->n, &stack));
   for (int i = 0; i < graph->n; i++) {
     if (now->wet[i]) stack[top++] = i;
-    fluid->laid[i] |= fluid->bears[i] || fluid->ahead[i] > 0;
+    fluid->laid[i] |= fluid->bears[i];
     fluid->lubricated[i] |= now->wet[i];
   }
   while (top && !fluid->deforms) {
@@ -460,7 +459,7 @@ static PetscErrorCode CreateOne(Fluids fluids, int load, Fluid *fluid)
   n = fluid->surface->graph.n;
   PetscCall(FindPairs(fluids, fluid));
   PetscCall(PetscCalloc5(n, &fluid->from, n, &fluid->to, n, &fluid->laid, n, &fluid->lubricated, n, &fluid->weight));
-  PetscCall(PetscCalloc3(n, &fluid->share, n, &fluid->ahead, n, &fluid->bears));
+  PetscCall(PetscCalloc2(n, &fluid->share, n, &fluid->bears));
   for (int form = 0; form < FLUID_FORMS; form++)
     PetscCall(PetscCalloc2(mesh->n_nodes, &fluid->area[form], mesh->n_nodes, &fluid->force[form]));
   PetscCall(PetscCalloc4(mesh->n_nodes, &fluid->wet, mesh->n_nodes, &fluid->dry, mesh->n_nodes, &fluid->pressing,
@@ -538,7 +537,7 @@ PetscErrorCode FluidDestroy(Fluids *fluids)
     Fluid *fluid = &(*fluids)->fluid[i];
 
     PetscCall(SurfaceGraphDestroy(&fluid->surface));
-    PetscCall(PetscFree3(fluid->share, fluid->ahead, fluid->bears));
+    PetscCall(PetscFree2(fluid->share, fluid->bears));
     PetscCall(PetscFree5(fluid->from, fluid->to, fluid->laid, fluid->lubricated, fluid->weight));
     for (int form = 0; form < FLUID_FORMS; form++) PetscCall(PetscFree2(fluid->area[form], fluid->force[form]));
     PetscCall(PetscFree4(fluid->wet, fluid->dry, fluid->pressing, fluid->pressing_form));
@@ -677,7 +676,6 @@ PetscErrorCode FluidBegin(Fluids fluids, const PetscReal *u, PetscReal t)
     fluid->shut = fluid->drained = PETSC_FALSE;
     PetscCall(PetscArrayzero(fluid->laid, fluid->surface->graph.n));
     PetscCall(PetscArrayzero(fluid->lubricated, fluid->surface->graph.n));
-    PetscCall(PetscArrayzero(fluid->ahead, fluid->surface->graph.n));
     PetscCall(LayAhead(fluid));
     PetscCall(Apply(fluids, fluid, u, t));
   }
@@ -839,7 +837,6 @@ PetscErrorCode FluidRestore(Fluids fluids, const PetscReal *u, PetscReal t)
     FindBearing(fluid);
     PetscCall(PetscArraycpy(fluid->laid, fluid->bears, fluid->surface->graph.n));
     PetscCall(PetscArraycpy(fluid->lubricated, fluid->now.wet, fluid->surface->graph.n));
-    PetscCall(PetscArrayzero(fluid->ahead, fluid->surface->graph.n));
     PetscCall(Apply(fluids, fluid, u, t));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

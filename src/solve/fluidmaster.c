@@ -88,21 +88,20 @@ static PetscErrorCode AreaVectors(Fluids fluids, const Fluid *fluid, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds what the reactions press at the nodes, in the displacements of the last residual. */
+/* Finds what the reactions of dry places press at the nodes, in the displacements of the last residual. */
 PetscErrorCode FluidMeasureReactions(Fluids fluids, Fluid *fluid, const PetscReal *u)
 {
   const SurfaceGraph s   = fluid->surface;
   const int          dim = fluids->mesh->dim;
-  PetscReal         *area, *press[2], *reaction[2];
+  PetscReal         *area, *press, *reaction;
 
   PetscFunctionBeginUser;
   if (!fluid->master) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc5(4 * fluids->mesh->n_nodes, &area, fluids->mesh->n_nodes, &press[0], fluids->mesh->n_nodes,
-                         &press[1], fluids->mesh->n_nodes * dim, &reaction[0], fluids->mesh->n_nodes * dim,
-                         &reaction[1]));
+  PetscCall(PetscCalloc3(4 * fluids->mesh->n_nodes, &area, fluids->mesh->n_nodes, &press, fluids->mesh->n_nodes * dim,
+                         &reaction));
   PetscCall(AreaVectors(fluids, fluid, fluids->scene->kinematics == KINEMATICS_SMALL ? NULL : u, area));
   for (int p = 0; p < ContactPairs(fluids->contact); p++)
-    if (fluid->reacts[p]) PetscCall(ContactReactions(fluids->contact, p, reaction[0], reaction[1]));
+    if (fluid->reacts[p]) PetscCall(ContactDryReactions(fluids->contact, p, reaction));
   for (int i = 0; i < s->graph.n; i++) {
     const PetscInt   node   = s->local[i];
     const PetscReal *vector = &area[4 * node];
@@ -111,23 +110,18 @@ PetscErrorCode FluidMeasureReactions(Fluids fluids, Fluid *fluid, const PetscRea
     if (!s->own[i]) continue;
     for (int d = 0; d < dim; d++) square += PetscSqr(vector[d]);
     if (square < PetscSqr(FLUID_NO_AREA * vector[3])) continue;
-    for (int k = 0; k < 2; k++)
-      for (int d = 0; d < dim; d++) press[k][node] -= reaction[k][node * dim + d] * vector[d] / square;
+    for (int d = 0; d < dim; d++) press[node] -= reaction[node * dim + d] * vector[d] / square;
   }
-  PetscCall(SurfaceGraphGather(s, press[0], fluid->now.react));
-  PetscCall(SurfaceGraphGather(s, press[1], fluid->ahead));
-  PetscCall(PetscFree5(area, press[0], press[1], reaction[0], reaction[1]));
+  PetscCall(SurfaceGraphGather(s, press, fluid->now.react));
+  PetscCall(PetscFree3(area, press, reaction));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The part of its load that the fluid has at a node of the surface: what the reactions that seal leave of its pressure,
-   and what contact does not bring there because the slave's fluid carries it. */
+/* The part of its load that the fluid has at a node of the surface where it lies: what the reactions of dry places
+   leave of its pressure. */
 PetscReal FluidShare(const Fluid *fluid, int i)
 {
-  const PetscReal P = fluid->pressure;
-
-  if (!(P > 0)) return 1;
-  return (fluid->master && !fluid->bears[i] ? 0 : PetscMax(0, 1 - fluid->now.react[i] / P)) + fluid->ahead[i] / P;
+  return fluid->pressure > 0 ? PetscMax(0, 1 - fluid->now.react[i] / fluid->pressure) : 1;
 }
 
 /* Says whether the load has another part of it at a node where it lies. */

@@ -14,7 +14,7 @@ enum { FLUID_NODES, FLUID_FACES, FLUID_FORMS };
 typedef struct {
   char      *wet, *form;             /* n: by node of the graph; form: of the pair that presses most */
   PetscReal *p;                      /* n: what contact alone presses; 0 where it presses less than the fluid there */
-  PetscReal *react;                  /* n: what seals: pressure of the reactions of masters; 0 without any */
+  PetscReal *react;                  /* n: pressure of the reactions of dry places; 0 on slaves alone */
   PetscInt   n_sealed;               /* accepted states without a leak, FLUID_STATES at most */
   PetscReal  sealed_p[FLUID_STATES]; /* pressure of the fluid in them, the last one first */
   PetscReal  barrier[FLUID_STATES];  /* and the pressure with which it would have leaked */
@@ -40,7 +40,6 @@ typedef struct {
   char            *bears;      /* n: where the load belongs: wet places, and on masters those beside them */
   PetscBool        shut;       /* no place was wet any more in this step */
   PetscBool        drained;    /* its load was taken from places that were dry again in this step */
-  PetscReal       *ahead;      /* n: pressure of the reactions that the slave's fluid carries where it is dry */
   PetscReal       *area[FLUID_FORMS];                    /* n_nodes: present area of the surface around each node */
   PetscReal       *wet, *dry, *pressing, *pressing_form; /* n_nodes: of the state, by local node; dry: laid alone */
   PetscReal       *nodes, *points;                       /* shares for the load, see LoadsSetShares() */
