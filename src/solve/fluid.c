@@ -5,9 +5,6 @@
 #include "kernels/elementkernel.h"
 #include "search/facequadrature.h"
 
-/* Pressures that differ by less than this part of the fluid's are the same. It is above what the tolerance of the
-   solver leaves, and far below what matters. */
-#define FLUID_SAME 1e-6
 /* A step in which the fluid reaches the other end is repeated with shorter ones, until its length is this part of t,
    and the pressure changes by this part in it. The leak pressure is interpolated, and better than this. */
 #define FLUID_LEAK_STEP 0.01
@@ -17,8 +14,6 @@
 #define FLUID_AT_POINT 1e-6
 /* Surfaces touch, with or without pressure, where they are not farther apart than this part of the model's size. */
 #define FLUID_OPEN 1e-9
-/* Formulas are tried at the ends of so many intervals of t for negative pressures. */
-enum { FLUID_SAMPLES = 16 };
 
 /* Adds the areas around the nodes of a face. */
 static void FaceAreas(Fluids fluids, int form, int finer, ElementType type, const PetscReal *x, PetscReal *area)

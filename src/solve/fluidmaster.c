@@ -32,30 +32,64 @@ PetscErrorCode FluidFindMasters(Fluids fluids, Fluid *fluid)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Refuses a master on which the fluid should press, but does not. Says whether one of them deforms. */
+/* Refuses the pressure of a fluid on a slave that is not that of the same fluid on the master. */
+static PetscErrorCode CheckSame(Fluids fluids, const Fluid *slave, const Fluid *master, const char *pair)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k <= FLUID_SAMPLES; k++) {
+    const PetscReal t = (PetscReal)k / FLUID_SAMPLES;
+    PetscReal       one, other;
+
+    PetscCall(LoadsPressure(fluids->loads, slave->number, t, &one));
+    PetscCall(LoadsPressure(fluids->loads, master->number, t, &other));
+    if (PetscAbsReal(one - other) <= FLUID_SAME * PetscMax(one, other)) continue;
+    PetscCall(RefuseInput(fluids->mesh->comm,
+                          "%s: is %g at t = %g, but on '%s', on the other side of contact '%s', it is %g; allowed with "
+                          "where: open: the same pressure and history on both sides",
+                          SceneWhere(fluids->scene, master->load->path, "pressure"), (double)other, (double)t,
+                          slave->load->region, pair, (double)one));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses a fluid that presses on one side of a contact whose sides both deform. */
+static PetscErrorCode CheckSides(Fluids fluids, const Fluid *fluid, int p)
+{
+  const SceneContact *scene = ContactPairScene(fluids->contact, p);
+  PetscBool           slave = PETSC_FALSE, master = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < fluids->n; i++) {
+    const Fluid *other = &fluids->fluid[i];
+
+    slave  = (PetscBool)(slave || other->pair[p]);
+    master = (PetscBool)(master || other->reacts[p]);
+    if (fluid->pair[p] && other->reacts[p]) PetscCall(CheckSame(fluids, fluid, other, scene->name));
+  }
+  if (slave && master) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(
+    RefuseInput(fluids->mesh->comm,
+                "%s: the fluid presses on '%s' alone, but the %s '%s' of contact '%s' deforms; allowed: another "
+                "load with where: open and this pressure on '%s', or on a surface that has it",
+                SceneWhere(fluids->scene, fluid->load->path, "where"), fluid->load->region, slave ? "master" : "slave",
+                slave ? scene->master : scene->slave, scene->name, slave ? scene->master : scene->slave));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses what the other sides of a fluid's contacts cannot serve. Says whether one of them deforms. */
 PetscErrorCode FluidCheckMasters(Fluids fluids, Fluid *fluid)
 {
   PetscFunctionBeginUser;
   for (int p = 0; p < ContactPairs(fluids->contact); p++) {
-    const SceneContact *scene  = ContactPairScene(fluids->contact, p);
-    PetscBool           served = PETSC_FALSE;
-
-    fluid->deforms = (PetscBool)(fluid->deforms || fluid->reacts[p]);
-    if (!fluid->pair[p]) continue;
-    if (ContactPairToolMoves(fluids->contact, p))
+    if (fluid->pair[p] && ContactPairToolMoves(fluids->contact, p))
       PetscCall(RefuseInput(fluids->mesh->comm,
                             "%s: the master of contact '%s' is a tool that forces move, and the fluid on '%s' would "
                             "press on it too; allowed with where: open: a tool whose motion is given",
-                            SceneWhere(fluids->scene, fluid->load->path, "where"), scene->name, fluid->load->region));
-    for (int i = 0; i < fluids->n; i++) served = (PetscBool)(served || fluids->fluid[i].reacts[p]);
-    if (ContactPairMaster(fluids->contact, p) && !served)
-      PetscCall(
-        RefuseInput(fluids->mesh->comm,
-                    "%s: the fluid presses on '%s' alone, but the master '%s' of contact '%s' deforms; allowed: "
-                    "another load with where: open and this pressure on '%s', or on a surface that has it",
-                    SceneWhere(fluids->scene, fluid->load->path, "where"), fluid->load->region, scene->master,
-                    scene->name, scene->master));
-    if (ContactPairMaster(fluids->contact, p)) fluid->deforms = PETSC_TRUE;
+                            SceneWhere(fluids->scene, fluid->load->path, "where"),
+                            ContactPairScene(fluids->contact, p)->name, fluid->load->region));
+    if (!fluid->reacts[p] && !(fluid->pair[p] && ContactPairMaster(fluids->contact, p))) continue;
+    fluid->deforms = PETSC_TRUE;
+    PetscCall(CheckSides(fluids, fluid, p));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

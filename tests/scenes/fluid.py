@@ -184,6 +184,10 @@ if args.cases == "all":
             "contact.0.penalty={augment: true, g_max: 1e-6, unit: length}")
     refused("a master that deforms without the fluid", "the fluid presses on 'bottom' alone",
             "loads=[{surface: bottom, pressure: 1, where: open, from: left}]", "probes=[]", scene=JOINT)
+    refused("a slave without the fluid", "but the slave 'bottom' of contact 'joint' deforms",
+            "loads=[{surface: ground, pressure: 1, where: open, from: bank}]", "probes=[]", scene=JOINT)
+    refused("another pressure on the master", "the same pressure and history on both sides", "loads.2.pressure=0.7*t",
+            scene=JOINT)
     refused("a tool that forces move", "is a tool that forces move", PUSHED)
     refused("suction in a formula", "allowed with where: open: 0 or more", "loads.1.pressure=-t")
 check.finish()

@@ -4,6 +4,11 @@
 #include "search/surfacegraph.h"
 #include "solve/fluid.h"
 
+/* Pressures that differ by less than this part of the fluid's are the same. It is above what the tolerance of the
+   solver leaves, and far below what matters. */
+#define FLUID_SAME 1e-6
+/* Formulas are tried at the ends of so many intervals of t. */
+enum { FLUID_SAMPLES = 16 };
 /* The last accepted states before a leak, from which its pressure is extrapolated */
 enum { FLUID_STATES = 2 };
 
