@@ -84,6 +84,26 @@ def joint(name, face, error, *overrides):
                    (0 if args.ranks == 1 else 1e-7) * 10)
 
 
+def retreat(name, *overrides):
+    """The pressure rises and falls: the lower block still bears all of the load, within half a face, and the fluid
+    retreats to where it came from."""
+    pressure = "pressure=0.8*(1-abs(2*t-1))"
+    rows = run(args, JOINT, out=name, overrides=(
+        f"loads.1.{pressure}", f"loads.2.{pressure}", "stepping.dt_max=0.04", *overrides)).steps()
+    for row in rows:
+        P = 0.8 * (1 - abs(2 * row["t"] - 1))
+        check.near(f"{name}: base at {row['t']:.3g}", row["base"], 10, P * 0.25 + 1e-4)
+    check.holds(f"{name}: it has come in and gone", max(row["lower"] for row in rows) > 0.6 and rows[-1]["lower"] == 0)
+
+
+def faces_of_all_sizes(name, n, error, *overrides):
+    """A ground with coarser or finer faces than the block that is the slave."""
+    row = run(args, JOINT, out=name, overrides=(f"mesh.parameters.lower={n}", *overrides)).steps()[-1]
+    check.near(f"{name}: base", row["base"], 10, error)
+    check.near(f"{name}: as far in", row["lower"], row["upper"], 0.16)
+    check.holds(f"{name}: it has come in", row["lower"] > 0.5)
+
+
 def open_and_closed():
     """Open: what the plain pressure does. Closed: nothing."""
     held = ("mesh.parameters={n: 8, s: 0.1}", "kinematics=finite", "bodies.0.material={law: svk, E: 100, nu: 0.3}",
@@ -151,6 +171,7 @@ def refused(what, message, *overrides, scene=SCENE):
 front("flat", 0.003, "mesh.parameters.n=40")
 leak("wedge", 0.002, "mesh.parameters.n=40")
 joint("joint", 0.5, 1e-6, "contact.0.formulation=node_to_surface")
+retreat("retreat")
 dragged("dragged", 0.25, DRAWN, "mesh.parameters.n=40")
 if args.cases == "all":
     front("flat_second_order", 0.001, "mesh.order=2")
@@ -169,6 +190,11 @@ if args.cases == "all":
     joint("joint_faces_second_order", 0.5, 1e-6, "mesh.order=2")
     joint("joint_finite", 0.5, 1e-3, "kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk")
     joint("joint_friction", 0.5, 1e-6, "contact.0.friction={mu: 0.3}")
+    retreat("retreat_nodes_friction", "contact.0.formulation=node_to_surface", "contact.0.friction={mu: 0.3}")
+    faces_of_all_sizes("fine_ground", 99, 0.1)
+    faces_of_all_sizes("fine_ground_nodes", 99, 0.2, "contact.0.formulation=node_to_surface")
+    faces_of_all_sizes("coarse_ground", 6, 0.8 * 5 / 6)
+    faces_of_all_sizes("coarse_ground_nodes", 6, 0.8 * 5 / 6, "contact.0.formulation=node_to_surface")
     joint("joint_solid", 0.83, 1e-6, *SOLID_JOINT)
     open_and_closed()
     seal("seal", 2.616, 1e-3)

@@ -1,5 +1,5 @@
 // Two blocks, one on the other, whose meshes do not match at the joint.
-DefineConstant[ n = {20, Name "faces of the upper side of the joint"}, solid = {0, Name "1: in space"} ];
+DefineConstant[ n = {20, Name "faces of the upper side of the joint"}, lower = {n + 2, Name "faces of its lower side"}, solid = {0, Name "1: in space"} ];
 gap = solid * 1e-4; // in space nodes of both blocks at one place would be one to gmsh
 Point(1) = {0, 0, 0}; Point(2) = {10, 0, 0}; Point(3) = {10, 4, 0}; Point(4) = {0, 4, 0};
 Point(11) = {0, -4, 0}; Point(12) = {10, -4, 0}; Point(13) = {10, -gap, 0}; Point(14) = {0, -gap, 0};
@@ -8,7 +8,7 @@ Line(11) = {11, 12}; Line(12) = {12, 13}; Line(13) = {13, 14}; Line(14) = {14, 1
 Curve Loop(1) = {1 : 4}; Plane Surface(1) = {1};
 Curve Loop(2) = {11 : 14}; Plane Surface(2) = {2};
 Transfinite Curve {1, 3} = n + 1;
-Transfinite Curve {11, 13} = n + 3;
+Transfinite Curve {11, 13} = lower + 1;
 Transfinite Curve {2, 4, 12, 14} = 5;
 Transfinite Surface {1, 2};
 Recombine Surface {1, 2};
