@@ -177,13 +177,6 @@ static PetscErrorCode Measure(Fluids fluids, Fluid *fluid, const PetscReal *u, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says whether a fluid comes in where contact presses so much: less than the fluid. One without pressure is where the
-   surfaces are apart. */
-PetscBool FluidOpen(const Fluid *fluid, PetscReal pressure)
-{
-  return (PetscBool)(pressure == 0 || pressure < (1 - FLUID_SAME) * fluid->pressure);
-}
-
 /* Finds where the load belongs: on wet places. On a master it lies beside them and at the end from which the fluid
    comes too, as the front crosses faces there, of which reactions bear a part. */
 static void FindBearing(Fluid *fluid)

@@ -7,6 +7,13 @@
    middle, this part of an edge away. */
 #define FLUID_REACH 0.7072
 
+/* Says whether a fluid comes in where contact presses so much: less than the fluid. One without pressure is where the
+   surfaces are apart. */
+PetscBool FluidOpen(const Fluid *fluid, PetscReal pressure)
+{
+  return (PetscBool)(pressure == 0 || pressure < (1 - FLUID_SAME) * fluid->pressure);
+}
+
 /* A search for the nearest node. */
 typedef struct {
   const PetscReal *x, *point; /* places of all nodes; the point */
