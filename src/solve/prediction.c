@@ -234,8 +234,36 @@ PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After a prediction with contact: sets model->x to the accepted state if the prediction failed, has inverted an
-   element, or has not found its contact and is farther from balance than that state. Close to a limit of the stability
+/*@
+  ModelFliesAway - says whether displacements are farther from the accepted state than the model is large, and than the
+  step is expected to move anything.
+
+  Collective
+
+  Input Parameters:
++ model - the model
+. u     - local displacements u[n_nodes*dim] (length)
+- t     - their load parameter
+
+  Output Parameter:
+. away - the same on all ranks; also where a displacement is not a number
+
+  Note:
+  A body that contact does not hold any more flies there. Nothing turns it back, and contact lists for such a motion have
+  every face near every other.
+@*/
+PetscErrorCode ModelFliesAway(Model model, const PetscReal *u, PetscReal t, PetscBool *away)
+{
+  PetscReal motion;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProblemMotion(model->problem, model->work->accepted_u, model->work->accepted_t, u, t, &motion));
+  *away = (PetscBool) !(motion <= PetscMax(model->mesh->size, model->problem->expected));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After a prediction with contact: sets model->x to the accepted state if the prediction failed, flies away, has
+   inverted an element, or has not found its contact and is farther from balance than that state. Close to a limit of the stability
    that contact gives a linear step goes far, however little the load changes, and its pieces lead away from every
    equilibrium. A tool that leaves by much more than bodies spring back drags them along where the prediction holds
    contact. A prediction that lists do not reach is judged with new ones: in the accepted state what is prescribed moves
@@ -244,10 +272,12 @@ static PetscErrorCode ModelStayBehind(Model model, SolveReport *report)
 {
   const Problem problem = model->problem;
   PetscReal     here = PETSC_INFINITY, there = PETSC_INFINITY;
-  PetscBool     ok = PETSC_FALSE, stands;
+  PetscBool     ok = PETSC_FALSE, stands, away = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  if (report->result == SOLVE_CONVERGED) {
+  PetscCall(ProblemSetTrial(problem, model->x, model->t));
+  PetscCall(ModelFliesAway(model, problem->trial, model->t, &away));
+  if (report->result == SOLVE_CONVERGED && !away) {
     if (model->work->unsettled) PetscCall(ModelResidualAt(model, model->work->accepted_x, &stands, &here));
     PetscCall(ModelResidualAt(model, model->x, &ok, &there));
     if (ok && here < there && there == PETSC_INFINITY) {
@@ -269,13 +299,14 @@ static PetscErrorCode ModelStayBehind(Model model, SolveReport *report)
 
 /* Repeats the prediction x in pieces, from the accepted state, until the rest of the way is short. all: the contact
    that the first linear step counted on is softened, too. strict: ends where a piece is followed by a longer way than
-   before, or fails; then *settled is false. *pieces: those that were made. */
+   before, or fails; then *settled is false. So it is where a piece ends far away. *pieces: those that were made. */
 static PetscErrorCode ModelPredictPieces(Model model, Vec x, PetscBool all, PetscBool strict, PetscInt *pieces,
                                          PetscBool *settled, SolveReport *report)
 {
   const StressReference reference = {model->work->solved, 0, 0};
   const PetscInt        n         = model->mesh->n_nodes * model->mesh->dim;
   PetscReal             t = model->work->accepted_t, before = PETSC_MAX_REAL, turn, part, *u, *v;
+  PetscBool             away = PETSC_FALSE;
   Vec                   from;
 
   PetscFunctionBeginUser;
@@ -286,7 +317,7 @@ static PetscErrorCode ModelPredictPieces(Model model, Vec x, PetscBool all, Pets
   PetscCall(PetscArraycpy(u, model->work->accepted_u, n));
   if (model->contact) PetscCall(ContactSoften(model->contact, PREDICTION_SOFT, all));
   *settled = PETSC_FALSE;
-  for (*pieces = 0; *pieces < PREDICTION_PIECES && report->result == SOLVE_CONVERGED; ++*pieces) {
+  for (*pieces = 0; *pieces < PREDICTION_PIECES && report->result == SOLVE_CONVERGED && !away; ++*pieces) {
     PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
     PetscCall(ModelLargestTurn(model, u, v, &turn));
     *settled = (PetscBool)(turn <= MODEL_FARTHEST);
@@ -297,6 +328,8 @@ static PetscErrorCode ModelPredictPieces(Model model, Vec x, PetscBool all, Pets
     PetscCall(VecAXPBY(model->x, 1 - part, part, from));
     PetscCall(VecCopy(model->x, from));
     PetscCall(ProblemDisplacements(model->problem, from, t, u));
+    PetscCall(ModelFliesAway(model, u, t, &away));
+    if (away) continue;
     if (model->contact) PetscCall(ModelReachOn(model, u, t, report));
     PetscCall(ModelStepLoads(model, u, reference.u ? &reference : NULL, t, PETSC_FALSE, PETSC_FALSE, report));
   }
@@ -322,7 +355,7 @@ static PetscErrorCode ModelPredictStrictly(Model model, Vec x, PetscReal *far, P
   PetscCall(ModelLargestTurn(model, model->work->accepted_u, v, &turn));
   PetscCall(PetscFree(v));
   *far = turn / MODEL_FARTHEST;
-  for (int keep = 0; keep <= 1 && !*settled; keep++) {
+  for (int keep = 0; keep <= (ContactHasFriction(model->contact) ? 0 : 1) && !*settled; keep++) {
     report->result       = result;
     model->work->softens = (PetscBool)!keep;
     PetscCall(ModelPredictPieces(model, x, !keep, PETSC_TRUE, pieces, settled, report));
@@ -353,7 +386,7 @@ static PetscErrorCode ModelPredictStrictly(Model model, Vec x, PetscReal *far, P
 @*/
 PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 {
-  const PetscBool   keeps   = (PetscBool)(model->contact && !ContactHasFriction(model->contact));
+  const PetscBool   keeps   = (PetscBool)(model->contact != NULL);
   const SolveResult result  = report->result;
   PetscBool         settled = PETSC_FALSE;
   PetscInt          pieces  = 0;
