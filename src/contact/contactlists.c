@@ -540,6 +540,7 @@ typedef struct {
   const PetscReal *gaps, *factor;       /* of the points */
   PetscReal        depth, pressure;     /* largest ones of the pair */
   PetscReal        drift, factor_drift; /* see TermAgrees() */
+  PetscReal        area_drift;          /* part of a term's area by which factors that lag may change it */
   PetscReal        t;
 } Freshly;
 
@@ -571,7 +572,7 @@ static PetscBool TermFactorsLag(const ContactPair *pair, PetscInt c, const Fresh
     moment += weight * pair->factor[q] * fresh->gaps[q];
     shifted += more * fresh->gaps[q];
   }
-  if (share * change > CONTACT_OFFSET_AGREES * whole) return PETSC_FALSE;
+  if (share * change > fresh->area_drift * whole) return PETSC_FALSE;
   return (PetscBool)(PetscAbsReal(shifted * area - added * moment) <= fresh->drift * area * (area + added));
 }
 
@@ -638,9 +639,10 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   PetscReal     *gaps, *factor;
   Freshly        fresh = {.lists        = pair->next,
                           .alike        = PointsAlike(pair->lists, pair->next),
-                          .lags         = (PetscBool)(passing && pair->formulation.lags && !pair->friction),
+                          .lags         = (PetscBool)(passing && pair->formulation.lags),
                           .factor       = pair->next_factor,
                           .factor_drift = CONTACT_FACTOR_AGREES,
+                          .area_drift   = lag * CONTACT_OFFSET_AGREES,
                           .t            = t};
 
   PetscFunctionBeginUser;

@@ -342,11 +342,11 @@ static PetscErrorCode ModelSolvesLoosely(Model model, PetscBool *loosely)
 
 /* Solves with frozen contact lists until the lists hold at the solution. Where they will most likely change after the
    first one, solutions are found loosely, until lists hold at one of them; from there the solve goes on to the
-   tolerance. An iterate that flies away has no lists. */
+   tolerance. */
 static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
   ModelWork *work = model->work;
-  PetscBool  hold = PETSC_FALSE, lost = PETSC_FALSE, away = PETSC_FALSE;
+  PetscBool  hold = PETSC_FALSE, lost = PETSC_FALSE;
   PetscInt   times = 0, first = 0, before;
   PetscReal  lag = 1;
 
@@ -361,9 +361,6 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     work->begun = 0;
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     work->renewed += work->left;
-    if (work->left) PetscCall(ModelFliesAway(model, model->problem->trial, model->t, &away));
-    if (away) report->result = SOLVE_LISTS;
-    if (away) break;
     if (!first && !work->left) first = ModelLags(model) && work->nearly >= 0 ? before + work->nearly : report->newton;
     PetscCall(ModelLag(model, times, &lag));
     if (work->left && work->shift.on)

@@ -234,40 +234,25 @@ PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ModelFliesAway - says whether displacements are farther from the accepted state than the model is large, and than the
-  step is expected to move anything.
-
-  Collective
-
-  Input Parameters:
-+ model - the model
-. u     - local displacements u[n_nodes*dim] (length)
-- t     - their load parameter
-
-  Output Parameter:
-. away - the same on all ranks; also where a displacement is not a number
-
-  Note:
-  A body that contact does not hold any more flies there. Nothing turns it back, and contact lists for such a motion have
-  every face near every other.
-@*/
-PetscErrorCode ModelFliesAway(Model model, const PetscReal *u, PetscReal t, PetscBool *away)
+/* Says whether displacements u at t are farther from the accepted state than the model is large, and than the step is
+   expected to move anything. A body that the softened contact of a prediction does not hold flies there.
+   Nothing turns it back, and contact lists for such a motion have every face near every other. */
+static PetscErrorCode ModelFliesAway(Model model, const PetscReal *u, PetscReal t, PetscBool *away)
 {
   PetscReal motion;
 
   PetscFunctionBeginUser;
   PetscCall(ProblemMotion(model->problem, model->work->accepted_u, model->work->accepted_t, u, t, &motion));
-  *away = (PetscBool) !(motion <= PetscMax(model->mesh->size, model->problem->expected));
+  *away = (PetscBool)(motion > PetscMax(model->mesh->size, model->problem->expected));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* After a prediction with contact: sets model->x to the accepted state if the prediction failed, flies away, has
-   inverted an element, or has not found its contact and is farther from balance than that state. Close to a limit of the stability
-   that contact gives a linear step goes far, however little the load changes, and its pieces lead away from every
-   equilibrium. A tool that leaves by much more than bodies spring back drags them along where the prediction holds
-   contact. A prediction that lists do not reach is judged with new ones: in the accepted state what is prescribed moves
-   alone, and stiff cells beside it are far from balance. */
+   inverted an element, or has not found its contact and is farther from balance than that state. Close to a limit of
+   the stability that contact gives a linear step goes far, however little the load changes, and its pieces lead away
+   from every equilibrium. A tool that leaves by much more than bodies spring back drags them along where the prediction
+   holds contact. A prediction that lists do not reach is judged with new ones: in the accepted state what is prescribed
+   moves alone, and stiff cells beside it are far from balance. */
 static PetscErrorCode ModelStayBehind(Model model, SolveReport *report)
 {
   const Problem problem = model->problem;
@@ -341,12 +326,13 @@ static PetscErrorCode ModelPredictPieces(Model model, Vec x, PetscBool all, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Repeats the prediction x in pieces, without friction: first with all contact softened, then with the new one alone.
+/* Repeats the prediction x in pieces: first with all contact softened, then, without friction, with the new one alone.
    Each way ends where it grows longer. *far: turn of cells in x, over the largest one. */
 static PetscErrorCode ModelPredictStrictly(Model model, Vec x, PetscReal *far, PetscInt *pieces, PetscBool *settled,
                                            SolveReport *report)
 {
   const SolveResult result = report->result;
+  const int         ways   = ContactHasFriction(model->contact) ? 1 : 2;
   PetscReal         turn, *v;
 
   PetscFunctionBeginUser;
@@ -355,11 +341,11 @@ static PetscErrorCode ModelPredictStrictly(Model model, Vec x, PetscReal *far, P
   PetscCall(ModelLargestTurn(model, model->work->accepted_u, v, &turn));
   PetscCall(PetscFree(v));
   *far = turn / MODEL_FARTHEST;
-  for (int keep = 0; keep <= (ContactHasFriction(model->contact) ? 0 : 1) && !*settled; keep++) {
+  for (int keep = 0; keep < ways && !*settled; keep++) {
     report->result       = result;
     model->work->softens = (PetscBool)!keep;
     PetscCall(ModelPredictPieces(model, x, !keep, PETSC_TRUE, pieces, settled, report));
-    if (!*pieces) model->work->softens = PETSC_FALSE;
+    if (!*pieces) model->work->softens = (PetscBool)(ways == 1);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -381,12 +367,14 @@ static PetscErrorCode ModelPredictStrictly(Model model, Vec x, PetscReal *far, P
   At first all contact is softened. What is pressed together may then spring back, so that the pieces lead away from
   every equilibrium: a way that is longer after a piece than before it says so. Then the pieces are made anew, and
   contact that the first linear step counted on keeps its penalty. Not so with friction: a linear step takes what sticks
-  along, although most of it will slip. If either way grows longer, the step is too long: it is not begun where a
-  shorter one may be tried. Else the first way is gone to its end, with the lists that it began with.
+  along, although most of it will slip. If all ways grow longer, the step is too long: it is not begun where a shorter
+  one may be tried. Else the first way is gone to its end, with the lists that it began with. An O-ring in space that
+  friction holds would be sent 6e6 mm away by the first 2 MPa of a fluid, and lists on the way took minutes.
 @*/
 PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 {
-  const PetscBool   keeps   = (PetscBool)(model->contact != NULL);
+  const PetscBool   keeps   = (PetscBool)(model->contact && !ContactHasFriction(model->contact));
+  const PetscBool   strict  = (PetscBool)(keeps || (model->contact && model->shortens));
   const SolveResult result  = report->result;
   PetscBool         settled = PETSC_FALSE;
   PetscInt          pieces  = 0;
@@ -397,13 +385,13 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
   if (model->scene->kinematics == KINEMATICS_SMALL || model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(model->x, &x));
   PetscCall(VecCopy(model->x, x));
-  if (keeps) PetscCall(ModelPredictStrictly(model, x, &report->far, &pieces, &settled, report));
-  if (keeps && !settled && model->shortens)
+  if (strict) PetscCall(ModelPredictStrictly(model, x, &report->far, &pieces, &settled, report));
+  if (strict && !settled && model->shortens)
     report->result = SOLVE_FAR;
   else if (!settled) {
     report->result       = result;
     model->work->softens = PETSC_TRUE;
-    if (keeps) PetscCall(ModelReturnLists(model));
+    if (strict) PetscCall(ModelReturnLists(model));
     PetscCall(ModelPredictPieces(model, x, PETSC_TRUE, PETSC_FALSE, &pieces, &settled, report));
   }
   if ((pieces || model->work->unsettled) && model->contact && report->result != SOLVE_FAR)

@@ -232,7 +232,6 @@ PetscErrorCode ModelNewton(Model, SolveReport *);
 PetscErrorCode ModelExtrapolate(Model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth);
 PetscErrorCode ModelPredict(Model, SolveReport *);
 PetscErrorCode ModelPredictFar(Model, SolveReport *);
-PetscErrorCode ModelFliesAway(Model, const PetscReal *u, PetscReal t, PetscBool *away);
 PetscErrorCode ModelFollowLists(Model, SolveReport *);
 /* dampedsolve.c */
 typedef PetscErrorCode (*ModelStage)(Model, SolveReport *);
