@@ -757,7 +757,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
 . next           - motion that the fresh lists must be good for, as ContactGather() may take them for the next step
                    (length)
 . lag            - part of the usual drift by which offsets may lag (no unit)
-- passing        - without friction area factors and fits may lag by as much, because no answers are asked for at t
+- passing        - area factors and fits may lag by as much, because no answers are asked for at t
 
   Output Parameter:
 . hold - the same on all ranks
