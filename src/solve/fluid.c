@@ -173,7 +173,7 @@ static PetscErrorCode Measure(Fluids fluids, Fluid *fluid, const PetscReal *u, P
   for (int i = 0; i < s->graph.n; i++)
     if (fluid->laid[i]) fluid->now.p[i] = fluid->now.p[i] > same ? fluid->now.p[i] + fluid->pressure : 0;
   PetscCall(FluidMeasureReactions(fluids, fluid, u));
-  PetscCall(FluidFaceSlaves(fluids, fluid, fluids->scene->kinematics == KINEMATICS_SMALL ? NULL : u));
+  PetscCall(FluidFaceSlaves(fluids, fluid, u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -748,9 +748,18 @@ PetscErrorCode FluidReaches(Fluids fluids, PetscReal t_0, PetscReal t, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Lays the load on wet places alone, as far as they bear it. */
+static PetscErrorCode ApplyWet(Fluids fluids, Fluid *fluid, const PetscReal *u, PetscReal t)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(fluid->laid, fluid->bears, fluid->surface->graph.n));
+  PetscCall(PetscArraycpy(fluid->lubricated, fluid->now.wet, fluid->surface->graph.n));
+  PetscCall(Apply(fluids, fluid, u, t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  FluidSettle - ends a solve: the fluids' loads lie where they are wet alone, so that contact shows what it presses on
-  dry surfaces. No force changes.
+  FluidSettle - lays the loads of a converged step on wet places alone, so that contact shows all that it presses.
 
   Collective
 
@@ -766,9 +775,7 @@ PetscErrorCode FluidSettle(Fluids fluids, const PetscReal *u, PetscReal t)
     Fluid *fluid = &fluids->fluid[fluids->order[i]];
 
     PetscCall(FluidMeasureReactions(fluids, fluid, u));
-    PetscCall(PetscArraycpy(fluid->laid, fluid->bears, fluid->surface->graph.n));
-    PetscCall(PetscArraycpy(fluid->lubricated, fluid->now.wet, fluid->surface->graph.n));
-    PetscCall(Apply(fluids, fluid, u, t));
+    PetscCall(ApplyWet(fluids, fluid, u, t));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -823,9 +830,7 @@ PetscErrorCode FluidRestore(Fluids fluids, const PetscReal *u, PetscReal t)
 
     PetscCall(StateCopy(fluid->surface->graph.n, &fluid->accepted, &fluid->now));
     FindBearing(fluid);
-    PetscCall(PetscArraycpy(fluid->laid, fluid->bears, fluid->surface->graph.n));
-    PetscCall(PetscArraycpy(fluid->lubricated, fluid->now.wet, fluid->surface->graph.n));
-    PetscCall(Apply(fluids, fluid, u, t));
+    PetscCall(ApplyWet(fluids, fluid, u, t));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -33,16 +33,17 @@ static void VisitNode(void *context, int index, double *bound)
   look->nearest = index;
 }
 
-/* Finds the places of all nodes of a surface, x[3*n], and how far they reach. u NULL: those of the reference. */
+/* Finds the places of all nodes of a surface, x[3*n], and how far they reach; with small kinematics those of the
+   reference. */
 static PetscErrorCode FindPlaces(Fluids fluids, SurfaceGraph s, const PetscReal *u, PetscReal *x, PetscReal *reach)
 {
-  const int  dim = fluids->mesh->dim;
+  const int  dim = fluids->scene->kinematics == KINEMATICS_SMALL ? 0 : fluids->mesh->dim; /* the same on all ranks */
   PetscReal *local, *way;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(x, s->X, 3 * s->graph.n));
   PetscCall(PetscMalloc2(fluids->mesh->n_nodes, &local, s->graph.n, &way));
-  for (int d = 0; d < dim && u; d++) {
+  for (int d = 0; d < dim; d++) {
     for (PetscInt i = 0; i < fluids->mesh->n_nodes; i++) local[i] = u[i * dim + d];
     PetscCall(SurfaceGraphGather(s, local, way));
     for (int i = 0; i < s->graph.n; i++) x[3 * i + d] += way[i];
