@@ -235,13 +235,16 @@ PetscErrorCode ModelPredict(Model model, SolveReport *report)
 }
 
 /* Says whether displacements u at t are farther from the accepted state than the model is large, and than the step is
-   expected to move anything. A body that the softened contact of a prediction does not hold flies there.
-   Nothing turns it back, and contact lists for such a motion have every face near every other. */
+   expected to move anything. With friction the pieces of a prediction have all contact softened, and a body that it
+   does not hold flies there. Nothing turns it back, and contact lists for such a motion have every face near every
+   other. */
 static PetscErrorCode ModelFliesAway(Model model, const PetscReal *u, PetscReal t, PetscBool *away)
 {
   PetscReal motion;
 
   PetscFunctionBeginUser;
+  *away = PETSC_FALSE;
+  if (!model->contact || !ContactHasFriction(model->contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemMotion(model->problem, model->work->accepted_u, model->work->accepted_t, u, t, &motion));
   *away = (PetscBool)(motion > PetscMax(model->mesh->size, model->problem->expected));
   PetscFunctionReturn(PETSC_SUCCESS);
