@@ -224,7 +224,6 @@ int                 ContactPairFiner(Contact, int pair);
 PetscErrorCode      ContactPairText(Contact, int pair, char *text, size_t size);
 PetscErrorCode      ContactPatchAreas(Contact, int pair, const PetscReal middle[3], PetscReal radius, PetscReal *area);
 PetscErrorCode      ContactPairSurface(Contact, int pair, const MeshGroup **slave, PetscReal *mean_face_size);
-const MeshGroup    *ContactPairMaster(Contact, int pair);
 PetscBool           ContactPairToolMoves(Contact, int pair);
 PetscErrorCode      ContactPairTermStiffness(Contact, int pair, PetscReal *stiffness);
 PetscErrorCode      ContactPairClosed(Contact, int pair, const PetscInt *label, PetscInt n, PetscInt *closed);

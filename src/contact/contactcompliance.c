@@ -52,7 +52,7 @@ static PetscErrorCode TermGapAlong(const ContactPair *pair, PetscInt c, PetscRea
 static PetscErrorCode TermFriction(const ContactPair *pair, PetscInt c, PenaltySource source, PetscReal stiffer,
                                    const PetscReal *motion, PetscReal *friction)
 {
-  PetscReal        change[3] = {0, 0, 0};
+  PetscReal        change[3] = {0, 0, 0}, closer;
   FrictionInput    in;
   FrictionTraction out;
   PetscBool        acts;
@@ -61,8 +61,8 @@ static PetscErrorCode TermFriction(const ContactPair *pair, PetscInt c, PenaltyS
   PetscCall(FrictionTerm(pair, c, pair->t, &in, &out, &acts));
   if (!acts) PetscFunctionReturn(PETSC_SUCCESS);
   if (motion) PetscCall(FrictionTermAlong(pair, c, &out, motion, change));
-  for (int d = 0; d < 3 && source == BY_SLIP; d++) change[d] += out.by_stiffness[d];
-  for (int d = 0; d < 3 && source != BY_SLIP && in.rate > 0; d++) change[d] -= out.by_gap[d] / in.rate * stiffer;
+  closer = in.rate > 0 ? stiffer / in.rate : 0; /* a fluid may press in the contact's place */
+  for (int d = 0; d < 3; d++) change[d] += source == BY_SLIP ? out.by_stiffness[d] : -out.by_gap[d] * closer;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt q = pair->term_point[k];
 

@@ -29,11 +29,8 @@ PetscErrorCode ContactSetCarried(Contact contact, int p, const PetscReal *carrie
   for (PetscInt c = 0; c < pair->n_nodes; c++) { /* a fluid leaves no terms of faces, see ContactFacesServe() */
     pair->carried[c] = carried[pair->node[c]] / pair->whole[c];
     for (PetscInt i = pair->first_side[c]; i < pair->first_side[c + 1]; i++) pair->carried[i] = pair->carried[c];
-    if (!pair->friction) continue;
-    pair->carried_dry[c] = dry[pair->node[c]] * pair->carried[c];
-    for (PetscInt i = pair->first_side[c]; i < pair->first_side[c + 1]; i++)
-      pair->carried_dry[i] = pair->carried_dry[c];
   }
+  for (PetscInt c = 0; c < pair->n && pair->friction; c++) pair->carried_dry[c] = dry[pair->node[c]] * pair->carried[c];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -69,8 +66,7 @@ PetscErrorCode ContactTermForces(Contact contact, int p, PetscReal touch, PetscR
 }
 
 /*@
-  ContactDryReactions - adds the normal forces with which the terms where no fluid carries anything press on the nodes
-of a pair's master, in the displacements of the last residual.
+  ContactDryReactions - adds the normal forces of a pair's dry terms on the nodes of its master.
 
   Collective
 
@@ -80,6 +76,9 @@ of a pair's master, in the displacements of the last residual.
 
   Input/Output Parameter:
 . reaction - reaction[n_nodes*dim] by node of the mesh, complete at owned nodes
+
+  Note:
+  Dry are the terms of which a fluid carries nothing. The forces are those in the displacements of the last residual.
 @*/
 PetscErrorCode ContactDryReactions(Contact contact, int p, PetscReal *reaction)
 {

@@ -445,25 +445,6 @@ PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slav
 }
 
 /*@
-  ContactPairMaster - returns the master surface of a pair if it deforms.
-
-  Not collective
-
-  Input Parameters:
-+ contact - the contact
-- p       - number of the pair
-
-  Note:
-  It returns NULL where the master is rigid.
-@*/
-const MeshGroup *ContactPairMaster(Contact contact, int p)
-{
-  const ContactSurface master = contact->pairs[p].master;
-
-  return master && !master->rigid ? master->group : NULL;
-}
-
-/*@
   ContactPairToolMoves - says whether the master of a pair is a rigid tool that forces move.
 
   Not collective

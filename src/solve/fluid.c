@@ -34,19 +34,15 @@ static void FaceAreas(Fluids fluids, int form, int finer, ElementType type, cons
 static PetscErrorCode SetFormAreas(Fluids fluids, Fluid *fluid, int form, const PetscReal *u)
 {
   const Mesh mesh = fluids->mesh;
-  const int  dim  = mesh->dim;
   PetscInt   nodes[FACE_MAX_NODES];
-  PetscReal  x[3 * FACE_MAX_NODES], v[3 * FACE_MAX_NODES], area[FACE_MAX_NODES], *sum = fluid->area[form];
+  PetscReal  x[3 * FACE_MAX_NODES], area[FACE_MAX_NODES], *sum = fluid->area[form];
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(sum, mesh->n_nodes));
   for (PetscInt f = 0; f < fluid->group->n_faces; f++) {
-    const ElementType type = MeshFaceNodes(mesh, fluid->group, f, nodes);
+    const ElementType type = FluidFacePlaces(fluids, fluid, f, u, nodes, x);
     const int         n    = ElementGet(type)->nodes;
 
-    MeshGatherNodes(mesh, n, nodes, mesh->coords, x);
-    if (u) MeshGatherNodes(mesh, n, nodes, u, v);
-    for (int i = 0; i < n * dim && u; i++) x[i] += v[i];
     PetscCall(PetscArrayzero(area, n));
     FaceAreas(fluids, form, fluid->finer, type, x, area);
     for (int a = 0; a < n; a++) sum[nodes[a]] += area[a];

@@ -14,6 +14,22 @@ PetscBool FluidOpen(const Fluid *fluid, PetscReal pressure)
   return (PetscBool)(pressure == 0 || pressure < (1 - FLUID_SAME) * fluid->pressure);
 }
 
+/* Gathers the nodes of a face of the surface and their places x[nodes*dim]. Returns its type. u NULL: those of the
+   reference. */
+ElementType FluidFacePlaces(Fluids fluids, const Fluid *fluid, PetscInt face, const PetscReal *u, PetscInt *nodes,
+                            PetscReal *x)
+{
+  const Mesh        mesh = fluids->mesh;
+  const ElementType type = MeshFaceNodes(mesh, fluid->group, face, nodes);
+  const int         n    = ElementGet(type)->nodes;
+  PetscReal         v[3 * FACE_MAX_NODES];
+
+  MeshGatherNodes(mesh, n, nodes, mesh->coords, x);
+  if (u) MeshGatherNodes(mesh, n, nodes, u, v);
+  for (int i = 0; i < n * mesh->dim && u; i++) x[i] += v[i];
+  return type;
+}
+
 /* A search for the nearest node. */
 typedef struct {
   const PetscReal *x, *point; /* places of all nodes; the point */

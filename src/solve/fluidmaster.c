@@ -12,6 +12,15 @@
    second-order triangles: neither loads nor reactions say anything of them. */
 #define FLUID_NO_AREA 0.01
 
+/* The master surface of a pair if it deforms, else NULL. */
+static const MeshGroup *Deforming(Contact contact, int p)
+{
+  ContactSides sides;
+
+  ContactPairSides(contact, p, &sides);
+  return sides.master && !sides.master->rigid ? sides.master->group : NULL;
+}
+
 /* Finds the pairs whose masters are on the surface and deform. */
 PetscErrorCode FluidFindMasters(Fluids fluids, Fluid *fluid)
 {
@@ -21,7 +30,7 @@ PetscErrorCode FluidFindMasters(Fluids fluids, Fluid *fluid)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(fluid->surface->graph.n, &flag));
   for (int p = 0; p < ContactPairs(contact); p++) {
-    const MeshGroup *master = ContactPairMaster(contact, p);
+    const MeshGroup *master = Deforming(contact, p);
     PetscInt         n      = 0;
 
     if (master) PetscCall(SurfaceGraphGroup(fluid->surface, master, flag, &n));
@@ -87,7 +96,7 @@ PetscErrorCode FluidCheckMasters(Fluids fluids, Fluid *fluid)
                             "press on it too; allowed with where: open: a tool whose motion is given",
                             SceneWhere(fluids->scene, fluid->load->path, "where"),
                             ContactPairScene(fluids->contact, p)->name, fluid->load->region));
-    if (!fluid->reacts[p] && !(fluid->pair[p] && ContactPairMaster(fluids->contact, p))) continue;
+    if (!fluid->reacts[p] && !(fluid->pair[p] && Deforming(fluids->contact, p))) continue;
     fluid->deforms = PETSC_TRUE;
     PetscCall(CheckSides(fluids, fluid, p));
   }
@@ -100,17 +109,14 @@ static PetscErrorCode AreaVectors(Fluids fluids, const Fluid *fluid, const Petsc
   const Mesh mesh = fluids->mesh;
   const int  dim  = mesh->dim;
   PetscInt   nodes[FACE_MAX_NODES];
-  PetscReal  x[3 * FACE_MAX_NODES], v[3 * FACE_MAX_NODES];
+  PetscReal  x[3 * FACE_MAX_NODES];
 
   PetscFunctionBeginUser;
   for (PetscInt f = 0; f < fluid->group->n_faces; f++) {
-    const ElementType type                 = MeshFaceNodes(mesh, fluid->group, f, nodes);
+    const ElementType type                 = FluidFacePlaces(fluids, fluid, f, u, nodes, x);
     const int         n                    = ElementGet(type)->nodes;
     PetscReal         part[FACE_MAX_NODES] = {0}, normal[3 * FACE_MAX_NODES] = {0}, all = 0;
 
-    MeshGatherNodes(mesh, n, nodes, mesh->coords, x);
-    if (u) MeshGatherNodes(mesh, n, nodes, u, v);
-    for (int i = 0; i < n * dim && u; i++) x[i] += v[i];
     FaceAreaKernel(type, dim, fluids->scene->geometry, x, part, normal);
     for (int a = 0; a < n; a++) all += part[a];
     for (int a = 0; a < n; a++) {

@@ -64,6 +64,7 @@ struct _n_Fluids {
   Fluid  *fluid;
 };
 
+ElementType    FluidFacePlaces(Fluids, const Fluid *, PetscInt face, const PetscReal *u, PetscInt *nodes, PetscReal *x);
 PetscErrorCode FluidFindMasters(Fluids, Fluid *);
 PetscErrorCode FluidCheckMasters(Fluids, Fluid *);
 PetscErrorCode FluidFaceSlaves(Fluids, Fluid *, const PetscReal *u);
