@@ -130,12 +130,12 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
   PetscCall(PetscMalloc2(k * k, &a, k, &b));
   for (PetscInt i = 0; i < k; i++) b[i] = p->change[unknown[i]];
   for (PetscInt i = 0; i < k; i++) p->change[unknown[i]] = 0;
-  for (PetscInt i = 0; i < k; i++) {
-    for (PetscInt l = 0; l < k; l++)
+  for (PetscInt l = 0; l < k; l++)
+    for (PetscInt i = 0; i < k; i++)
       a[l * k + i] = (l == i) + Influence(p, unknown[i], &by[ACTIVE_SET_PARTS * i], unknown[l]);
-    for (PetscInt l = 0; l < p->m; l++)
-      if (p->change[l] != 0) b[i] -= p->change[l] * Influence(p, unknown[i], &by[ACTIVE_SET_PARTS * i], l);
-  }
+  for (PetscInt l = 0; l < p->m; l++)
+    for (PetscInt i = 0; i < k && p->change[l] != 0; i++)
+      b[i] -= p->change[l] * Influence(p, unknown[i], &by[ACTIVE_SET_PARTS * i], l);
   PetscCall(DenseSolve(k, a, b, regular));
   for (PetscInt i = 0; i < k; i++) p->change[unknown[i]] = b[i];
   PetscCall(PetscFree2(a, b));
@@ -144,13 +144,16 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By how much an excess[m] of all columns closes a gap, or slides a term back. */
-static PetscReal Closing(const ActiveSet p, const PetscReal *excess, PetscInt component)
+/* By how much an excess[m] of all columns closes the gaps, and slides the terms back: closing[components], the first
+   ones of parts*n. Columns are long, so that each is passed through once. */
+static void Closing(const ActiveSet p, const PetscReal *excess, PetscInt components, PetscReal *closing)
 {
-  PetscReal closing = 0;
+  for (PetscInt i = 0; i < components; i++) closing[i] = 0;
+  for (PetscInt j = 0; j < p->m; j++) {
+    const PetscReal *column = &p->G[j * p->parts * p->n];
 
-  for (PetscInt j = 0; j < p->m; j++) closing += p->G[j * p->parts * p->n + component] * excess[j];
-  return closing;
+    for (PetscInt i = 0; i < components && excess[j] != 0; i++) closing[i] += column[i] * excess[j];
+  }
 }
 
 /* Finds the set that the excess at hand leads to, and says whether it is another one, or friction's excess another. */
@@ -160,7 +163,8 @@ PetscBool ActiveSetFollow(ActiveSet p)
   PetscBool      changed = PETSC_FALSE;
   PetscReal      by[ACTIVE_SET_PARTS], negligible;
 
-  for (PetscInt i = 0; i < all; i++) p->end[i] = p->travel[i] - Closing(p, p->excess, i);
+  Closing(p, p->excess, all, p->end);
+  for (PetscInt i = 0; i < all; i++) p->end[i] = p->travel[i] - p->end[i];
   for (PetscInt i = 0; i < p->n; i++) {
     const PetscBool pressed = (PetscBool)(p->terms[i].opening + p->end[i] < 0);
 
@@ -202,8 +206,8 @@ static PetscErrorCode LeastEnergy(const ActiveSet p, PetscReal *part)
   *part = 1;
   PetscCall(PetscMalloc2(p->n, &closing, p->n + 2, &parts));
   parts[0] = 0;
+  Closing(p, p->change, p->n, closing);
   for (PetscInt i = 0; i < p->n; i++) {
-    closing[i] = Closing(p, p->change, i);
     if (closing[i] != 0) parts[last] = (p->terms[i].opening + p->end[i]) / closing[i];
     if (closing[i] != 0 && parts[last] > 0 && parts[last] < 1) last++;
   }
