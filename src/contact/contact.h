@@ -238,6 +238,7 @@ PetscErrorCode ContactPairOverlap(Contact, int pair, PetscReal t, PetscReal *ove
 PetscErrorCode ContactSummarise(Contact, ContactSummary *);
 PetscErrorCode ContactGetNodes(Contact, int pair, const PetscReal *u, ContactNodes *);
 PetscErrorCode ContactMasterForce(Contact, int pair, PetscReal force[3]);
+PetscErrorCode ContactMasterMoment(Contact, int pair, PetscReal moment[3]);
 PetscErrorCode ContactGapAt(Contact, int pair, const PetscReal *u, PetscReal t, PetscInt node_id, PetscReal *gap);
 PetscErrorCode ContactNearestPair(Contact, MPI_Comm, const PetscReal X[3], int *pair);
 PetscReal      ContactNodeGap(Contact, PetscInt node);

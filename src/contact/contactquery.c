@@ -349,6 +349,53 @@ PetscErrorCode ContactMasterForce(Contact contact, int p, PetscReal force[3])
 }
 
 /*@
+  ContactMasterMoment - sums the moments about the origin of the scene of a pair's forces on its master in the present
+  state.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact, in the plane or in space
+- p       - number of the pair
+
+  Output Parameter:
+. moment - the same on all ranks (force times length); in the plane the third one alone
+
+  Note:
+  Normal forces have the lever arms of the slave's nodes that bear them, forces of friction those of their feet.
+@*/
+PetscErrorCode ContactMasterMoment(Contact contact, int p, PetscReal moment[3])
+{
+  const ContactPair   *pair  = &contact->pairs[p];
+  const NeighbourLists lists = pair->lists;
+  const int            dim   = contact->mesh->dim;
+  ContactFriction      friction;
+
+  PetscFunctionBeginUser;
+  moment[0] = moment[1] = moment[2] = 0;
+  for (PetscInt q = 0; q < lists->n_slaves; q++) {
+    if (pair->point_force[q] == 0 || pair->variations->first[q] == pair->variations->end[q]) continue;
+    for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++) {
+      const PetscInt node = lists->slave_node[k];
+      PetscReal      x[3] = {0, 0, 0}, force[3] = {0, 0, 0};
+
+      for (int d = 0; d < dim; d++) {
+        x[d]     = lists->X[node * dim + d] + lists->u[node * dim + d] + contact->mesh->centre[d];
+        force[d] = -pair->point_force[q] * lists->slave_S[k] * pair->images[lists->slave_side[k]].sign[d] *
+                   pair->variations->own[q * dim + d];
+      }
+      for (int d = 0; d < 3; d++)
+        moment[d] += x[(d + 1) % 3] * force[(d + 2) % 3] - x[(d + 2) % 3] * force[(d + 1) % 3];
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, moment, 3, MPIU_REAL, MPI_SUM, contact->mesh->comm));
+  if (!pair->friction) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactPairFriction(contact, p, &friction));
+  for (int d = 0; d < 3; d++) moment[d] += friction.moment[d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactGapAt - finds the gap of a pair at a slave node (length), the same on all ranks.
 
   Collective

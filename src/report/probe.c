@@ -108,17 +108,19 @@ static PetscBool ProbeKeeps(const Probe *probe, const PetscReal *slave)
   return (probe->scene->edge_filter == 2) == near ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Sums the forces that move or hold a tool: those of all pairs whose master it is, with the other sign. */
-static PetscErrorCode ToolReaction(Probes probes, const Probe *probe, PetscReal force[3])
+/* Sums the forces that move or hold a tool, or their moments: those of all pairs whose master it is, with the other
+   sign. */
+static PetscErrorCode ToolReaction(Probes probes, const Probe                                        *probe,
+                                   PetscErrorCode (*on_master)(Contact, int, PetscReal[3]), PetscReal sum[3])
 {
   PetscReal part[3];
 
   PetscFunctionBeginUser;
-  force[0] = force[1] = force[2] = 0;
+  sum[0] = sum[1] = sum[2] = 0;
   for (int p = 0; p < probes->scene->n_contacts; p++) {
     if (!SceneContactHasMaster(&probes->scene->contacts[p], probe->scene->target)) continue;
-    PetscCall(ContactMasterForce(probes->model->contact, p, part));
-    for (int d = 0; d < 3; d++) force[d] -= part[d];
+    PetscCall(on_master(probes->model->contact, p, part));
+    for (int d = 0; d < 3; d++) sum[d] -= part[d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -129,10 +131,33 @@ static PetscErrorCode EvaluateReaction(Probes probes, Probe *probe, PetscReal *v
 
   PetscFunctionBeginUser;
   if (ProbeOfTool(probes, probe))
-    PetscCall(ToolReaction(probes, probe, force));
+    PetscCall(ToolReaction(probes, probe, ContactMasterForce, force));
   else
-    PetscCall(ProblemReaction(probes->model->problem, probe->group, force));
+    PetscCall(ProblemReaction(probes->model->problem, probe->group, force, NULL));
   *value = force[probe->scene->component];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The moment of forces about the axis of a probe, from that about the origin. */
+static PetscReal AboutAxis(const Probe *probe, const PetscReal force[3], const PetscReal moment[3])
+{
+  const int     i = (probe->scene->axis + 1) % 3, j = (probe->scene->axis + 2) % 3;
+  const double *X = probe->scene->point[0];
+
+  return moment[probe->scene->axis] - (X[i] * force[j] - X[j] * force[i]);
+}
+
+static PetscErrorCode EvaluateReactionTorque(Probes probes, Probe *probe, PetscReal *value)
+{
+  PetscReal force[3], moment[3];
+
+  PetscFunctionBeginUser;
+  if (ProbeOfTool(probes, probe)) {
+    PetscCall(ToolReaction(probes, probe, ContactMasterForce, force));
+    PetscCall(ToolReaction(probes, probe, ContactMasterMoment, moment));
+  } else
+    PetscCall(ProblemReaction(probes->model->problem, probe->group, force, moment));
+  *value = AboutAxis(probe, force, moment);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -143,6 +168,17 @@ static PetscErrorCode EvaluateContactForce(Probes probes, Probe *probe, PetscRea
   PetscFunctionBeginUser;
   PetscCall(ContactMasterForce(probes->model->contact, probe->pair, force));
   *value = force[probe->scene->component];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateContactTorque(Probes probes, Probe *probe, PetscReal *value)
+{
+  PetscReal force[3], moment[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactMasterForce(probes->model->contact, probe->pair, force));
+  PetscCall(ContactMasterMoment(probes->model->contact, probe->pair, moment));
+  *value = AboutAxis(probe, force, moment);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -425,16 +461,15 @@ static PetscErrorCode EvaluateFriction(Probes probes, Probe *probe, PetscReal *v
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The moment about a point from that about the origin. */
 static PetscErrorCode EvaluateFrictionTorque(Probes probes, Probe *probe, PetscReal *value)
 {
-  const int       i = (probe->scene->axis + 1) % 3, j = (probe->scene->axis + 2) % 3;
-  const double   *X = probe->scene->point[0];
   ContactFriction friction;
+  PetscReal       force[3];
 
   PetscFunctionBeginUser;
   PetscCall(ContactPairFriction(probes->model->contact, probe->pair, &friction));
-  *value = friction.moment[probe->scene->axis] + X[i] * friction.force[j] - X[j] * friction.force[i];
+  for (int d = 0; d < 3; d++) force[d] = -friction.force[d];
+  *value = AboutAxis(probe, force, friction.moment);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -475,7 +510,9 @@ static PetscErrorCode EvaluateSealPressure(Probes probes, Probe *probe, PetscRea
 
 static const ProbeType types[PROBE_KINDS] = {
   [PROBE_REACTION]           = {"reaction", NAMES_SURFACE, 0, NULL, EvaluateReaction},
+  [PROBE_REACTION_TORQUE]    = {"reaction_torque", NAMES_SURFACE, 0, NULL, EvaluateReactionTorque},
   [PROBE_CONTACT_FORCE]      = {"contact_force", NAMES_PAIR, 0, NULL, EvaluateContactForce},
+  [PROBE_CONTACT_TORQUE]     = {"contact_torque", NAMES_PAIR, 0, NULL, EvaluateContactTorque},
   [PROBE_DISPLACEMENT]       = {"displacement", NAMES_NOTHING, 1, "displacement", EvaluateDisplacement},
   [PROBE_DISTANCE]           = {"distance", NAMES_NOTHING, 2, "distance", EvaluateDistance},
   [PROBE_GAP]                = {"gap", NAMES_PAIR, 1, "at", EvaluateGap},

@@ -2,6 +2,32 @@
 #include "report/probevariation.h"
 #include "probeimpl.h"
 
+/* Present place of a node. */
+static void Place(Probes probes, PetscInt node, PetscReal x[3])
+{
+  const Mesh mesh = probes->model->mesh;
+
+  for (int d = 0; d < 3; d++)
+    x[d] =
+      d < mesh->dim ? mesh->coords[node * mesh->dim + d] + mesh->centre[d] + probes->model->u[node * mesh->dim + d] : 0;
+}
+
+/* A component of forces, or their moment about an axis, is the sum over the nodes of what is given here times their
+   forces. That arms change with displacements is left out: it is as small as the strains that do it. */
+static void ForceWeight(const Probe *probe, const PetscReal x[3], PetscReal weight[3])
+{
+  const ProbeKind kind = probe->scene->kind;
+  const int       i = (probe->scene->axis + 1) % 3, j = (probe->scene->axis + 2) % 3;
+
+  weight[0] = weight[1] = weight[2] = 0;
+  if (kind == PROBE_REACTION || kind == PROBE_CONTACT_FORCE || kind == PROBE_FRICTION_FORCE)
+    weight[probe->scene->component] = 1;
+  else {
+    weight[i] = -(x[j] - probe->scene->point[0][j]);
+    weight[j] = x[i] - probe->scene->point[0][i];
+  }
+}
+
 /* A reaction is the residual at the prescribed dofs; that of a tool is none of these. */
 static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional *f, const char **why)
 {
@@ -19,9 +45,13 @@ static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional
   }
   PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->held));
   for (PetscInt i = 0; i < probe->group->n_nodes; i++) {
-    const PetscInt dof = probe->group->nodes[i] * mesh->dim + probe->scene->component;
+    const PetscInt node = probe->group->nodes[i];
+    PetscReal      x[3], weight[3];
 
-    if (LoadsPrescribed(problem->loads, dof)) f->held[dof] = 1;
+    Place(probes, node, x);
+    ForceWeight(probe, x, weight);
+    for (int d = 0; d < mesh->dim; d++)
+      if (LoadsPrescribed(problem->loads, node * mesh->dim + d)) f->held[node * mesh->dim + d] = weight[d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -55,7 +85,13 @@ static PetscErrorCode VaryContactForce(Probes probes, const Probe *probe, Functi
   PetscCall(MeshSumNodes(mesh, 1, mark));
   PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->pressed));
   f->pair = probe->pair;
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) f->pressed[n * mesh->dim + probe->scene->component] = mark[n] > 0;
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    PetscReal x[3], weight[3];
+
+    Place(probes, n, x);
+    ForceWeight(probe, x, weight);
+    for (int d = 0; d < mesh->dim && mark[n] > 0; d++) f->pressed[n * mesh->dim + d] = weight[d];
+  }
   PetscCall(PetscFree(mark));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -124,20 +160,6 @@ static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A figure of the friction forces is the sum over the nodes of what is given here times their forces on the master. */
-static void FrictionWeight(const Probe *probe, const PetscReal x[3], PetscReal weight[3])
-{
-  const int a = probe->scene->axis, i = (a + 1) % 3, j = (a + 2) % 3;
-
-  weight[0] = weight[1] = weight[2] = 0;
-  if (probe->scene->kind == PROBE_FRICTION_FORCE)
-    weight[probe->scene->component] = 1;
-  else {
-    weight[i] = -(x[j] - probe->scene->point[0][j]);
-    weight[j] = x[i] - probe->scene->point[0][i];
-  }
-}
-
 /* Friction forces are the residual of the pair at the nodes of its slave in the planes of contact. That these turn and
    move is left out: it is as small as the strains that do it. */
 static PetscErrorCode VaryFriction(Probes probes, const Probe *probe, Functional *f, const char **why)
@@ -155,10 +177,10 @@ static PetscErrorCode VaryFriction(Probes probes, const Probe *probe, Functional
   for (PetscInt k = 0; k < slaves.n; k++) {
     const PetscInt   n      = slaves.node[k];
     const PetscReal *normal = &slaves.normal[3 * k];
-    PetscReal        x[3] = {0, 0, 0}, weight[3], along = 0;
+    PetscReal        x[3], weight[3], along = 0;
 
-    for (int i = 0; i < dim; i++) x[i] = mesh->coords[n * dim + i] + mesh->centre[i] + probes->model->u[n * dim + i];
-    FrictionWeight(probe, x, weight);
+    Place(probes, n, x);
+    ForceWeight(probe, x, weight);
     for (int i = 0; i < dim; i++) along += weight[i] * normal[i];
     for (int i = 0; i < dim; i++) f->pressed[n * dim + i] = weight[i] - along * normal[i];
   }
@@ -192,8 +214,10 @@ PetscErrorCode ProbeVary(Probes probes, int i, Functional *functional, const cha
     *why = "it has no value";
   else
     switch (probe->scene->kind) {
-    case PROBE_REACTION: PetscCall(VaryReaction(probes, probe, functional, why)); break;
-    case PROBE_CONTACT_FORCE: PetscCall(VaryContactForce(probes, probe, functional, why)); break;
+    case PROBE_REACTION:
+    case PROBE_REACTION_TORQUE: PetscCall(VaryReaction(probes, probe, functional, why)); break;
+    case PROBE_CONTACT_FORCE:
+    case PROBE_CONTACT_TORQUE: PetscCall(VaryContactForce(probes, probe, functional, why)); break;
     case PROBE_DISPLACEMENT: PetscCall(VaryDisplacement(probes, probe, functional, why)); break;
     case PROBE_DISTANCE: PetscCall(VaryDistance(probes, probe, functional, why)); break;
     case PROBE_PRESSURE_MEAN: PetscCall(VaryPressureMean(probes, probe, functional, why)); break;

@@ -90,6 +90,8 @@ void UnitsProbe(Scene scene, const SceneProbe *probe, char text[UNITS_TEXT])
   case PROBE_BOLT_FORCE:
   case PROBE_CONTACT_FORCE:
   case PROBE_FRICTION_FORCE: snprintf(text, UNITS_TEXT, "%.60s%.70s", UnitsForce(scene), per); break;
+  case PROBE_REACTION_TORQUE:
+  case PROBE_CONTACT_TORQUE:
   case PROBE_FRICTION_TORQUE:
     snprintf(text, UNITS_TEXT, "%.60s %.60s%.70s", UnitsForce(scene), UnitsLength(scene), per);
     break;

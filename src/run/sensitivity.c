@@ -320,8 +320,15 @@ static PetscBool ListsFollow(Contact contact)
   return follow;
 }
 
-/* Finds the values of the probes, and the adjoint solutions of those that have a first variation. That of a mean
-   pressure leaves areas and normals as they are, which is good enough for an estimate of an error alone. */
+/* Is the first variation of a probe good enough for an estimate of an error alone? That of a mean pressure leaves areas
+   and normals as they are, that of a torque the arms. */
+static PetscBool VariesRoughly(const SceneProbe *probe)
+{
+  return (PetscBool)(probe->kind == PROBE_PRESSURE_MEAN || probe->kind == PROBE_REACTION_TORQUE ||
+                     probe->kind == PROBE_CONTACT_TORQUE);
+}
+
+/* Finds the values of the probes, and the adjoint solutions of those that have a first variation. */
 static PetscErrorCode FindAdjoints(Sensitivities *all)
 {
   Run            *run    = all->run;
@@ -344,7 +351,7 @@ static PetscErrorCode FindAdjoints(Sensitivities *all)
     const char *why = NULL;
 
     all->probe[p].value = value[p];
-    if (direct || !all->probe[p].wanted || run->scene->probes[p].kind == PROBE_PRESSURE_MEAN) continue;
+    if (direct || !all->probe[p].wanted || VariesRoughly(&run->scene->probes[p])) continue;
     PetscCall(ProbeVary(run->probes, p, &functional[m], &why));
     if (why) PetscCall(ProbeVariationFree(&functional[m]));
     probe[m] = p;

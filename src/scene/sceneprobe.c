@@ -12,7 +12,9 @@ static const struct {
   const char *kind, *needs, *takes;
 } ProbeForms[PROBE_KINDS] = {
   [PROBE_REACTION]           = {"reaction", "component", ""},
+  [PROBE_REACTION_TORQUE]    = {"reaction_torque", "", "axis at"},
   [PROBE_CONTACT_FORCE]      = {"contact_force", "component", ""},
+  [PROBE_CONTACT_TORQUE]     = {"contact_torque", "", "axis at"},
   [PROBE_DISPLACEMENT]       = {"displacement", "component", "body"},
   [PROBE_DISTANCE]           = {"distance", "", "body change"},
   [PROBE_GAP]                = {"gap", "at", ""},
@@ -105,7 +107,7 @@ static PetscErrorCode SceneRefuseProbeReaction(Scene scene, SceneProbe *probe)
   if (!SceneFindBody(scene, probe->target, 1)) PetscFunctionReturn(PETSC_SUCCESS);
   for (int i = 0; i < scene->n_contacts; i++)
     if (SceneContactHasMaster(&scene->contacts[i], probe->target)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SceneRefuse(scene, probe->path, "reaction",
+  PetscCall(SceneRefuse(scene, probe->path, ProbeForms[probe->kind].kind,
                         "is a rigid tool that is the master of no contact pair; allowed: a surface of a deformable "
                         "body, or a tool that is a master",
                         probe->target));
@@ -135,17 +137,23 @@ static PetscErrorCode SceneRefuseProbeFriction(Scene scene, SceneProbe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static int ProbeIsTorque(ProbeKind kind)
+{
+  return kind == PROBE_REACTION_TORQUE || kind == PROBE_CONTACT_TORQUE || kind == PROBE_FRICTION_TORQUE;
+}
+
 /* Reads the axis of a torque: its direction, which in the plane can only be z, and a point of it. */
 static PetscErrorCode SceneReadProbeTorque(Scene scene, SceneProbe *probe)
 {
-  const Node at = SceneNode(scene, probe->path, "at");
+  const char *kind = ProbeForms[probe->kind].kind;
+  const Node  at   = SceneNode(scene, probe->path, "at");
 
   PetscFunctionBeginUser;
   if (scene->geometry == GEOMETRY_AXISYMMETRIC)
-    PetscCall(SceneRefuse(scene, probe->path, "friction_torque",
-                          "is 0 in an axisymmetric scene; allowed: in the other geometries", NULL));
+    PetscCall(
+      SceneRefuse(scene, probe->path, kind, "is 0 in an axisymmetric scene; allowed: in the other geometries", NULL));
   if (scene->dim == 3 && !SceneHas(scene, probe->path, "axis"))
-    PetscCall(SceneRefuse(scene, probe->path, "axis", "is missing; needed by friction_torque in 3D", NULL));
+    PetscCall(SceneRefuse(scene, probe->path, "axis", kind, "is missing; in space it is needed by"));
   if (scene->dim == 2) {
     if (SceneHas(scene, probe->path, "axis") && probe->axis != 2)
       PetscCall(SceneRefuse(scene, probe->path, "axis", "lies in the plane; allowed: z", NULL));
@@ -206,7 +214,7 @@ static PetscErrorCode SceneReadProbeAt(Scene scene, SceneProbe *probe)
   Node at = SceneNode(scene, probe->path, "at");
 
   PetscFunctionBeginUser;
-  if (probe->kind == PROBE_FRICTION_TORQUE) {
+  if (ProbeIsTorque(probe->kind)) {
     PetscCall(SceneReadProbeTorque(scene, probe));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -261,8 +269,8 @@ static PetscErrorCode SceneCheckProbeName(Scene scene, const SceneProbe *probe)
 static int ProbePerThickness(ProbeKind kind)
 {
   return kind == PROBE_REACTION || kind == PROBE_BOLT_FORCE || kind == PROBE_CONTACT_FORCE ||
-         kind == PROBE_CONTACT_AREA || kind == PROBE_FRICTION_FORCE || kind == PROBE_FRICTION_TORQUE ||
-         kind == PROBE_SLIPPED_AREA;
+         kind == PROBE_CONTACT_AREA || kind == PROBE_FRICTION_FORCE || kind == PROBE_SLIPPED_AREA ||
+         ProbeIsTorque(kind);
 }
 
 static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
@@ -287,7 +295,7 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
       PetscCall(SceneRefuseProbeFluid(scene, probe));
     else if (probe->kind == PROBE_BOLT_FORCE || probe->kind == PROBE_BOLT_SHORTENING)
       PetscCall(SceneRefuseProbeBolt(scene, probe));
-    else if (probe->kind == PROBE_REACTION)
+    else if (probe->kind == PROBE_REACTION || probe->kind == PROBE_REACTION_TORQUE)
       PetscCall(SceneRefuseProbeReaction(scene, probe));
     else
       PetscCall(SceneRefuseProbeTarget(scene, probe));

@@ -402,7 +402,13 @@ const SchemaKey SchemaKeys[] = {
   {"probes.*.reaction", TEXT,
    .help = "force on this surface through supports and imposed displacements, or the force that moves or holds this "
            "rigid tool, which is the opposite of the forces of all contact on it; needs component"},
+  {"probes.*.reaction_torque", TEXT, .unit = "force times length",
+   .help = "moment about an axis of the forces that reaction adds up: on this surface, or on this rigid tool; needs axis "
+           "in 3D, in the plane it is z"},
   {"probes.*.contact_force", TEXT, .help = "force of this contact pair on its master; needs component"},
+  {"probes.*.contact_torque", TEXT, .unit = "force times length",
+   .help = "moment about an axis of the forces of this contact pair on its master, friction's among them; needs axis in "
+           "3D, in the plane it is z"},
   {"probes.*.tool_motion", TEXT, .unit = "length",
    .help = "displacement of the point of the rigid tool that is this pair's master; needs component"},
   {"probes.*.tool_rotation", TEXT, .unit = "degrees",
@@ -438,7 +444,7 @@ const SchemaKey SchemaKeys[] = {
   {"probes.*.body", TEXT, .help = "volume of the node, if two bodies have a node at the point"},
   {"probes.*.change", BOOLEAN, .preset = "false", .help = "of distance; true: the reference distance is subtracted"},
   {"probes.*.at", POINT | MAP, .unit = "length",
-   .help = "for gap a point; for friction_torque a point of the axis, by default the origin; for pressure_mean the middle "
+   .help = "for gap a point; for a torque a point of the axis, by default the origin; for pressure_mean the middle "
            "of a patch; for contact_edge and pressure_max one reference coordinate, such as {z: 100}"},
   {"probes.*.within", REAL, .range = "(0, inf)", .unit = "length",
    .help = "of pressure_mean: the mean is that of a patch of this radius around the point at; what lies at the "
@@ -446,7 +452,7 @@ const SchemaKey SchemaKeys[] = {
   {"probes.*.at.x|y", REAL, .unit = "length", .help = "reference coordinate"},
   {"probes.*.at.z", REAL, SOLID, .unit = "length", .help = "reference coordinate"},
   {"probes.*.axis", CHOICE, .values = "x | y | z",
-   .help = "of contact_edge and fluid_front: axis along which the end is searched; of friction_torque: the torque's"},
+   .help = "of contact_edge and fluid_front: axis along which the end is searched; of a torque: its own"},
   {"probes.*.side", CHOICE, .values = "min | max",
    .help = "of contact_edge and fluid_front: the lower or the upper end"},
   {"probes.*.measure", CHOICE, .values = "max | rms", .preset = "max",

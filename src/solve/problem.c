@@ -578,7 +578,8 @@ PetscErrorCode ProblemRenewLists(Problem problem, const PetscReal *u_0, PetscRea
 
 /*@
   ProblemReaction - computes the force that supports, their springs and imposed displacements exert on the nodes of a
-  group.
+  group, and its moment about the origin of the scene. The arms are those of the present state, with small strains those
+  of the reference state, with which bodies are in balance there.
 
   Collective
 
@@ -586,30 +587,41 @@ PetscErrorCode ProblemRenewLists(Problem problem, const PetscReal *u_0, PetscRea
 + problem - after ProblemResidual() at an equilibrium
 - group   - nodes of this rank
 
-  Output Parameter:
-. force - the same on all ranks; force[dim..2] are 0; axisymmetric: over 360 degrees
+  Output Parameters:
++ force  - the same on all ranks; force[dim..2] are 0; axisymmetric: over 360 degrees
+- moment - the same on all ranks (force times length); in the plane the third one alone; NULL: not asked for
 
   Note:
   The residual is summed over the prescribed dofs of the group, and the forces of springs over all of its dofs. These
   include dofs on the edges that the group shares with other supported surfaces. Where supports have left, their fading
   forces count.
 @*/
-PetscErrorCode ProblemReaction(Problem problem, const MeshGroup *group, PetscReal force[3])
+PetscErrorCode ProblemReaction(Problem problem, const MeshGroup *group, PetscReal force[3], PetscReal moment[3])
 {
-  const int        dim    = problem->mesh->dim;
+  const Mesh       mesh   = problem->mesh;
+  const int        dim    = mesh->dim;
+  const PetscBool  moves  = (PetscBool)(problem->scene->kinematics != KINEMATICS_SMALL);
   const PetscReal *spring = LoadsSpringForce(problem->loads);
+  PetscReal        sum[6] = {0, 0, 0, 0, 0, 0};
 
   PetscFunctionBeginUser;
-  force[0] = force[1] = force[2] = 0;
   for (PetscInt i = 0; i < group->n_nodes; i++) {
+    PetscReal x[3] = {0, 0, 0}, on_node[3] = {0, 0, 0};
+
     for (int d = 0; d < dim; d++) {
       const PetscInt dof = group->nodes[i] * dim + d;
 
-      force[d] += LoadsPrescribed(problem->loads, dof) ? problem->f[dof] : LoadsFadingForce(problem->loads, dof);
-      if (spring) force[d] += spring[dof];
+      on_node[d] = LoadsPrescribed(problem->loads, dof) ? problem->f[dof] : LoadsFadingForce(problem->loads, dof);
+      if (spring) on_node[d] += spring[dof];
+      x[d] = mesh->coords[dof] + mesh->centre[d] + moves * problem->trial[dof];
+      sum[d] += on_node[d];
     }
+    for (int d = 0; d < 3; d++)
+      sum[3 + d] += x[(d + 1) % 3] * on_node[(d + 2) % 3] - x[(d + 2) % 3] * on_node[(d + 1) % 3];
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 3, MPIU_REAL, MPI_SUM, problem->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 6, MPIU_REAL, MPI_SUM, mesh->comm));
+  PetscCall(PetscArraycpy(force, sum, 3));
+  if (moment) PetscCall(PetscArraycpy(moment, &sum[3], 3));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

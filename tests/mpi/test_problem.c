@@ -132,10 +132,10 @@ static void test_bar(void **state)
   OK(ProblemEnergy(parts.problem, parts.u, 0.5, ENERGY_LOADS, &energy, &ok));
   assert_near(energy, -0.5 * 2 * 3 * 0.75, 1e-12); /* half the traction, times the mean displacement */
   OK(ProblemResidual(parts.problem, parts.u, 0, 0, &ok));
-  OK(ProblemReaction(parts.problem, &parts.mesh->groups[MeshFindGroup(parts.mesh, 1, "bar_right")], force));
+  OK(ProblemReaction(parts.problem, &parts.mesh->groups[MeshFindGroup(parts.mesh, 1, "bar_right")], force, NULL));
   assert_near(force[0], Nominal, 1e-11);
   assert_near(force[1], 0, 1e-12);
-  OK(ProblemReaction(parts.problem, &parts.mesh->groups[MeshFindGroup(parts.mesh, 1, "bar_left")], force));
+  OK(ProblemReaction(parts.problem, &parts.mesh->groups[MeshFindGroup(parts.mesh, 1, "bar_left")], force, NULL));
   assert_near(force[0], -Nominal, 1e-11);
   assert_near(ProblemForceScale(parts.problem), Nominal * sqrt(3 * 4 * 0.25),
               1e-11); /* half of it at 4 nodes of 3 cells */
@@ -333,7 +333,7 @@ static void test_linear_contact(void **state)
   assert_int_equal(report.result, SOLVE_CONVERGED);
   OK(ContactMasterForce(model->contact, 0, force));
   assert_near(force[1], pressure, 1e-9);
-  OK(ProblemReaction(model->problem, &parts.mesh->groups[MeshFindGroup(parts.mesh, 1, "upper_top")], force));
+  OK(ProblemReaction(model->problem, &parts.mesh->groups[MeshFindGroup(parts.mesh, 1, "upper_top")], force, NULL));
   assert_near(force[1], -pressure, 1e-9);
   assert_true(report.newton <= 2);
   error = ModelPenaltyError(model, 0); /* of the three springs in series, the third is the penalty */
@@ -409,7 +409,7 @@ static void test_active_set(void **state)
       assert_near(nodes.force[c], -2000 * nodes.area[c] * nodes.gap[c], 1e-10);
   }
   OK(ContactMasterForce(model->contact, 0, force));
-  OK(ProblemReaction(model->problem, &parts.mesh->groups[MeshFindGroup(parts.mesh, 1, "lower_bottom")], reaction));
+  OK(ProblemReaction(model->problem, &parts.mesh->groups[MeshFindGroup(parts.mesh, 1, "lower_bottom")], reaction, NULL));
   assert_true(force[1] < 0);
   assert_near(reaction[1], -force[1], 1e-9);
   OK(ModelDestroy(&model));

@@ -86,10 +86,16 @@ modulus = E / (1 - NU**2)
 plate = run(args, SCENES / "tool.yaml", out="plate", overrides=[
     "kinematics=small", "bodies.0.material.law=linear", "supports=[{surface: y_min, uy: 0}, {surface: origin, ux: 0}]",
     "contact.0.penalty={scale: 1000}", f"contact.0.master={{plane: {{point: [5, 5], normal: [0, -1], free: [uy, rz], "
-    f"force: [0, {-FORCE}], moment: {{z: {MOMENT}}}}}}}", "stepping.initial=1"
+    f"force: [0, {-FORCE}], moment: {{z: {MOMENT}}}}}}}", "stepping.initial=1",
+    "probes.5={name: twist, contact_torque: punch, at: [5, 5]}", "probes.6={name: off, contact_torque: punch}",
+    "probes.7={name: held, reaction_torque: y_min, at: [5, 0]}"
 ]).steps()[-1]
 check.near("plate: its way", plate["way"] / (-FORCE * HEIGHT / modulus / WIDTH), 1, 1e-3)
 check.near("plate: its turn", math.radians(plate["turn"]) / (MOMENT * HEIGHT / modulus / (WIDTH**3 / 12)), 1, 1e-3)
+
+check.near("plate: moment of the contact", plate["twist"] / -MOMENT, 1, 1e-6)
+check.near("plate: moment of the contact about the origin", plate["off"] / (5 * FORCE - MOMENT), 1, 1e-3)
+check.near("plate: moment of the ground", plate["held"] / -MOMENT, 1, 1e-3)
 
 # A cylinder that sticks to the block carries a moment by friction: the force along the block is the moment over its
 # arm.

@@ -13,13 +13,26 @@ PROBES = {
     "contact": ("contact_force: pair, component: y", "N"),
     "drag": ("friction_force: pair, component: x", "N"),
     "torque": ("friction_torque: pair", "N mm"),
+    "held": ("reaction_torque: y_min", "N mm"),
+    "twist": ("contact_torque: pair", "N mm"),
     "area": ("slipped_area: pair", "mm^2"),
     "pressed": ("contact_area: pair", "mm^2"),
     "way": ("tool_motion: pair, component: y", "mm"),
     "peak": ("pressure_max: pair", "MPa"),
     "spread": ("pressure_deviation: pair", "per cent")
 }
-PER_THICKNESS = {"force": "N/mm", "contact": "N/mm", "drag": "N/mm", "torque": "N mm/mm", "area": "mm", "pressed": "mm"}
+PER_THICKNESS = {
+    "force": "N/mm",
+    "contact": "N/mm",
+    "drag": "N/mm",
+    "torque": "N mm/mm",
+    "held": "N mm/mm",
+    "twist": "N mm/mm",
+    "area": "mm",
+    "pressed": "mm"
+}
+
+TORQUES = ("torque", "held", "twist")
 
 # Of the surface y_max of the block of 2 x 1 x 1.5; of the plane 2 x 1 per thickness, or about the axis x = 0.
 AREAS = {"solid": 3, "plane": 2, "thick": 6, "axisymmetric": 4 * math.pi}
@@ -29,8 +42,8 @@ def pressed(name, *overrides, dim=2, **options):
     point, normal = ("[0, 1, 0]", "[0, -1, 0]") if dim == 3 else ("[0, 1]", "[0, -1]")
     held = "ux: 0, uy: 0" + (", uz: 0" if dim == 3 else "")
     torque = ", axis: y" if dim == 3 else ""
-    kept = [key for key in PROBES if not (key in ("torque", "drag") and "axisymmetric" in name)]
-    probes = ", ".join(f"{{name: {key}, {PROBES[key][0]}{torque if key == 'torque' else ''}}}" for key in kept)
+    kept = [key for key in PROBES if not (key in (*TORQUES, "drag") and "axisymmetric" in name)]
+    probes = ", ".join(f"{{name: {key}, {PROBES[key][0]}{torque if key in TORQUES else ''}}}" for key in kept)
     return run(args, SCENES / ("patch.yaml" if dim == 3 else "patch_plane.yaml"), *options.get("options", ()), out=name,
                overrides=["kinematics=small", "solver.tolerance=1e-8", f"supports=[{{surface: y_min, {held}}}]",
                           "contact=[{name: pair, slave: y_max, friction: {mu: 0.1}, master: {plane: {point: " + point +
