@@ -212,8 +212,8 @@ const SchemaKey SchemaKeys[] = {
            "such a load of its own"},
   {"loads.*.from", TEXT | POINT, .unit = "length",
    .help = "wetted end of where: open, from which the fluid enters: a physical surface with nodes of the loaded one, or "
-           "the reference point of a node; the default in two dimensions is the end of the loaded line that is open at "
-           "the start, if only one is"},
+           "a point of the loaded one in the reference state, which is taken to its nearest node; the default in two "
+           "dimensions is the end of the loaded line that is open at the start, if only one is"},
   {"loads.*.to", TEXT | POINT, .unit = "length",
    .help = "end at which the fluid of where: open leaks, like from; the default in two dimensions is the other end of "
            "the loaded line, else no leak is looked for"},

@@ -280,6 +280,15 @@ PetscErrorCode SurfaceGraphGroup(SurfaceGraph s, const MeshGroup *group, char *f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Distance of a node from a point. */
+static PetscReal Distance(SurfaceGraph s, int i, const PetscReal X[3])
+{
+  PetscReal square = 0;
+
+  for (int d = 0; d < s->mesh->dim; d++) square += PetscSqr(s->X[3 * i + d] - X[d]);
+  return PetscSqrtReal(square);
+}
+
 /*@
   SurfaceGraphNearest - finds the node of the surface that is nearest to a point in the reference configuration.
 
@@ -289,21 +298,24 @@ PetscErrorCode SurfaceGraphGroup(SurfaceGraph s, const MeshGroup *group, char *f
 + s - the graph
 - X - the point, in the coordinates of the mesh file
 
-  Output Parameter:
-. distance - of the node (length)
+  Output Parameters:
++ distance - of the node (length)
+- reach    - distance of the node's farthest neighbour (length): a point of the surface is no farther away
 @*/
-PetscInt SurfaceGraphNearest(SurfaceGraph s, const PetscReal X[3], PetscReal *distance)
+PetscInt SurfaceGraphNearest(SurfaceGraph s, const PetscReal X[3], PetscReal *distance, PetscReal *reach)
 {
   PetscInt nearest = -1;
 
   *distance = PETSC_MAX_REAL;
+  *reach    = 0;
   for (int i = 0; i < s->graph.n; i++) {
-    PetscReal square = 0;
+    const PetscReal here = Distance(s, i, X);
 
-    for (int d = 0; d < s->mesh->dim; d++) square += PetscSqr(s->X[3 * i + d] - X[d]);
-    if (PetscSqrtReal(square) >= *distance) continue;
-    *distance = PetscSqrtReal(square);
+    if (here >= *distance) continue;
+    *distance = here;
     nearest   = i;
   }
+  for (int k = s->graph.ptr[nearest]; k < s->graph.ptr[nearest + 1]; k++)
+    *reach = PetscMax(*reach, Distance(s, s->graph.adj[k], &s->X[3 * nearest]));
   return nearest;
 }

@@ -25,4 +25,4 @@ PetscErrorCode SurfaceGraphDestroy(SurfaceGraph *);
 PetscErrorCode SurfaceGraphGather(SurfaceGraph, const PetscReal *local, PetscReal *values);
 void           SurfaceGraphScatter(SurfaceGraph, const char *flag, PetscReal *local);
 PetscErrorCode SurfaceGraphGroup(SurfaceGraph, const MeshGroup *, char *flag, PetscInt *n);
-PetscInt       SurfaceGraphNearest(SurfaceGraph, const PetscReal X[3], PetscReal *distance);
+PetscInt       SurfaceGraphNearest(SurfaceGraph, const PetscReal X[3], PetscReal *distance, PetscReal *reach);

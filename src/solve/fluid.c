@@ -10,8 +10,6 @@
 #define FLUID_LEAK_STEP 0.01
 /* It is not repeated where its length is below so many times the shortest one, as the next would be too short. */
 #define FLUID_CUT 4
-/* A node is at a point if it is within this part of the model's size. */
-#define FLUID_AT_POINT 1e-6
 /* Surfaces touch, with or without pressure, where they are not farther apart than this part of the model's size. */
 #define FLUID_OPEN 1e-9
 
@@ -326,14 +324,15 @@ static PetscErrorCode StateCopy(int n, const FluidState *from, FluidState *to)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the nodes of an end that the scene names. */
+/* Finds the nodes of an end that the scene names: those that a surface has in common with the loaded one, or the node
+   next to a point. */
 static PetscErrorCode ReadEnd(Fluids fluids, Fluid *fluid, const char *key, const SceneEnd *end, char *flag,
                               PetscBool *given)
 {
   const Mesh  mesh  = fluids->mesh;
   const char *where = SceneWhere(fluids->scene, fluid->load->path, key);
   MeshGroup  *group;
-  PetscReal   distance;
+  PetscReal   distance, reach;
   PetscInt    n;
 
   PetscFunctionBeginUser;
@@ -344,21 +343,21 @@ static PetscErrorCode ReadEnd(Fluids fluids, Fluid *fluid, const char *key, cons
     if (!n)
       PetscCall(RefuseInput(mesh->comm,
                             "%s: '%s' has no node in common with the loaded '%s'; allowed: a surface that meets it, or "
-                            "the point of one of its nodes",
+                            "one of its points",
                             SceneWhere(fluids->scene, fluid->load->path, key), end->surface, fluid->load->region));
     if (n == fluid->surface->graph.n)
       PetscCall(RefuseInput(mesh->comm, "%s: '%s' has all nodes of the loaded '%s'; allowed: a part of them",
                             SceneWhere(fluids->scene, fluid->load->path, key), end->surface, fluid->load->region));
   }
   if (!end->has_point) PetscFunctionReturn(PETSC_SUCCESS);
-  n = SurfaceGraphNearest(fluid->surface, end->point, &distance);
-  if (distance > FLUID_AT_POINT * mesh->size) {
+  n = SurfaceGraphNearest(fluid->surface, end->point, &distance, &reach);
+  if (distance > reach) {
     const PetscReal *X = &fluid->surface->X[3 * n];
 
     PetscCall(
       RefuseInput(mesh->comm,
-                  "%s: the loaded '%s' has no node there; allowed: the reference point of one of its nodes; the "
-                  "nearest is at (%.6g, %.6g, %.6g), %.3g away",
+                  "%s: the point is not on the loaded '%s'; allowed: a point of it in the reference state; its nearest "
+                  "node is at (%.6g, %.6g, %.6g), %.3g away",
                   where, fluid->load->region, (double)X[0], (double)X[1], (double)X[2], (double)distance));
   }
   flag[n] = 1;
@@ -548,7 +547,7 @@ static PetscErrorCode ChooseEnds(Fluids fluids, Fluid *fluid)
   if (fluid->has_from && fluid->has_to) PetscFunctionReturn(PETSC_SUCCESS);
   if (fluids->mesh->dim == 3 && !fluid->has_from)
     PetscCall(RefuseInput(fluids->mesh->comm,
-                          "%s: is missing; allowed: a surface, a curve or the point of a node from which the fluid "
+                          "%s: is missing; allowed: a surface, a curve or one of its points from which the fluid "
                           "enters (in three dimensions it has no default)",
                           key));
   if (fluids->mesh->dim == 3) PetscFunctionReturn(PETSC_SUCCESS);
@@ -571,7 +570,7 @@ static PetscErrorCode ChooseEnds(Fluids fluids, Fluid *fluid)
   if (!fluid->has_from && (ends != 2 || open != 1))
     PetscCall(RefuseInput(fluids->mesh->comm,
                           "%s: is missing, and of the %d ends of '%s' %d are open at the start; allowed: a surface or "
-                          "the point of a node from which the fluid enters",
+                          "one of its points from which the fluid enters",
                           key, ends, fluid->load->region, open));
   if (!fluid->has_from) fluid->from[wet] = 1;
   if (!fluid->has_to && ends == 2 && fluid->from[end[0]] != fluid->from[end[1]]) {

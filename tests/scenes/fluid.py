@@ -203,7 +203,7 @@ if args.cases == "all":
     refused("both ends open or closed", "of the 2 ends of 'bottom' 0 are open",
             "loads.1={surface: bottom, pressure: 1, where: open}")
     refused("an end off the surface", "has no node in common", "loads.1.to=top")
-    refused("an end without a node", "has no node there", "loads.1.to=[3.21, 0]")
+    refused("an end that is off the surface", "is not on the loaded", "loads.1.to=[3.21, 0.5]")
     refused("the same end twice", "have a node in common", "loads.1.to=left")
     refused("no contact", "is in no contact pair", "loads.1.surface=top", "probes=[]")
     refused("an adjusted penalty", "adjusted or augmented",
