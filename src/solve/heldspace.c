@@ -66,6 +66,27 @@ PetscErrorCode ModelHeldAdd(Model model, Vec start, PetscReal *stiffness, PetscR
 }
 
 /*@
+  ModelHeldOut - takes the motions that are held out of the answer to forces that has just been found.
+
+  Collective
+
+  Input Parameters:
++ model - after a solve with the present tangent
+- y     - its solution (length)
+
+  Output Parameter:
+. y - without the motions
+@*/
+PetscErrorCode ModelHeldOut(Model model, Vec y)
+{
+  PetscFunctionBeginUser;
+  if (!model->work->hold.wanted) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelHeldRefresh(model, y));
+  PetscCall(ModelHeldTakeOut(model, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ModelHeldRefresh - finds the answers of the motions that are to be held to the present tangent, and the motions, where
   they are not known or are to be found anew.
 

@@ -211,6 +211,7 @@ static PetscErrorCode ModelPenaltySlopes(Model model, int sources, Vec slope[], 
     PetscCall(ModelStifferForces(model, (PenaltySource)source, forces));
     PetscCall(KSPSolve(ksp, forces, slope[source]));
     *known = (PetscBool)!LinearCheckLost(model->linear);
+    if (*known) PetscCall(ModelHeldOut(model, slope[source]));
   }
   PetscCall(VecDestroy(&forces));
   PetscFunctionReturn(PETSC_SUCCESS);

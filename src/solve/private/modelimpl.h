@@ -197,6 +197,7 @@ PetscErrorCode ModelShiftStep(Model, Vec x, Vec F, Vec y);
 PetscErrorCode ModelHeldDestroy(HeldMotion *);
 PetscErrorCode ModelHeldAdd(Model, Vec start, PetscReal *stiffness, PetscReal *part);
 PetscErrorCode ModelHeldRefresh(Model, Vec y);
+PetscErrorCode ModelHeldOut(Model, Vec);
 /* heldfriction.c */
 PetscErrorCode ModelHeldFriction(Model, PetscReal *coefficient);
 /* heldmotion.c */
