@@ -610,7 +610,7 @@ static PetscBool TermAgrees(const ContactPair *pair, PetscInt c, const Freshly *
     fitted = (PetscBool)(fitted && pair->lists->fit_n[pair->term_point[k]] && fresh->lists->fit_n[pair->term_point[k]]);
   tolerance = fitted ? PetscMax(CONTACT_FIT_AGREES * PetscMax(fresh->depth, ContactTermBound(pair, c)), drift)
                      : CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c] + drift;
-  if (!(old - rest < 0) && !(gap - rest < (fitted ? -tolerance : 0))) return PETSC_TRUE;
+  if (!(old - rest < 0) && !(gap - rest < -(fitted ? tolerance : drift))) return PETSC_TRUE;
   if (!TermFactorsAgree(pair, c, fresh, share)) return PETSC_FALSE;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && holds; k++)
     if (fitted && old - rest < 0 && !fresh->lags)

@@ -179,7 +179,7 @@ static PetscBool IsHidden(const Nearest *look, const Candidate *c)
   if (!look->listed || !FlankFaces(look, c)) return PETSC_FALSE;
   if (OwnBodyTells(look, c, &hidden)) return hidden;
   CandidateFoot(look, c, &foot);
-  return (PetscBool)(OwnBodyHides(look, c, &foot) || (look->one_body && OwnBodyTurnsFrom(look, &foot)));
+  return (PetscBool)(OwnBodyHides(look, c, &foot) || (look->one_body && OwnBodyTurnsFrom(look, c, &foot)));
 }
 
 /*@

@@ -174,17 +174,25 @@ in front of it with a penetration.
 
   Input Parameters:
 + look - the slave point
-- foot - of the point on a candidate, without free edges
+. c    - a candidate whose normal opposes that of the point
+- foot - of the point on it, without free edges
 
-  Note:
-  Always PETSC_FALSE where the scene names slave and master.
+  Notes:
+  Always PETSC_FALSE where the scene names slave and master. A point that is past the end of a facet, in its plane, has
+  its foot at the end. As the two faces are not quite parallel, that is before the point's face or behind it, by no more
+  than the angle between them, and says nothing.
 @*/
-PetscBool OwnBodyTurnsFrom(const Nearest *look, const Foot *foot)
+PetscBool OwnBodyTurnsFrom(const Nearest *look, const Candidate *c, const Foot *foot)
 {
-  const PetscReal *own   = &look->lists->slave_normal[3 * look->q];
-  PetscReal        along = 0;
+  const PetscReal *own = &look->lists->slave_normal[3 * look->q];
+  PetscReal        along = 0, cosine = 0, square = 0;
 
   if (!look->listed) return PETSC_FALSE;
-  for (int d = 0; d < look->lists->dim; d++) along += own[d] * foot->normal[d];
-  return (PetscBool)(along >= 0);
+  for (int d = 0; d < look->lists->dim; d++) {
+    along += own[d] * foot->normal[d];
+    cosine += own[d] * c->normal[d];
+    square += PetscSqr(own[d]);
+  }
+  if (look->one_body) return (PetscBool)(along >= 0);
+  return (PetscBool)(along >= PetscSqrtReal(PetscMax(0, square - PetscSqr(cosine))));
 }

@@ -114,7 +114,7 @@ static void NearestVisit(void *context, int index, double *bound)
     for (int d = 0; d < dim; d++) x[a * dim + d] -= look->x[d];
   }
   FacetProject(dim, &own, x, &foot);
-  if (OwnBodyHides(look, c, &foot) || OwnBodyTurnsFrom(look, &foot)) return;
+  if (OwnBodyHides(look, c, &foot) || OwnBodyTurnsFrom(look, c, &foot)) return;
   distance = PetscAbsReal(foot.gap);
   if (!faces) look->averse = (PetscBool)(distance <= look->size);
   if (!faces || distance > *bound) return;

@@ -14,5 +14,5 @@
 PetscBool OwnBodyHides(const Nearest *, const Candidate *, const Foot *);
 PetscBool OwnBodyTells(const Nearest *, const Candidate *, PetscBool *hidden);
 PetscReal OwnBodyBehind(const Nearest *);
-PetscBool OwnBodyTurnsFrom(const Nearest *, const Foot *);
+PetscBool OwnBodyTurnsFrom(const Nearest *, const Candidate *, const Foot *);
 PetscBool OwnBodyIsWedge(const Nearest *, const Candidate *);
