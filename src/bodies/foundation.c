@@ -58,8 +58,8 @@ PetscErrorCode FoundationCreate(Mesh mesh, Scene scene, Foundation *out)
   *out                 = foundation; /* FoundationDestroy() frees what a refusal leaves */
   foundation->mesh     = mesh;
   foundation->geometry = scene->geometry;
-  PetscCall(PetscCalloc3(n, &foundation->surfaces, mesh->n_nodes * mesh->dim, &foundation->holds,
-                         mesh->n_nodes * mesh->dim, &foundation->force));
+  PetscCall(PetscCalloc2(n, &foundation->surfaces, mesh->n_nodes * mesh->dim, &foundation->holds));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &foundation->force));
   for (int s = 0; s < scene->n_supports; s++) {
     const SceneSupport *support = &scene->supports[s];
     SpringSurface      *surface = &foundation->surfaces[foundation->n];
@@ -88,7 +88,8 @@ PetscErrorCode FoundationDestroy(Foundation *foundation)
 {
   PetscFunctionBeginUser;
   if (!*foundation) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree3((*foundation)->surfaces, (*foundation)->holds, (*foundation)->force));
+  PetscCall(PetscFree2((*foundation)->surfaces, (*foundation)->holds));
+  PetscCall(PetscFree((*foundation)->force));
   PetscCall(PetscFree(*foundation));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -106,9 +107,9 @@ static int FaceMatrix(Foundation foundation, const SpringSurface *surface, Petsc
   return n;
 }
 
-/* Adds the forces of the springs of one face to the foundation's, their energy and their squares. */
+/* Adds the forces of the springs of one face, their energy and their squares. */
 static void FaceForces(Foundation foundation, const SpringSurface *surface, PetscReal factor, PetscInt f,
-                       const PetscReal *u, PetscReal *energy, PetscReal *force2)
+                       const PetscReal *u, PetscReal *forces, PetscReal *energy, PetscReal *force2)
 {
   const int dim = foundation->mesh->dim;
   PetscInt  nodes[FACE_MAX_NODES];
@@ -120,11 +121,35 @@ static void FaceForces(Foundation foundation, const SpringSurface *surface, Pets
       PetscReal force = 0;
 
       for (int b = 0; b < n; b++) force -= factor * surface->spring[d] * matrix[a * n + b] * u[nodes[b] * dim + d];
-      foundation->force[nodes[a] * dim + d] += force;
+      forces[nodes[a] * dim + d] += force;
       if (energy) *energy -= force * u[nodes[a] * dim + d] / 2;
       if (force2) *force2 += PetscSqr(force);
     }
   }
+}
+
+/*@
+  FoundationAddForces - adds the forces of the springs at some displacements.
+
+  Not collective
+
+  Input Parameters:
++ foundation - the springs; NULL: there are none
+. t          - load parameter
+- u          - local displacements (length) [n_nodes*dim], ghosts included
+
+  Output Parameters:
++ forces - on the bodies, to which this rank's part is added [n_nodes*dim]
+. energy - the energy of the springs is added; or NULL
+- force2 - the squares of the unassembled forces are added; or NULL
+@*/
+void FoundationAddForces(Foundation foundation, PetscReal t, const PetscReal *u, PetscReal *forces, PetscReal *energy,
+                         PetscReal *force2)
+{
+  for (int s = 0; foundation && s < foundation->n; s++)
+    for (PetscInt face = 0; face < foundation->surfaces[s].group->n_faces; face++)
+      FaceForces(foundation, &foundation->surfaces[s], HistoryFactor(foundation->surfaces[s].history, t), face, u,
+                 forces, energy, force2);
 }
 
 /*@
@@ -151,10 +176,7 @@ PetscErrorCode FoundationResidual(Foundation foundation, PetscReal t, const Pets
   PetscFunctionBeginUser;
   if (!foundation) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(foundation->force, foundation->mesh->n_nodes * foundation->mesh->dim));
-  for (int s = 0; s < foundation->n; s++)
-    for (PetscInt face = 0; face < foundation->surfaces[s].group->n_faces; face++)
-      FaceForces(foundation, &foundation->surfaces[s], HistoryFactor(foundation->surfaces[s].history, t), face, u,
-                 energy, force2);
+  FoundationAddForces(foundation, t, u, foundation->force, energy, force2);
   for (PetscInt i = 0; f && i < foundation->mesh->n_nodes * foundation->mesh->dim; i++) f[i] -= foundation->force[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,7 +3,8 @@
    history may change k_i over the load parameter.
 
    FoundationResidual() adds force and energy, FoundationTangent() the tangent. FoundationHolds() tells which
-   dofs have a spring. FoundationForce() gives the forces of the last residual. */
+   dofs have a spring. FoundationForce() gives the forces of the last residual, FoundationAddForces() those of any
+   displacements. */
 #pragma once
 #include "bodies/elasticity.h"
 
@@ -13,6 +14,8 @@ PetscErrorCode   FoundationCreate(Mesh, Scene, Foundation *);
 PetscErrorCode   FoundationDestroy(Foundation *);
 PetscErrorCode   FoundationResidual(Foundation, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy,
                                     PetscReal *force2);
+void             FoundationAddForces(Foundation, PetscReal t, const PetscReal *u, PetscReal *forces, PetscReal *energy,
+                                     PetscReal *force2);
 PetscErrorCode   FoundationTangent(Foundation, PetscReal t, Elasticity);
 PetscBool        FoundationHolds(Foundation, PetscInt local_dof);
 const PetscReal *FoundationForce(Foundation);

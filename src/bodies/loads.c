@@ -859,6 +859,24 @@ const PetscReal *LoadsSpringForce(Loads loads)
 }
 
 /*@
+  LoadsAddSpringForces - adds the forces of springs at some displacements, of which they are a linear function.
+
+  Not collective
+
+  Input Parameters:
++ loads - the loads
+. t     - load parameter
+- u     - local displacements (length) [n_nodes*dim], ghosts included
+
+  Input/Output Parameter:
+. forces - on the bodies; this rank's part is added [n_nodes*dim]
+@*/
+void LoadsAddSpringForces(Loads loads, PetscReal t, const PetscReal *u, PetscReal *forces)
+{
+  FoundationAddForces(loads->foundation, t, u, forces, NULL, NULL);
+}
+
+/*@
   LoadsFadingForce - returns the force that supports which have left still exert on a dof, at the last residual.
 
   Not collective

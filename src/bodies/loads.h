@@ -27,6 +27,7 @@ const PetscBool *LoadsConstrained(Loads);
 PetscBool        LoadsPrescribed(Loads, PetscInt local_dof);
 PetscBool        LoadsHeld(Loads, PetscInt local_dof);
 const PetscReal *LoadsSpringForce(Loads);
+void             LoadsAddSpringForces(Loads, PetscReal t, const PetscReal *u, PetscReal *forces);
 PetscReal        LoadsFadingForce(Loads, PetscInt local_dof);
 PetscInt         LoadsPhase(Loads);
 PetscErrorCode   LoadsShowPhase(Loads, PetscInt phase);

@@ -175,7 +175,7 @@ PetscErrorCode ContactChangeVectors(Contact, PetscInt rows, PetscInt terms, Pets
 PetscErrorCode ContactGetBorder(Contact, Border *);
 PetscBool      ContactHasFits(Contact);
 PetscErrorCode ContactMultiplyBegin(Contact, const PetscReal *x, PetscReal t, PetscReal t_next);
-PetscErrorCode ContactMultiplyTransposed(Contact, int pair, const PetscReal *x);
+PetscErrorCode ContactMultiplyTransposed(Contact, const PetscBool pairs[], const PetscReal *x);
 PetscErrorCode ContactMultiplyEnd(Contact, PetscReal *y);
 /* Linear steps and predictions */
 PetscErrorCode ContactHoldActiveSet(Contact, PetscBool holding, PetscBool touching);

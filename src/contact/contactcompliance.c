@@ -183,12 +183,12 @@ static PetscErrorCode ShapeKnown(const ContactPair *pair, const PetscReal *miss,
 . f - as of ContactPairStifferForces()
 
   Output Parameter:
-. known - PETSC_FALSE: not known for a rigid master, one of facets, and one that shares nodes with its slave
+. known - PETSC_FALSE: not known for a meshed rigid master, one of facets, and one that shares nodes with its slave
 
   Note:
   The true surface goes through the nodes. The smooth one misses them by m and is, to first order, a linear function of
   their positions: fitted to nodes that are moved by m it is nearer to the true one by one order (twicing). The slave's
-  own surface interpolates its nodes.
+  own surface interpolates its nodes. An analytic master is the true surface.
 @*/
 PetscErrorCode ContactPairShapeForces(Contact contact, int p, const PetscReal *u, PetscReal *f, PetscBool *known)
 {
@@ -197,8 +197,8 @@ PetscErrorCode ContactPairShapeForces(Contact contact, int p, const PetscReal *u
   PairChange   change;
 
   PetscFunctionBeginUser;
-  *known = (PetscBool)(pair->fit.fitted && pair->master && !pair->master->rigid && !pair->slave->rigid);
-  if (!*known) PetscFunctionReturn(PETSC_SUCCESS);
+  *known = (PetscBool)(!pair->master || (pair->fit.fitted && !pair->master->rigid && !pair->slave->rigid));
+  if (!*known || !pair->master) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc2(contact->mesh->n_nodes * contact->mesh->dim, &miss, pair->lists->n_nodes * contact->mesh->dim,
                          &motion));
   PetscCall(SearchMasterMiss(pair->search, u, pair->t, miss));

@@ -418,28 +418,31 @@ PetscErrorCode ContactMultiplyBegin(Contact contact, const PetscReal *x, PetscRe
 }
 
 /*@
-  ContactMultiplyTransposed - makes the product that was begun one with the transposed tangent, and adds to what one
-  pair's part of it is multiplied with.
+  ContactMultiplyTransposed - makes the product that was begun one with the transposed tangent, and adds to what the
+  parts of some pairs are multiplied with.
 
   Collective
 
   Input Parameters:
 + contact - after ContactMultiplyBegin()
-. p       - number of the pair; -1: nothing is added
+. pairs   - of which pairs; NULL: nothing is added
 - x       - local vector x[n_nodes*dim], ghosts included
 @*/
-PetscErrorCode ContactMultiplyTransposed(Contact contact, int p, const PetscReal *x)
+PetscErrorCode ContactMultiplyTransposed(Contact contact, const PetscBool pairs[], const PetscReal *x)
 {
-  ContactPair *pair = p < 0 ? NULL : &contact->pairs[p];
-  PetscReal   *values;
-
   PetscFunctionBeginUser;
   contact->transposed = PETSC_TRUE;
-  if (!pair) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
-  PetscCall(ContactPairMove(contact, pair, x, pair->t, pair->t, values));
-  for (PetscInt i = 0; i < pair->lists->n_nodes * contact->mesh->dim; i++) contact->product[p].x[i] += values[i];
-  PetscCall(PetscFree(values));
+  for (int p = 0; p < contact->n_pairs && pairs; p++) {
+    ContactPair   *pair = &contact->pairs[p];
+    const PetscInt n    = pair->lists->n_nodes * contact->mesh->dim;
+    PetscReal     *values;
+
+    if (!pairs[p]) continue;
+    PetscCall(PetscCalloc1(n, &values));
+    PetscCall(ContactPairMove(contact, pair, x, pair->t, pair->t, values));
+    for (PetscInt i = 0; i < n; i++) contact->product[p].x[i] += values[i];
+    PetscCall(PetscFree(values));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

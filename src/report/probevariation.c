@@ -1,5 +1,6 @@
 /* First variations of probes, see probevariation.h. */
 #include "report/probevariation.h"
+#include "bodies/tools.h"
 #include "probeimpl.h"
 
 /* Present place of a node. */
@@ -28,21 +29,86 @@ static void ForceWeight(const Probe *probe, const PetscReal x[3], PetscReal weig
   }
 }
 
-/* A reaction is the residual at the prescribed dofs; that of a tool is none of these. */
+/* Marks the nodes of a probe's group, ghosts included [n_nodes]; the caller frees it. */
+static PetscErrorCode MarkGroup(Mesh mesh, const Probe *probe, PetscReal **mark)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes, mark));
+  for (PetscInt i = 0; i < probe->group->n_nodes; i++) (*mark)[probe->group->nodes[i]] = 1;
+  PetscCall(MeshSumNodes(mesh, 1, *mark));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) (*mark)[n] = (*mark)[n] > 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Springs bear what they would bear at a motion of the group, times that of the dof. */
+static PetscErrorCode VarySprings(Probes probes, const Probe *probe, Functional *f)
+{
+  const Problem problem = probes->model->problem;
+  const Mesh    mesh    = problem->mesh;
+  PetscReal    *mark, *unit;
+
+  PetscFunctionBeginUser;
+  PetscCall(MarkGroup(mesh, probe, &mark));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &unit));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->direct));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    PetscReal x[3], weight[3];
+
+    Place(probes, n, x);
+    ForceWeight(probe, x, weight);
+    for (int d = 0; d < mesh->dim; d++) unit[n * mesh->dim + d] = mark[n] * weight[d];
+  }
+  LoadsAddSpringForces(problem->loads, probes->model->t, unit, f->direct);
+  PetscCall(PetscFree(unit));
+  PetscCall(PetscFree(mark));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes room for what presses. pair: the one that it is of; -1: none yet. */
+static PetscErrorCode CreatePressed(Probes probes, int pair, Functional *f)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MeshCreateLocal(probes->model->mesh, probes->model->mesh->dim, &f->pressed));
+  PetscCall(PetscCalloc1(ContactPairs(probes->model->contact), &f->pairs));
+  if (pair >= 0) f->pairs[pair] = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The force that moves or holds a tool is, with the other sign, the residual of all pairs whose master it is at the
+   nodes of their slaves, which are all of their nodes of bodies. */
+static PetscErrorCode VaryToolReaction(Probes probes, const Probe *probe, Functional *f)
+{
+  const Mesh mesh = probes->model->mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(CreatePressed(probes, -1, f));
+  for (int p = 0; p < probes->scene->n_contacts; p++)
+    f->pairs[p] = SceneContactHasMaster(&probes->scene->contacts[p], probe->scene->target);
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    PetscReal x[3], weight[3];
+
+    Place(probes, n, x);
+    ForceWeight(probe, x, weight);
+    for (int d = 0; d < mesh->dim; d++) f->pressed[n * mesh->dim + d] = -weight[d];
+  }
+  for (int k = 0; k < mesh->n_tools; k++)
+    for (int d = 0; d < mesh->dim; d++) f->pressed[mesh->tools[k].node * mesh->dim + d] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A reaction is the residual at the prescribed dofs, and what springs bear; that of a tool is neither. */
 static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional *f, const char **why)
 {
   const Problem problem = probes->model->problem;
   const Mesh    mesh    = problem->mesh;
 
   PetscFunctionBeginUser;
+  (void)why;
   if (ProbeOfTool(probes, probe)) {
-    *why = "reactions of rigid tools are not varied; ask for contact_force";
+    PetscCall(VaryToolReaction(probes, probe, f));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (LoadsSpringForce(problem->loads)) {
-    *why = "springs under a surface bear a part of the reactions";
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  if (LoadsSpringForce(problem->loads)) PetscCall(VarySprings(probes, probe, f));
   PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->held));
   for (PetscInt i = 0; i < probe->group->n_nodes; i++) {
     const PetscInt node = probe->group->nodes[i];
@@ -53,6 +119,22 @@ static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional
     for (int d = 0; d < mesh->dim; d++)
       if (LoadsPrescribed(problem->loads, node * mesh->dim + d)) f->held[node * mesh->dim + d] = weight[d];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The free component of a tool's motion is an unknown, the others have no error. scale: value for each unit of the
+   component (length or radian). */
+static PetscErrorCode VaryTool(Probes probes, const Probe *probe, int component, PetscReal scale, Functional *f)
+{
+  const Mesh      mesh = probes->model->mesh;
+  const MeshTool *tool = ToolOfPair(mesh, probes->scene, probe->pair);
+  PetscMPIInt     rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->direct));
+  if (tool && tool->motion->free[component] && !rank)
+    f->direct[tool->node * mesh->dim + ToolDof(mesh, component)] = component < 3 ? scale : scale / tool->arm;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,11 +162,8 @@ static PetscErrorCode VaryContactForce(Probes probes, const Probe *probe, Functi
   PetscFunctionBeginUser;
   PetscCall(FindShared(probes, probe, why));
   if (*why) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(mesh->n_nodes, &mark));
-  for (PetscInt i = 0; i < probe->group->n_nodes; i++) mark[probe->group->nodes[i]] = 1;
-  PetscCall(MeshSumNodes(mesh, 1, mark));
-  PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->pressed));
-  f->pair = probe->pair;
+  PetscCall(MarkGroup(mesh, probe, &mark));
+  PetscCall(CreatePressed(probes, probe->pair, f));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
     PetscReal x[3], weight[3];
 
@@ -147,8 +226,7 @@ static PetscErrorCode VaryPressureMean(Probes probes, const Probe *probe, Functi
   PetscCall(FindShared(probes, probe, why));
   if (*why) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProbeMeanWeights(probes, probe, &slaves, &share, &area));
-  PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->pressed));
-  f->pair = probe->pair;
+  PetscCall(CreatePressed(probes, probe->pair, f));
   for (PetscInt k = 0; k < slaves.n; k++) {
     const PetscReal weight =
       share[k] * (slaves.force[k] > 0 ? slaves.pressure[k] / slaves.force[k] : 1 / slaves.area[k]);
@@ -172,8 +250,7 @@ static PetscErrorCode VaryFriction(Probes probes, const Probe *probe, Functional
   PetscCall(FindShared(probes, probe, why));
   if (*why) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactGetNodes(probes->model->contact, probe->pair, probes->model->u, &slaves));
-  PetscCall(MeshCreateLocal(mesh, dim, &f->pressed));
-  f->pair = probe->pair;
+  PetscCall(CreatePressed(probes, probe->pair, f));
   for (PetscInt k = 0; k < slaves.n; k++) {
     const PetscInt   n      = slaves.node[k];
     const PetscReal *normal = &slaves.normal[3 * k];
@@ -221,6 +298,10 @@ PetscErrorCode ProbeVary(Probes probes, int i, Functional *functional, const cha
     case PROBE_DISPLACEMENT: PetscCall(VaryDisplacement(probes, probe, functional, why)); break;
     case PROBE_DISTANCE: PetscCall(VaryDistance(probes, probe, functional, why)); break;
     case PROBE_PRESSURE_MEAN: PetscCall(VaryPressureMean(probes, probe, functional, why)); break;
+    case PROBE_TOOL_MOTION: PetscCall(VaryTool(probes, probe, probe->scene->component, 1, functional)); break;
+    case PROBE_TOOL_ROTATION:
+      PetscCall(VaryTool(probes, probe, 3 + probe->scene->component, 180 / PETSC_PI, functional));
+      break;
     case PROBE_FRICTION_FORCE:
     case PROBE_FRICTION_TORQUE: PetscCall(VaryFriction(probes, probe, functional, why)); break;
     default: *why = "its kind is no smooth function of the displacements";
@@ -244,5 +325,6 @@ PetscErrorCode ProbeVariationFree(Functional *functional)
   PetscCall(PetscFree(functional->direct));
   PetscCall(PetscFree(functional->held));
   PetscCall(PetscFree(functional->pressed));
+  PetscCall(PetscFree(functional->pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

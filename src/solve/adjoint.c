@@ -17,8 +17,7 @@ static PetscErrorCode RightHandSide(Model model, const Functional *functional, V
   if (functional->held) PetscCall(ElasticityMultiplyTransposed(model->problem->elasticity, functional->held, r));
   if (pressed) {
     PetscCall(ContactMultiplyBegin(model->contact, functional->held ? functional->held : none, model->t, model->t));
-    PetscCall(
-      ContactMultiplyTransposed(model->contact, functional->pressed ? functional->pair : -1, functional->pressed));
+    PetscCall(ContactMultiplyTransposed(model->contact, functional->pairs, functional->pressed));
     PetscCall(ContactTangent(model->contact, model->problem->trial, model->t, &C, &changed));
     PetscCall(ContactMultiplyEnd(model->contact, r));
   }
@@ -56,7 +55,8 @@ static PetscErrorCode PenaltyPart(Model model, const Functional *functional, con
   PetscCall(Work(model->mesh, y, f, error));
   if (functional->pressed) {
     PetscCall(PetscArrayzero(f, n));
-    PetscCall(ContactPairStifferForces(model->contact, functional->pair, source, f));
+    for (int p = 0; p < ContactPairs(model->contact); p++)
+      if (functional->pairs[p]) PetscCall(ContactPairStifferForces(model->contact, p, source, f));
     PetscCall(Work(model->mesh, functional->pressed, f, &own));
   }
   *error += own;
@@ -138,7 +138,7 @@ static PetscErrorCode AddShapeErrors(Model model, int p, int n, const Functional
 
     if (!adjoint[i].known) continue;
     if (known) PetscCall(Work(model->mesh, adjoint[i].y, f, &work));
-    if (known && functional[i].pressed && functional[i].pair == p)
+    if (known && functional[i].pressed && functional[i].pairs[p])
       PetscCall(Work(model->mesh, functional[i].pressed, f, &own));
     error[i] = known ? error[i] + work + own : NAN;
   }

@@ -4,9 +4,10 @@
 
      dJ = direct . du + held . dR + pressed . dR_p
 
-   R is the residual (element and contact forces less the loads), R_p its part from one contact pair. A displacement
-   has `direct` alone; a reaction is the residual at prescribed dofs, which `held` sums up; a contact force is the
-   residual of a pair at the nodes of its slave, which `pressed` sums up. The adjoint solution y is `held` at the
+   R is the residual (element and contact forces less the loads), R_p its part from some contact pairs. A
+   displacement has `direct` alone; a reaction is the residual at prescribed dofs, which `held` sums up; a contact force
+   is the residual of a pair at the nodes of its slave, which `pressed` sums up, and the reaction of a rigid tool that
+   of all pairs whose master it is. The adjoint solution y is `held` at the
    prescribed dofs, and at the free ones it solves
 
      (K^T y)_f = -(direct + C_p^T pressed)_f,  K = dR/du, C_p = dR_p/du.
@@ -27,7 +28,7 @@ typedef struct {
   PetscReal *direct;  /* this rank's share [n_nodes*dim]; NULL: none */
   PetscReal *held;    /* [n_nodes*dim], ghosts included; NULL: none */
   PetscReal *pressed; /* [n_nodes*dim], ghosts included; NULL: none */
-  int        pair;    /* that it is of */
+  PetscBool *pairs;   /* that it is of [ContactPairs()]; NULL with it */
 } Functional;
 
 typedef struct {
