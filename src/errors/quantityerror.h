@@ -6,8 +6,8 @@
    solver stopped. Every part is the true less the computed value, in the units of the quantity. A part that is not
    known is NaN: that of the load steps where the answer depends on the path, unless a second run gives it
    (QuantityErrorSetSteps(), run/historyerror.c), and that of the surfaces in contact
-   where one master is rigid, analytic or of facets. Of smooth masters it is how far they miss their own nodes
-   (ContactPairShapeForces()). It is 0 where there is no such cause. That straight edges of
+   where one master is a meshed rigid tool or of facets. Of smooth masters it is how far they miss their own nodes
+   (ContactPairShapeForces()). It is 0 where there is no such cause, as with analytic masters. That straight edges of
    elements stand for curved boundaries is in no part.
 
    QuantityErrorShares() serves quantities without a first variation, such as a peak or the end of a contact zone: it

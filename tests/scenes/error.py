@@ -4,6 +4,7 @@ from harness import Check, arguments, run, SCENES
 
 RUNS = SCENES.parent.parent / "runs"
 TIP = 6.925  # second order, 48 x 48 mixed elements
+LAME = -13.646059  # force of the bed around a cylinder of length 0.5, see foundation.py
 
 
 def cook(order, formulation, *overrides):
@@ -107,8 +108,32 @@ for way, dt in ("true", 0.1), ("history", 0.1), ("true", 1 / 320):
 check.holds("unless it is paid for, the history is not included", force["true", 0.1][1] == "not included")
 ratio = (force["true", 1 / 320][0] - force["history", 0.1][0]) / force["history", 0.1][1]
 check.holds("history: effectivity", 0.5 <= ratio <= 2, f"{ratio:.3f}")
-rigid = run(args, RUNS / "o_ring.yaml", out="rigid", overrides=["output.error=true", "mesh.parameters.n=6"]).summary()
-check.holds("rigid masters are not included",
-            rigid["error"]["force"]["causes"]["contact surfaces"] == "not included")
+rigid = run(args, RUNS / "o_ring.yaml", out="rigid", overrides=[
+    "output.error=true", "mesh.parameters.n=6", "probes.2={name: lid, reaction: lid, component: y}",
+    "probes.3={name: groove, reaction: groove, component: y}"]).summary()
+tool = rigid["error"]
+check.holds("meshed rigid masters are not included", tool["force"]["causes"]["contact surfaces"] == "not included")
+check.near("reaction of a tool: as the contact force", -tool["lid"]["sum"] / tool["force"]["sum"], 1, 1e-9)
+check.near("reaction of a tool: as that of what holds it", -tool["groove"]["sum"] / tool["lid"]["sum"], 1, 1e-6)
+seal = run(args, JOBS / "dovetail_ring.yaml", out="seal", overrides=[
+    "output.error=true", "probes=[{name: lid, reaction: lid, component: y}, {name: force, contact_force: lid, "
+    "component: y}, {name: side, reaction: groove, component: x}]"]).summary()["error"]
+for cause in "bodies", "penetration", "elastic slip":
+    check.near(f"reaction of a tool with friction, {cause}: as the contact force",
+               -seal["lid"]["causes"][cause] / seal["force"]["causes"][cause], 1, 1e-9)
+# A tool that a force pushes; reference: 160 x 80 elements of second order, a penalty 1000 times as stiff
+pushed = run(args, SCENES / "tool.yaml", out="pushed", overrides=["output.error=true"]).summary()
+ratio = (-0.591043 - pushed["probes"]["way"]) / pushed["error"]["way"]["sum"]
+check.holds("way of a tool that is pushed: effectivity", 0.5 <= ratio <= 2, f"{ratio:.3f}")
+check.near("an analytic master is the true surface", pushed["error"]["way"]["causes"]["contact surfaces"], 0, 0)
+check.near("what is given has no error", [pushed["error"][name]["sum"] for name in ("aside", "turn")], 0, 0)
+check.near("so has a force that is given", pushed["error"]["force"]["sum"] / pushed["probes"]["force"], 0, 1e-8)
+# A ring in an elastic bed, whose springs bear all of the reaction: Lame
+bed = run(args, SCENES / "lame.yaml", out="bed", overrides=[
+    "geometry=axisymmetric", "mesh.parameters={form: 2, n_wall: 8, len: 0.5}", "output.error=true",
+    "supports=[{surface: end_low, uy: 0}, {surface: end_high, uy: 0}, {surface: outer, spring: [300, 0]}]",
+    "probes=[{name: bed, reaction: outer, component: x}]"]).summary()
+ratio = (LAME - bed["probes"]["bed"]) / bed["error"]["bed"]["sum"]
+check.holds("reaction of springs: effectivity", 0.5 <= ratio <= 2, f"{ratio:.3f}")
 check.holds("a deviation has no estimate", "smooth" in error["noise_max"].get("not_estimated", ""))
 check.finish()
