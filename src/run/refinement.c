@@ -354,13 +354,14 @@ static void TakeScale(Refinement *r, double more)
   for (PetscInt c = 0; c < mesh->n_cells; c++) r->size[c] *= (PetscReal)r->scale;
 }
 
-/* How many times larger an element may become. Without an estimate of the probe the errors of the cells are those of
-   the energy, and say nothing of what the probe needs: an element does not become larger than it was before a mesh that
-   is finer everywhere. */
+/* How many times larger an element may become. After a mesh that is finer everywhere an element does not become larger
+   than it was before that one, whose answer would then be no witness of the next one. Without an estimate of the probe
+   the errors of the cells are those of the energy, and say nothing of what the probe needs: no element becomes larger.
+ */
 static PetscReal Largest(const Refinement *r)
 {
-  if (!Last(r)->rough) return REFINEMENT_LARGER;
-  return r->even ? REFINEMENT_WITNESS : 1;
+  if (r->even) return REFINEMENT_WITNESS;
+  return Last(r)->rough ? 1 : REFINEMENT_LARGER;
 }
 
 /* Chooses the sizes of the next mesh's elements and forecasts it. finer: it may have so many times the elements, to the
