@@ -589,13 +589,13 @@ static PetscBool TermFactorsAgree(const ContactPair *pair, PetscInt c, const Fre
   return PETSC_TRUE;
 }
 
-/* Says whether fresh lists find the same of this term as the solve did. An open term must be open. On facets a closed
-   gap must agree. On fits the gap changes a little with their frames, so frames and points must agree, and with
-   offsets the gap must agree within `drift`. Area factors must agree on both, by factor_drift. At a jump of what the
-   solution asks for, fresh factors weight the points of a term in another way, or leave it none: closed gaps are
-   compared with the factors in force. Where all may lag, fresh fits may have other frames and points, since they say by
-   how much the gap is wrong. depth is the largest penetration of the pair; where the pair is augmented and penetrations
-   go to zero, the bound on them counts instead. */
+/* Says whether fresh lists find the same of this term as the solve did. An open term must be open, as far as gaps do
+   not drift. On facets a closed gap must agree. On fits the gap changes a little with their frames, so frames and
+   points must agree, and with offsets the gap must agree within `drift`. Area factors must agree on both, by
+   factor_drift. At a jump of what the solution asks for, fresh factors weight the points of a term in another way, or
+   leave it none: closed gaps are compared with the factors in force. Where all may lag, fresh fits may have other
+   frames and points, since they say by how much the gap is wrong. depth is the largest penetration of the pair; where
+   the pair is augmented and penetrations go to zero, the bound on them counts instead. */
 static PetscBool TermAgrees(const ContactPair *pair, PetscInt c, const Freshly *fresh)
 {
   const PetscReal gap  = ContactTermGap(pair, fresh->factor, fresh->gaps, c, NULL),

@@ -184,7 +184,7 @@ in front of it with a penetration.
 @*/
 PetscBool OwnBodyTurnsFrom(const Nearest *look, const Candidate *c, const Foot *foot)
 {
-  const PetscReal *own = &look->lists->slave_normal[3 * look->q];
+  const PetscReal *own   = &look->lists->slave_normal[3 * look->q];
   PetscReal        along = 0, cosine = 0, square = 0;
 
   if (!look->listed) return PETSC_FALSE;
