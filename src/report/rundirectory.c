@@ -250,8 +250,8 @@ PetscErrorCode RunDirectoryMake(MPI_Comm comm, const char *directory)
 @*/
 void RunDirectoryClear(const char *directory)
 {
-  static const char *const names[] = {SummaryName,  "results.xdmf",  "bodies.xdmf",      "results.vtkhdf",
-                                      "results.h5", "checkpoint.h5", "checkpoint.h5.tmp"};
+  static const char *const names[] = {SummaryName,  "results.xdmf",  "bodies.xdmf",       "results.vtkhdf",
+                                      "results.h5", "checkpoint.h5", "checkpoint.h5.tmp", "error.log"};
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(names); i++) FileRemove(directory, names[i]);
 }

@@ -510,6 +510,7 @@ static PetscErrorCode ExtendOffsets(Part *part, hid_t steps, hsize_t rows)
   char       name[DATASET_PATH_SIZE], path[DATASET_PATH_SIZE];
 
   PetscFunctionBeginUser;
+  if (!Exists(part->vtk, "PointData")) PetscFunctionReturn(PETSC_SUCCESS); /* the scene asks for no field */
   CallHDF5(arrays = H5Gopen2(part->vtk, "PointData", H5P_DEFAULT));
   CallHDF5(H5Gget_info(arrays, &info));
   for (hsize_t k = 0; k < info.nlinks; k++) {

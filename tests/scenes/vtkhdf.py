@@ -117,4 +117,9 @@ for name, (geometry, order, tool) in TOOLS.items():
                 (directory / "results.vtkhdf").resolve() == (directory / "results.h5").resolve())
     for reader in readers:
         reader(name, directory / "results.vtkhdf")
+(directory / "error.log").write_text("of an earlier run")
+run(args, path, "-quiet", "-overwrite", out=name, overrides=["output.fields=[]"])
+with h5py.File(directory / "results.vtkhdf", "r") as file:
+    check.holds("no fields: steps all the same", file["VTKHDF/Steps"].attrs["NSteps"] > 1)
+check.holds("no fields: the earlier run's files are gone", not (directory / "error.log").exists())
 check.finish()
