@@ -57,6 +57,7 @@ static PetscErrorCode FactorBegin(Factor f)
   mumps->ICNTL(14) = FACTOR_WORKSPACE;
   PetscCall(MumpsOptionsRead(mumps->icntl, mumps->cntl));
   f->workspace     = mumps->ICNTL(14);
+  mumps->ICNTL(33) = !f->symmetric;       /* the determinant; symmetric factors count negative pivots */
   mumps->ICNTL(18) = f->size > 1 ? 3 : 0; /* 3: each rank gives the entries that it has */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -523,6 +524,15 @@ static PetscErrorCode CallFactor(Factor f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes the sign of the determinant, which MUMPS gives to the first rank. */
+static PetscErrorCode FactorFindOdd(Factor f)
+{
+  PetscFunctionBeginUser;
+  f->odd = (PetscBool)(f->mumps.RINFOG(12) < 0);
+  PetscCallMPI(MPI_Bcast(&f->odd, sizeof(f->odd), MPI_BYTE, 0, f->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FactorMake - factors a matrix.
 
@@ -554,6 +564,7 @@ PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
   PetscCall(CallFactor(f));
   PetscCall(FactorGetReason(f, "factorisation", reason));
   f->exists = *reason ? PETSC_FALSE : PETSC_TRUE;
+  if (f->exists && !f->symmetric) PetscCall(FactorFindOdd(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -588,6 +599,25 @@ PetscInt FactorNegatives(Factor f)
 {
   if (!f->exists || !f->symmetric) return -1;
   return PetscMax(0, f->mumps.INFOG(12) - (FactorHasBorder(f) ? BorderedFactorCount(f->bordering) : 0));
+}
+
+/*@
+  FactorParity - tells whether the matrix that was factored has an odd number of negative eigenvalues.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. f - the factor
+
+  Notes:
+  Returns 1 where the number is odd, 0 where it is even, -1 where there is no factor.
+
+  The sign of the determinant says so, of matrices that are not symmetric, too: complex eigenvalues come in pairs.
+@*/
+PetscInt FactorParity(Factor f)
+{
+  if (!f->exists) return -1;
+  return f->symmetric ? FactorNegatives(f) % 2 : (PetscInt)f->odd;
 }
 
 /*@

@@ -36,4 +36,5 @@ PetscErrorCode FactorSolveTransposed(Factor, Vec b, Vec x);
 PetscErrorCode FactorSolveColumns(Factor, Mat B, Mat X);
 PetscBool      FactorIsSymmetric(Factor);
 PetscInt       FactorNegatives(Factor);
+PetscInt       FactorParity(Factor);
 void           FactorGetCost(Factor, FactorCost *);

@@ -451,6 +451,30 @@ PetscErrorCode LinearSolverNegatives(LinearSolver solver, PetscInt *negatives)
 }
 
 /*@
+  LinearSolverParity - tells whether the operator that was factored last has an odd number of negative eigenvalues.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. solver - the linear solver
+
+  Output Parameter:
+. parity - 1: odd, 0: even; -1 where it is not known: the solver is iterative
+
+  Note:
+  Operators need not be symmetric. That operator may be an older one than that which was solved with last.
+@*/
+PetscErrorCode LinearSolverParity(LinearSolver solver, PetscInt *parity)
+{
+  Factor factor;
+
+  PetscFunctionBeginUser;
+  PetscCall(DirectSolverFactor(solver->ksp, &factor));
+  *parity = factor ? FactorParity(factor) : -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   LinearSolverKept - gets the factor that may serve more than one operator.
 
   Not collective

@@ -29,4 +29,5 @@ PetscErrorCode LinearSolverColumns(LinearSolver, Mat B, Mat X, PetscBool *able);
 PetscErrorCode LinearSolverSetStart(LinearSolver, PetscReal residual);
 PetscErrorCode LinearSolverSetPrediction(LinearSolver, PetscBool);
 PetscErrorCode LinearSolverNegatives(LinearSolver, PetscInt *negatives);
+PetscErrorCode LinearSolverParity(LinearSolver, PetscInt *parity);
 ReusedFactor   LinearSolverKept(LinearSolver);

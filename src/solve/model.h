@@ -79,6 +79,7 @@ typedef struct {
   PetscInt    cycles;      /* times that the contact set repeated itself and Newton's steps were shortened */
   char        cycle[256];  /* the last repetition: its period and nodes, in gmsh's tags */
   PetscInt    damped;      /* 1: tangents were shifted */
+  PetscBool   indefinite;  /* with friction: a tangent of the last solve was that of no stable state */
   PetscReal   damping;     /* energy that was taken away then */
   char        jump[256];   /* the node that jumped to another equilibrium, and how far; empty: none did */
   PetscReal   facing;      /* SOLVE_FACING: turn of surfaces that lie opposite each other (radians) */

@@ -251,6 +251,19 @@ static PetscErrorCode ModelStopCrawl(Model model, SNESConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Notes whether tangents with friction on the way were those of no stable state. Without friction ModelStopUnstable()
+   and the line search look at that. */
+static PetscErrorCode ModelNoteIndefinite(Model model)
+{
+  PetscBool odd;
+
+  PetscFunctionBeginUser;
+  if (!ContactHasFriction(model->contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelTangentOdd(model, &odd));
+  model->work->odd = (PetscBool)(model->work->odd || odd);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Ends a solve that wanders where equilibrium is not stable, if a restraint may help then. Nodes with pressures have
    negative eigenvalues of their own. */
 static PetscErrorCode ModelStopUnstable(Model model, SNESConvergedReason *reason)
@@ -286,6 +299,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   (void)xnorm;
   (void)snorm;
   if (it > 0) PetscCall(ModelCountCut(model, x));
+  if (it > 0) PetscCall(ModelNoteIndefinite(model));
   PetscCall(ProblemRoundOff(model->problem, &round_off));
   PetscCall(SNESGetFunction(snes, &F, NULL, NULL));
   PetscCall(ModelHeldResidual(model, F, &fnorm, &force));
@@ -482,6 +496,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   model->work->turned           = 0;
   model->work->crawls           = 0;
   model->work->indefinite       = 0;
+  model->work->odd              = PETSC_FALSE;
   model->work->unstable         = PETSC_FALSE;
   model->work->stalled          = PETSC_FALSE;
   model->work->relaxed.waits    = PETSC_FALSE;
@@ -504,6 +519,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   if (model->work->cycling) report->result = SOLVE_CYCLE;
   if (model->work->unstable) report->result = SOLVE_UNSTABLE;
   if (report->result == SOLVE_LINE_SEARCH && model->work->balanced) report->result = SOLVE_CONVERGED;
+  report->indefinite = model->work->odd;
   if (report->result == SOLVE_LINEAR ||
       (report->result != SOLVE_CONVERGED && its > 0 && LinearCheckLost(model->linear)))
     PetscCall(ModelLinearFailure(model, &report->result));

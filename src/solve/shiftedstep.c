@@ -99,8 +99,8 @@ static PetscErrorCode Potential(Model model, Vec x, PetscReal *energy)
   Note:
   That is what the potential has fallen by at the load of the step, or the work against springs that are anchored at
   each iterate, whichever is less. The first counts what the linear step of the start has put into stiff parts, the
-  second what iterates on the way have. With friction, and with loads that have no energy, there is no potential, and the
-  work is told.
+  second what iterates on the way have. With friction, and with loads that have no energy, there is no potential, and
+the work is told.
 @*/
 PetscErrorCode ModelShiftEnd(Model model, PetscReal *taken)
 {
@@ -208,18 +208,31 @@ PetscErrorCode ModelShiftRenew(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether the tangent has no negative eigenvalue but those of pressures, as far as that is known. */
+static PetscErrorCode Stable(Model model, PetscBool *stable)
+{
+  PetscInt  negatives;
+  PetscBool odd;
+
+  PetscFunctionBeginUser;
+  PetscCall(LinearSolverNegatives(model->work->solver, &negatives));
+  PetscCall(ModelTangentOdd(model, &odd));
+  *stable = (PetscBool)(negatives < 0 ? !odd : negatives <= model->work->shift.pressures);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Says whether the step from u to the free displacements x - y serves: the tangent has no negative eigenvalue, the step
    leads downhill for the forces b, and it turns no cell far. */
 static PetscErrorCode Serves(Model model, const PetscReal *u, Vec x, Vec b, Vec y, PetscBool *serves)
 {
-  PetscInt   negatives;
   PetscReal *v, slope, turn;
+  PetscBool  stable = PETSC_FALSE;
   Vec        end;
 
   PetscFunctionBeginUser;
-  PetscCall(LinearSolverNegatives(model->work->solver, &negatives));
+  PetscCall(Stable(model, &stable));
   PetscCall(VecDotRealPart(b, y, &slope));
-  *serves = (PetscBool)(negatives <= model->work->shift.pressures && slope > 0);
+  *serves = (PetscBool)(stable && slope > 0);
   if (!*serves) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &v));
   PetscCall(VecDuplicate(x, &end));

@@ -121,6 +121,31 @@ PetscErrorCode ModelReleaseTangent(Model model)
 }
 
 /*@
+  ModelTangentOdd - says whether the tangent that was factored last has an odd number of negative eigenvalues.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. model - the model
+
+  Output Parameter:
+. odd - it has, which no stable state has; false where it is not known
+
+  Note:
+  With friction the tangent is not symmetric, and nothing else is known of its eigenvalues. Where nodes have pressures,
+  it has negative ones of its own, and MUMPS's sign of the determinant does not follow their number.
+@*/
+PetscErrorCode ModelTangentOdd(Model model, PetscBool *odd)
+{
+  PetscInt parity;
+
+  PetscFunctionBeginUser;
+  PetscCall(LinearSolverParity(model->work->solver, &parity));
+  *odd = (PetscBool)(parity == 1 && !model->mesh->saddle);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ModelLinearise - computes the tangent at the trial state for linear solves with it.
 
   Collective

@@ -28,7 +28,8 @@
 #define STEPPER_STRETCH 1.4142135623730951
 /* After this many failed static solves of a step, or where no shorter step is allowed, the next solve is damped, as
    `stepping.damping` says. Shorter steps are cheaper where they help, and at a limit point no static step does. In the
-   step after a damped one the first failure is enough. */
+   step after a damped one the first failure is enough. Where damping waits for the last step, solves count that met
+   tangents of no stable state. */
 #define STEPPER_STATIC 3
 /* If the landing point is at most this many dt away, the way to it is halved, so that no very short step remains. */
 #define STEPPER_HALVE 2.0
@@ -640,7 +641,7 @@ static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscRe
   } else {
     PetscCall(ModelSolve(stepper->model, end, solve));
     if (damping != DAMPING_NONE && MayBeUnstable(solve->result))
-      *failures += last ? STEPPER_STATIC : damping == DAMPING_AUTO;
+      *failures += last ? STEPPER_STATIC : damping == DAMPING_AUTO || solve->indefinite;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

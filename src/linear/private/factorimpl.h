@@ -32,6 +32,7 @@ struct _n_Factor {
   MPI_Comm         comm;
   PetscMPIInt      rank, size;
   PetscBool        symmetric, exists; /* exists: there is a factor */
+  PetscBool        odd;               /* its matrix has a determinant below 0; not of symmetric ones */
   int              ordering;
   PetscObjectId    matrix;              /* whose places row and column hold; 0: none's */
   PetscObjectState pattern;             /* the state of its pattern */

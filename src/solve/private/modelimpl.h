@@ -170,11 +170,13 @@ typedef struct _n_ModelWork {
   PetscInt    crawls;             /* steps in a row of which the line search left next to nothing */
   PetscInt    indefinite;         /* iterations in a row whose tangents were indefinite */
   PetscBool   unstable;           /* the solve ended because they remained so */
+  PetscBool   odd;                /* with friction: a tangent had an odd number of negative eigenvalues */
 } ModelWork;
 
 /* tangent.c */
 PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, PetscReal t);
 PetscErrorCode ModelReleaseTangent(Model);
+PetscErrorCode ModelTangentOdd(Model, PetscBool *odd);
 PetscErrorCode ModelLinearise(Model, KSP *);
 /* heldsolve.c */
 PetscErrorCode ModelHeldTakeOut(Model, Vec z);
