@@ -30,7 +30,7 @@ def mesh(**parameters):
 
 
 SQUEEZE, SOLID = HERE / "squeeze.yaml", HERE / "squeeze_solid.yaml"
-PUNCH, ARCH = HERE / "punch.yaml", HERE / "arch.yaml"
+PUNCH, ARCH, LIP = HERE / "punch.yaml", HERE / "arch.yaml", HERE / "lip.yaml"
 SPHERES, PIPE, SLIDE = RUNS / "spheres.yaml", RUNS / "pipe_pinch.yaml", RUNS / "slide_flat.yaml"
 STACK = SCENES / "stack.yaml"
 FORCES = ("force", "top", "bottom")  # of the punch: one force
@@ -263,6 +263,9 @@ CASES = [
     Case("steps", "snap-through", "a plane presses a shallow arch past its limit load, at t = 0.38: it jumps, and the run says so",
          ARCH, [], Told("jumps.found", least=1,
                         last=r"from t = 0\.3[0-7]\d* to 0\.3[789]\d*: node \d+ \(0, 15, 0\) moved by (1\.9|[23])")),
+    Case("steps", "edge that folds", "friction folds the edge of a rubber ring, which jumps: tangents are indefinite and not symmetric",
+         LIP, [], (Stops("no equilibrium"), Stops("no equilibrium"), Told("damping.steps", least=1),
+                   Told("damping.steps", least=1))),
     Case("steps", "N_c beyond all candidates", "fewer open nodes than the control asks for", PUNCH,
          ["stepping={control: contact, initial: 0.1, N_c: 10000}"],
          Same("stepping={control: fixed, initial: 0.1}", probes=ANSWER, bound=(1e-8, 1e-8, 1e-5, 0.005))),
