@@ -309,8 +309,19 @@ PetscInt CellFacesFind(const SliceMesh *slice, const PetscInt corner[CELL_FACE_C
 
 /* The graph */
 
-/* Lists the pairs of cells that share a face of this rank. */
-static PetscErrorCode ListPairs(const SliceMesh *slice, PetscInt *n, PetscInt **pairs)
+/*@
+  CellFacesPairs - lists the pairs of cells that share a face of this rank.
+
+  Not collective
+
+  Input Parameter:
+. slice - after CellFacesCreate()
+
+  Output Parameters:
++ n     - number of pairs
+- pairs - ids of the cells [2*n], to be freed with PetscFree()
+@*/
+PetscErrorCode CellFacesPairs(const SliceMesh *slice, PetscInt *n, PetscInt **pairs)
 {
   const CellFace *end = slice->cell_faces + slice->corner_faces[slice->n_corners];
   PetscInt        same, at = 0;
@@ -331,72 +342,6 @@ static PetscErrorCode ListPairs(const SliceMesh *slice, PetscInt *n, PetscInt **
       }
     }
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-typedef struct {
-  PetscInt cell[2];
-} CellPair;
-
-static void PackPair(const void *context, PetscInt i, void *packed)
-{
-  CellPair *pair = packed;
-
-  for (int k = 0; k < 2; k++) pair->cell[k] = ((const PetscInt *)context)[2 * i + k];
-}
-
-/* Gathers the pairs of all ranks on the first one, in their order. */
-static PetscErrorCode GatherPairs(const SliceMesh *slice, PetscInt *n, CellPair **pairs)
-{
-  PetscInt    *mine, n_mine;
-  PetscMPIInt *to;
-
-  PetscFunctionBeginUser;
-  PetscCall(ListPairs(slice, &n_mine, &mine));
-  PetscCall(PetscCalloc1(n_mine, &to));
-  PetscCall(ExchangeRecords(slice->comm, sizeof(CellPair), n_mine, to, PackPair, mine, n, (void **)pairs));
-  PetscCall(PetscFree(to));
-  PetscCall(PetscFree(mine));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  CellFacesNeighbours - computes the graph of cells that share faces, on the first rank.
-
-  Collective
-
-  Input Parameter:
-. slice - after CellFacesCreate()
-
-  Output Parameters:
-+ offsets   - start of each cell's neighbours in adjacency [n_cells + 1]; NULL on other ranks
-- adjacency - neighbours across faces; NULL on other ranks
-
-  Note:
-  The caller frees both arrays with PetscFree().
-@*/
-PetscErrorCode CellFacesNeighbours(const SliceMesh *slice, PetscInt **offsets, PetscInt **adjacency)
-{
-  const PetscInt n_cells = slice->cell_start[slice->size];
-  PetscInt       n, *next;
-  CellPair      *pairs;
-
-  PetscFunctionBeginUser;
-  *offsets = *adjacency = NULL;
-  PetscCall(GatherPairs(slice, &n, &pairs));
-  if (!slice->rank) {
-    PetscCall(PetscCalloc1(n_cells + 1, offsets));
-    PetscCall(PetscMalloc1(n_cells, &next));
-    for (PetscInt i = 0; i < n; i++)
-      for (int k = 0; k < 2; k++) (*offsets)[pairs[i].cell[k] + 1]++;
-    for (PetscInt c = 0; c < n_cells; c++) (*offsets)[c + 1] += (*offsets)[c];
-    PetscCall(PetscMalloc1(2 * n, adjacency));
-    PetscCall(PetscArraycpy(next, *offsets, n_cells));
-    for (PetscInt i = 0; i < n; i++)
-      for (int k = 0; k < 2; k++) (*adjacency)[next[pairs[i].cell[k]]++] = pairs[i].cell[1 - k];
-    PetscCall(PetscFree(next));
-  }
-  PetscCall(PetscFree(pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,7 @@
 /* Creation of the distributed mesh from gmsh's file, and coordinates of its nodes. */
 #include "mesh/mesh.h"
 #include "cellfaces.h"
+#include "cellpartition.h"
 #include "formulationchoice.h"
 #include "gmsh.h"
 #include "meshdistribution.h"
@@ -96,32 +97,25 @@ static PetscErrorCode FindGroups(Scene scene, const char *file, SliceMesh *slice
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Decides which rank gets which of the slice's cells: part, to be freed with PetscFree(). The graph of the cells is the
-   only thing that the first rank gathers of all of them. The faces of the cells are freed. */
+/* Decides which rank gets which of the slice's cells: part, to be freed with PetscFree(). The faces of the cells are
+   freed. */
 static PetscErrorCode PartitionBodies(Scene scene, SliceMesh *slice, PetscMPIInt **part, Mesh mesh)
 {
-  const PetscInt n       = slice->cell_start[slice->size];
-  PetscBool     *contact = NULL;
-  PetscInt      *offsets = NULL, *adjacency = NULL;
-  PetscMPIInt   *all   = NULL, *counts, *starts;
-  CellLinks      links = {0};
+  PetscBool *contact;
+  CellLinks  links;
+  CellGraph  graph;
 
   PetscFunctionBeginUser;
-  if (slice->size > 1) {
-    PetscCall(SliceGroupsContactCells(scene, slice, mesh, &contact));
-    PetscCall(SliceLinksFind(scene, slice, mesh, &links));
-    PetscCall(CellFacesNeighbours(slice, &offsets, &adjacency));
-  }
-  PetscCall(CellFacesFree(slice));
-  if (!slice->rank) PetscCall(PetscMalloc1(n, &all));
-  PetscCall(PartitionCells(mesh->comm, n, &offsets, &adjacency, contact, &links, all, &mesh->partition));
+  PetscCall(PetscCalloc1(slice->n_cells, part));
+  mesh->partition = (Partition){.tool = "none", .imbalance_cells = 1, .imbalance_contact = 1};
+  if (slice->size == 1) PetscCall(CellFacesFree(slice));
+  if (slice->size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SliceGroupsContactCells(scene, slice, mesh, &contact));
+  PetscCall(SliceLinksFind(scene, slice, mesh, &links));
+  PetscCall(CellGraphCreate(slice, contact, &links, CELL_GRAPH_WHOLE, &graph));
   PetscCall(PetscFree(contact));
-  PetscCall(PetscFree(links.cell));
-  PetscCall(SliceMeshCellCounts(slice, &counts, &starts));
-  PetscCall(PetscMalloc1(slice->n_cells, part));
-  PetscCallMPI(MPI_Scatterv(all, counts, starts, MPI_INT, *part, counts[slice->rank], MPI_INT, 0, mesh->comm));
-  PetscCall(PetscFree2(counts, starts));
-  PetscCall(PetscFree(all));
+  PetscCall(CellPartition(&graph, *part, &mesh->partition));
+  PetscCall(CellGraphDestroy(&graph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -449,7 +449,7 @@ void SliceGroupsCheckUses(Scene scene, const SliceMesh *slice, Mesh mesh, Compla
 /*@
   SliceGroupsContactCells - finds the cells with a face in contact, for the partition.
 
-  Collective
+  Not collective
 
   Input Parameters:
 + scene - its contact pairs
@@ -457,16 +457,14 @@ void SliceGroupsCheckUses(Scene scene, const SliceMesh *slice, Mesh mesh, Compla
 - mesh  - names of the groups
 
   Output Parameter:
-. contact - on the first rank, for each cell of the mesh; to be freed with PetscFree(). NULL on other ranks
+. contact - for each cell of the slice; to be freed with PetscFree()
 @*/
 PetscErrorCode SliceGroupsContactCells(Scene scene, const SliceMesh *slice, Mesh mesh, PetscBool **contact)
 {
-  PetscBool   *in_contact, *mine;
-  PetscMPIInt *counts, *starts;
+  PetscBool *in_contact;
 
   PetscFunctionBeginUser;
-  *contact = NULL;
-  PetscCall(PetscCalloc1(slice->n_cells, &mine));
+  PetscCall(PetscCalloc1(slice->n_cells, contact));
   PetscCall(PetscCalloc1(mesh->n_groups, &in_contact));
   for (int i = 0; i < scene->n_contacts; i++) {
     const char *const names[] = {scene->contacts[i].slave, scene->contacts[i].master};
@@ -478,12 +476,8 @@ PetscErrorCode SliceGroupsContactCells(Scene scene, const SliceMesh *slice, Mesh
     }
   }
   for (PetscInt f = 0; f < slice->n_faces; f++)
-    if (in_contact[slice->faces[f].group]) mine[slice->faces[f].cell - slice->cell_start[slice->rank]] = PETSC_TRUE;
-  if (!slice->rank) PetscCall(PetscMalloc1(slice->cell_start[slice->size], contact));
-  PetscCall(SliceMeshCellCounts(slice, &counts, &starts));
-  PetscCallMPI(MPI_Gatherv(mine, counts[slice->rank], MPIU_BOOL, *contact, counts, starts, MPIU_BOOL, 0, slice->comm));
-  PetscCall(PetscFree2(counts, starts));
+    if (in_contact[slice->faces[f].group])
+      (*contact)[slice->faces[f].cell - slice->cell_start[slice->rank]] = PETSC_TRUE;
   PetscCall(PetscFree(in_contact));
-  PetscCall(PetscFree(mine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

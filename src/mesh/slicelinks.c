@@ -135,7 +135,7 @@ static PetscErrorCode LinkPair(const SliceMesh *slice, int slave_group, int mast
 . links - on the first rank: each cell of a slave with the nearest cell of its master, by the distance of their centres
 
   Note:
-  The caller frees links->cell with PetscFree().
+  CellGraphCreate() frees them.
 @*/
 PetscErrorCode SliceLinksFind(Scene scene, const SliceMesh *slice, Mesh mesh, CellLinks *links)
 {

@@ -43,7 +43,7 @@ PetscMPIInt SliceMeshRankOf(const SliceMesh *slice, const PetscInt start[], Pets
 + slice - its ranks
 . start - first id of each rank, and the number of all
 . n     - number of ids
-- ids   - ascending
+- ids   - of any ranks; fastest where they ascend
 
   Output Parameter:
 . sf - roots are the ids of this rank, leaves those of the list
@@ -57,7 +57,7 @@ PetscErrorCode SliceMeshSF(const SliceMesh *slice, const PetscInt start[], Petsc
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &remote));
   for (PetscInt i = 0; i < n; i++) {
-    while (ids[i] >= start[r + 1]) r++;
+    if (ids[i] < start[r] || ids[i] >= start[r + 1]) r = SliceMeshRankOf(slice, start, ids[i]);
     remote[i] = (PetscSFNode){.rank = r, .index = ids[i] - start[r]};
   }
   PetscCall(PetscSFCreate(slice->comm, sf));
@@ -111,29 +111,6 @@ int SliceMeshReversedNode(const Element *element, int k)
   if (element->dim == 1) return k < 2 ? 1 - k : k;
   if (k < corners) return (corners - k) % corners;
   return k < 2 * corners ? corners + (2 * corners - 1 - k) : k;
-}
-
-/*@
-  SliceMeshCellCounts - returns how many cells each slice has, to gather or to scatter something of all cells.
-
-  Not collective
-
-  Input Parameter:
-. slice - after SliceRead()
-
-  Output Parameters:
-+ counts - of each rank; to be freed together with starts by PetscFree2()
-- starts - first id of each rank
-@*/
-PetscErrorCode SliceMeshCellCounts(const SliceMesh *slice, PetscMPIInt **counts, PetscMPIInt **starts)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(slice->size, counts, slice->size, starts));
-  for (PetscMPIInt r = 0; r < slice->size; r++) {
-    PetscCall(PetscMPIIntCast(slice->cell_start[r], &(*starts)[r]));
-    PetscCall(PetscMPIIntCast(slice->cell_start[r + 1] - slice->cell_start[r], &(*counts)[r]));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@

@@ -1,5 +1,6 @@
 /* Measures what ranks hold while a mesh is read and cut: one line for each rank with rank, cells, nodes, the peak of
-   memory (MB) before the mesh is read and until it is cut, and CPU seconds. Arguments: SCENE.yaml KEY=VALUE ... */
+   memory (MB) before the mesh is read and until it is cut, and CPU seconds. The last line has the edge cut, and the
+   largest part over the mean by cells and by cells in contact. Arguments: SCENE.yaml KEY=VALUE ... */
 #include <sys/resource.h>
 #include "mesh/mesh.h"
 
@@ -42,6 +43,8 @@ int main(int argc, char **argv)
     PetscCall(PetscPrintf(PETSC_COMM_SELF, "%d %.0f %.0f %.1f %.1f %.2f\n", r, (double)all[r * FIGURES + CELLS],
                           (double)all[r * FIGURES + NODES], (double)all[r * FIGURES + BEFORE],
                           (double)all[r * FIGURES + AFTER], (double)all[r * FIGURES + SECONDS]));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "cut %" PetscInt_FMT " %.3f %.3f\n", mesh->partition.edge_cut,
+                        (double)mesh->partition.imbalance_cells, (double)mesh->partition.imbalance_contact));
   PetscCall(PetscFree(all));
   PetscCall(MeshDestroy(&mesh));
   PetscCall(SceneDestroy(&scene));

@@ -61,7 +61,6 @@ typedef struct {
   int *marks;
 } SliceMesh;
 
-PetscErrorCode  SliceMeshCellCounts(const SliceMesh *, PetscMPIInt **counts, PetscMPIInt **starts);
 PetscErrorCode  SliceMeshFreeCells(SliceMesh *);
 PetscErrorCode  SliceMeshReset(SliceMesh *);
 const PetscInt *SliceMeshCellNodes(const SliceMesh *, PetscInt cell);
