@@ -71,7 +71,8 @@ static void PackMiddle(const void *context, PetscInt i, void *packed)
   *(Middle *)packed = ((const Middle *)context)[i];
 }
 
-/* Sends the middle nodes to the homes of their lowest corners. */
+/* Sends the middle nodes to the ranks that know the faces with their lowest corners. These have about as many each;
+   homes have not, because corners often have lower tags than all middle nodes. */
 static PetscErrorCode SendMiddles(const SliceMesh *slice, PetscInt *n, Middle **middles)
 {
   PetscInt     n_mine;
@@ -81,7 +82,7 @@ static PetscErrorCode SendMiddles(const SliceMesh *slice, PetscInt *n, Middle **
   PetscFunctionBeginUser;
   PetscCall(ListMiddles(slice, &n_mine, &mine));
   PetscCall(PetscMalloc1(n_mine, &to));
-  for (PetscInt i = 0; i < n_mine; i++) to[i] = SliceMeshRankOf(slice, slice->home_start, mine[i].corner[0]);
+  for (PetscInt i = 0; i < n_mine; i++) to[i] = SliceMeshRankOf(slice, slice->face_start, mine[i].corner[0]);
   PetscCall(ExchangeRecords(slice->comm, sizeof(Middle), n_mine, to, PackMiddle, mine, n, (void **)middles));
   PetscCall(PetscFree(to));
   PetscCall(PetscFree(mine));
@@ -107,7 +108,7 @@ static PetscErrorCode FindTag(const SliceMesh *slice, PetscInt id, PetscInt *tag
 
   Input Parameters:
 + file  - name of the mesh, for the complaint
-- slice - after SliceRead()
+- slice - after CellFacesCreate()
 
   Output Parameter:
 . complaint - of the nodes with the lowest tags
