@@ -1,5 +1,5 @@
 /* Cell faces: cells that share a face are found by its corners in any order, the one with the lower id first. A row of
-   bricks has the expected neighbours. */
+   bricks has the expected pairs of neighbours. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -88,26 +88,25 @@ static void TestFind(void **state)
   FreeRow(&slice);
 }
 
-static void TestNeighbours(void **state)
+static void TestPairs(void **state)
 {
-  const PetscInt expected_offsets[CELLS + 1] = {0, 1, 3, 4}, expected[] = {1, 0, 2, 1};
+  const PetscInt expected[] = {0, 1, 1, 2};
   GmshBlock      block;
   SliceMesh      slice;
-  PetscInt      *offsets, *adjacency;
+  PetscInt       n, *pairs;
 
   (void)state;
   MakeRow(&block, &slice);
-  assert_int_equal(CellFacesNeighbours(&slice, &offsets, &adjacency), PETSC_SUCCESS);
-  assert_memory_equal(offsets, expected_offsets, sizeof(expected_offsets));
-  assert_memory_equal(adjacency, expected, sizeof(expected));
-  assert_int_equal(PetscFree(offsets), PETSC_SUCCESS);
-  assert_int_equal(PetscFree(adjacency), PETSC_SUCCESS);
+  assert_int_equal(CellFacesPairs(&slice, &n, &pairs), PETSC_SUCCESS);
+  assert_int_equal(n, CELLS - 1);
+  assert_memory_equal(pairs, expected, sizeof(expected));
+  assert_int_equal(PetscFree(pairs), PETSC_SUCCESS);
   FreeRow(&slice);
 }
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestFind), cmocka_unit_test(TestNeighbours)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestFind), cmocka_unit_test(TestPairs)};
   int                     failed;
 
   if (PetscInitializeNoArguments()) return 1;
