@@ -1,8 +1,10 @@
 """What the ranks hold while a mesh is read and cut: the peak of memory of each of them above that before the mesh is read,
-and CPU seconds, by tests/bench/meshpeak.c. The meshes are a block of tetrahedra of second order and two rings of bricks
-in contact. Ranks may be more than the machine has cores. Leaves one record per run and prints the table.
+CPU seconds, and the faces that are cut, by tests/bench/meshpeak.c. The meshes are blocks of tetrahedra of second order
+and two rings of bricks in contact. Ranks may be more than the machine has cores. Leaves one record per run and prints
+the table.
     python scripts/mesh_memory_table.py [--meshpeak BINARY] [--record FILE] [--program NAME] [--only MESH ...]
---program names what is run (`now`, or `before` for an older binary); rows of other programs and meshes are kept."""
+--program names what is run (`now`, or `before` or `whole graph` for older binaries); rows of other programs and meshes
+are kept."""
 import argparse
 import csv
 import pathlib
@@ -13,9 +15,10 @@ from launch import ROOT, environment, read_records
 BLOCK = ("mesh: {file: %s, order: 2, parameters: {nx: %d, ny: %d, nz: %d, tet: 1}}\ngeometry: solid\n"
          "bodies: [{volume: block, material: {law: svk, E: 1, nu: 0.3}}]\n")
 RINGS = "mesh.parameters={n_inner: 100, n_outer: 125, n_len: 33}"
-SIZES = (36, 52)  # bricks along a side of the block, each cut into tetrahedra
+SIZES = (36, 52, 62)  # bricks along a side of the block, each cut into tetrahedra
 RANKS = (1, 2, 4, 8)
-COLUMNS = ("program", "mesh", "ranks", "cells", "nodes", "first_mb", "mean_mb", "largest_mb", "first_cpu_s")
+COLUMNS = ("program", "mesh", "ranks", "cells", "nodes", "first_mb", "mean_mb", "largest_mb", "first_cpu_s",
+           "edge_cut")
 
 
 def scenes(out):
@@ -32,19 +35,22 @@ def measure(args, name, arguments, ranks):
     text = subprocess.run(line, env=environment(args.meshpeak), cwd=args.out, capture_output=True, text=True,
                           check=True).stdout
     rows = [[float(word) for word in line.split()] for line in text.splitlines() if line[:1].isdigit()]
+    cut = [line.split()[1] for line in text.splitlines() if line.startswith("cut")]
     held = [after - before for _, _, _, before, after, _ in rows]
     return dict(zip(COLUMNS, (args.program, name, ranks, int(sum(row[1] for row in rows)),
                               int(sum(row[2] for row in rows)), f"{held[0]:.1f}", f"{sum(held) / ranks:.1f}",
-                              f"{max(held):.1f}", f"{rows[0][5]:.2f}")))
+                              f"{max(held):.1f}", f"{rows[0][5]:.2f}", cut[0] if cut else "")))
 
 
 def table(rows):
-    print("| mesh | cells | ranks | program | first rank, MB | mean, MB | first rank, bytes a cell | first rank, CPU s |")
-    print("| --- " * 8 + "|")
+    print("| mesh | cells | ranks | program | first rank, MB | mean, MB | largest, MB | first rank, bytes a cell "
+          "| first rank, CPU s | edge cut |")
+    print("| --- " * 10 + "|")
     for row in sorted(rows, key=lambda row: (row["mesh"], int(row["ranks"]), row["program"])):
         print(f"| {row['mesh']} | {int(row['cells']):,} | {row['ranks']} | {row['program']} | {float(row['first_mb']):.0f} "
-              f"| {float(row['mean_mb']):.0f} | {float(row['first_mb']) * 2**20 / int(row['cells']):.0f} "
-              f"| {row['first_cpu_s']} |")
+              f"| {float(row['mean_mb']):.0f} | {float(row['largest_mb']):.0f} "
+              f"| {float(row['first_mb']) * 2**20 / int(row['cells']):.0f} "
+              f"| {row['first_cpu_s']} | {row['edge_cut']} |")
 
 
 def main():

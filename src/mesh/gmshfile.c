@@ -23,9 +23,10 @@ static const char *const RefusedElements[] = {[6]          = "6-node prism",
                                               [18]         = "15-node prism",
                                               [19]         = "13-node pyramid"};
 
-/* An entity of the geometry and the signed tags of the physical groups that contain it. */
+/* An entity of the geometry and the signed tags of the physical groups that contain it. part: its partition, 0: none or
+   several */
 typedef struct {
-  int dim, tag, n, *physical;
+  int dim, tag, part, n, *physical;
 } Entity;
 
 /* The file, and what is known of its contents so far */
@@ -34,6 +35,8 @@ typedef struct {
   GmshMesh  *mesh;
   PetscInt   n_entities, found; /* found: the last one that was looked for */
   Entity    *entities;
+  PetscInt   n_parts;    /* partitions */
+  PetscBool *found_part; /* for each of them, whether it has elements that are not on its border alone */
   PetscBool  has_nodes;
   Portions  *portions; /* where nodes and elements go */
 } Contents;
@@ -134,32 +137,88 @@ static PetscErrorCode ReadPhysicalNames(Contents *f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ReadEntities(Contents *f)
+/* Reads how many entities of each dimension follow and makes room for them. */
+static PetscErrorCode ReadEntityCounts(Contents *f, PetscInt n[4])
 {
-  GmshReader *r = &f->reader;
-  PetscInt    n[4], total = 0;
+  PetscInt total = f->n_entities;
 
   PetscFunctionBeginUser;
   for (int dim = 0; dim < 4; dim++) {
-    n[dim] = GmshReaderCount(r);
+    n[dim] = GmshReaderCount(&f->reader);
     total += n[dim];
   }
-  if (GmshReaderFailed(r)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(total, &f->entities));
+  if (GmshReaderFailed(&f->reader)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscRealloc((size_t)total * sizeof(*f->entities), &f->entities));
+  PetscCall(PetscArrayzero(f->entities + f->n_entities, total - f->n_entities));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads what follows an entity's tag, or its partitions: its place, groups and bounding entities. */
+static PetscErrorCode ReadEntityRest(GmshReader *r, Entity *entity)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < (entity->dim ? 6 : 3); k++) (void)GmshReaderDouble(r); /* coordinates, or bounding box */
+  entity->n = (int)GmshReaderCount(r);
+  PetscCall(PetscMalloc1(entity->n, &entity->physical));
+  for (int k = 0; k < entity->n; k++) entity->physical[k] = GmshReaderInt(r);
+  for (PetscInt k = entity->dim ? GmshReaderCount(r) : 0; k > 0; k--) (void)GmshReaderInt(r); /* bounding entities */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadEntities(Contents *f)
+{
+  GmshReader *r = &f->reader;
+  PetscInt    n[4];
+
+  PetscFunctionBeginUser;
+  PetscCall(ReadEntityCounts(f, n));
   for (int dim = 0; dim < 4; dim++) {
     for (PetscInt i = 0; i < n[dim] && !GmshReaderFailed(r); i++) {
       Entity *entity = &f->entities[f->n_entities++];
 
       entity->dim = dim;
       entity->tag = GmshReaderInt(r);
-      for (int k = 0; k < (dim ? 6 : 3); k++) (void)GmshReaderDouble(r); /* coordinates of a point, or bounding box */
-      entity->n = (int)GmshReaderCount(r);
-      PetscCall(PetscMalloc1(entity->n, &entity->physical));
-      for (int k = 0; k < entity->n; k++) entity->physical[k] = GmshReaderInt(r);
-      if (!dim) continue;
-      for (PetscInt k = GmshReaderCount(r); k > 0; k--) (void)GmshReaderInt(r); /* bounding entities */
+      PetscCall(ReadEntityRest(r, entity));
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads an entity of a partitioned mesh. One that lies between partitions gets no groups, which are those of what it
+   divides. */
+static PetscErrorCode ReadPartitionedEntity(GmshReader *r, int dim, Entity *entity)
+{
+  PetscInt n_parts;
+  int      parent;
+
+  PetscFunctionBeginUser;
+  entity->dim = dim;
+  entity->tag = GmshReaderInt(r);
+  parent      = GmshReaderInt(r);
+  (void)GmshReaderInt(r); /* tag of the parent */
+  n_parts = GmshReaderCount(r);
+  for (PetscInt k = 0; k < n_parts; k++) entity->part = GmshReaderInt(r);
+  if (n_parts != 1) entity->part = 0;
+  PetscCall(ReadEntityRest(r, entity));
+  if (parent != dim) entity->n = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads the entities of a partitioned mesh, on which all its elements are. */
+static PetscErrorCode ReadPartitioned(Contents *f)
+{
+  GmshReader *r = &f->reader;
+  PetscInt    n[4], n_ghosts;
+
+  PetscFunctionBeginUser;
+  f->n_parts = GmshReaderCount(r);
+  n_ghosts   = GmshReaderCount(r);
+  for (PetscInt i = 0; i < 2 * n_ghosts; i++) (void)GmshReaderInt(r); /* entities of ghosts and their partitions */
+  PetscCall(PetscCalloc1(f->n_parts, &f->found_part));
+  PetscCall(ReadEntityCounts(f, n));
+  for (int dim = 0; dim < 4; dim++)
+    for (PetscInt i = 0; i < n[dim] && !GmshReaderFailed(r); i++)
+      PetscCall(ReadPartitionedEntity(r, dim, &f->entities[f->n_entities++]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -232,6 +291,14 @@ static const Entity *FindEntity(Contents *f, int dim, int tag)
   return NULL;
 }
 
+/* Says that a partition has elements. */
+static void FindPart(Contents *f, int dim, int tag)
+{
+  const Entity *entity = FindEntity(f, dim, tag);
+
+  if (entity && entity->part > 0 && entity->part <= f->n_parts) f->found_part[entity->part - 1] = PETSC_TRUE;
+}
+
 /* Finds the groups of the entity on which a block lies. */
 static PetscErrorCode BlockPhysicals(Contents *f, int dim, int tag, GmshBlock *block)
 {
@@ -283,6 +350,7 @@ static PetscErrorCode ReadBlock(Contents *f)
   if (!block.element && type != GMSH_POINT) RefuseElement(r, type, block.dim, entity);
   if (GmshReaderFailed(r)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ReadBlockElements(f, &block));
+  FindPart(f, block.dim, entity);
   PetscCall(BlockPhysicals(f, block.dim, entity, &block));
   PetscCall(PetscRealloc((size_t)(mesh->n_blocks + 1) * sizeof(*mesh->blocks), &mesh->blocks));
   mesh->blocks[mesh->n_blocks++] = block;
@@ -328,8 +396,13 @@ static PetscErrorCode ReadComments(Contents *f)
 static const struct {
   const char *name;
   PetscErrorCode (*read)(Contents *);
-} Sections[] = {{"$MeshFormat", ReadFormat}, {"$PhysicalNames", ReadPhysicalNames}, {"$Entities", ReadEntities},
-                {"$Nodes", ReadNodes},       {"$Elements", ReadElements},           {"$Comments", ReadComments}};
+} Sections[] = {{"$MeshFormat", ReadFormat},
+                {"$PhysicalNames", ReadPhysicalNames},
+                {"$Entities", ReadEntities},
+                {"$Nodes", ReadNodes},
+                {"$Elements", ReadElements},
+                {"$Comments", ReadComments},
+                {"$PartitionedEntities", ReadPartitioned}};
 /* One bit for each section, by its place in Sections. */
 enum { SEEN_FORMAT = 1, SEEN_NAMES = 2, SEEN_NODES = 8, SEEN_ELEMENTS = 16 };
 
@@ -343,9 +416,6 @@ static PetscErrorCode ReadSection(Contents *f, unsigned *seen)
   r->section[strcspn(r->section, " \t")] = '\0';
   for (int i = 0; i < (int)(sizeof(Sections) / sizeof(*Sections)); i++)
     if (!strcmp(r->section, Sections[i].name)) known = i;
-  if (!strcmp(r->section, "$PartitionedEntities"))
-    Complain(r->complaint, "%s: the mesh is partitioned already; write it without partitions, ranks are given out here",
-             r->file);
   if ((known != 0) != (*seen & SEEN_FORMAT))
     Complain(r->complaint, "%s: this is no gmsh mesh file (.msh, format 4.1)", r->file);
   if (GmshReaderFailed(r)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -356,6 +426,17 @@ static PetscErrorCode ReadSection(Contents *f, unsigned *seen)
   }
   if (!GmshReaderFailed(r)) GmshReaderClosing(r, known < 0 ? PETSC_TRUE : PETSC_FALSE);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Checks that no partition is in another file. */
+static void CheckParts(const Contents *f)
+{
+  for (PetscInt i = 0; i < f->n_parts; i++)
+    if (!f->found_part[i])
+      Complain(f->reader.complaint,
+               "%s: partition %" PetscInt_FMT " of %" PetscInt_FMT
+               " is not in the file, as with gmsh's option -part_split; allowed: one file with all partitions, or none",
+               f->reader.file, i + 1, f->n_parts);
 }
 
 /* Checks that the file contains all that a mesh needs. */
@@ -384,9 +465,11 @@ static PetscErrorCode ReadFile(const char *file, Portions *portions, GmshMesh *m
   PetscCall(GmshReaderClose(r));
   PetscCall(PortionsEnd(portions));
   CheckContents(r, seen);
+  CheckParts(&f);
   if (!GmshReaderFailed(r)) PetscCall(GmshSortPhysicals(mesh));
   for (PetscInt i = 0; i < f.n_entities; i++) PetscCall(PetscFree(f.entities[i].physical));
   PetscCall(PetscFree(f.entities));
+  PetscCall(PetscFree(f.found_part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -765,7 +765,11 @@ static const Wrong wrong[] = {
    {"loads.0.surface", "2 of the 2 elements of 'tool' do not lie on any body"}},
   {"\n11\n", "\n10\n", "", "", {"node 10 occurs twice", ""}},
   {"\n4 11 12 15 14", "\n3 11 12 15 14", "", "", {"two cells have the tag 3", ""}},
-  {"$Entities", "$PartitionedEntities", "", "", {"partitioned already", ""}},
+  {"$Nodes",
+   "$PartitionedEntities\n2\n0\n0 0 1 0\n9 2 1 1 1 0 0 0 1 1 0 1 1 0\n$EndPartitionedEntities\n$Nodes",
+   "",
+   "",
+   {"partition 1 of 2 is not in the file", ""}},
   {"", "", "two.msh", "none.msh", {"none.msh: there is no such file", ""}},
 };
 

@@ -1,6 +1,7 @@
 """Meshes of other programs: the same mesh in every format gives the same answer, with bodies and surfaces by their
 names; serendipity elements are completed, which is said; decks with parts, labels of faces and included files are read;
-what cannot be taken is refused by name; a file is converted once, and again when it or an included one changes."""
+partitions of gmsh do not matter; what cannot be taken is refused by name; a file is converted once, and again when it
+or an included one changes."""
 import pathlib
 import re
 import shutil
@@ -72,6 +73,30 @@ for order in (1, 2):
         check.near(f".{ending} of order {order}", value / reference, 1, 1e-11)
         if order == 2:
             check.holds(f".{ending}: completion is said", ("completed" in text) == (ending in SERENDIPITY))
+
+# Meshes that gmsh has cut into partitions, whose elements are on entities of their own.
+gmsh.initialize(readConfigFiles=False)
+gmsh.option.setNumber("General.Verbosity", 0)
+gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
+gmsh.open(str(SCENES / "two_blocks_glued.geo"))
+gmsh.model.mesh.generate(3)
+gmsh.write(str(place / "whole.msh"))
+for ghosts in (0, 1):
+    gmsh.option.setNumber("Mesh.PartitionCreateGhostCells", ghosts)
+    gmsh.model.mesh.partition(3)
+    for binary in (0, 1):
+        gmsh.option.setNumber("Mesh.Binary", binary)
+        gmsh.write(str(place / f"partitioned{ghosts}{binary}.msh"))
+gmsh.option.setNumber("Mesh.PartitionSplitMeshFiles", 1)
+gmsh.write(str(place / "split.msh"))
+gmsh.finalize()
+reference = run(args, SCENE, overrides=[f"mesh.file={place}/whole.msh"]).summary()["probes"]["force"]
+for name in ("partitioned00", "partitioned01", "partitioned10", "partitioned11"):
+    found = run(args, SCENE, overrides=[f"mesh.file={place}/{name}.msh"], out=name).summary()["probes"]["force"]
+    check.near(f"{name}: the force of the whole mesh", found / reference, 1, 1e-11)
+finished = run(args, SCENE, overrides=[f"mesh.file={place}/split_2.msh"], out="split", must=None)
+check.holds("one of the files of a mesh that was split: exit 1 and a message",
+            finished.status == 1 and "partition 1 of 3 is not in the file" in finished.text, finished.text[-300:])
 
 # A mesh whose elements all have left-handed axes, as on structured grids of other programs.
 sys.path.insert(0, str(SCENES.parent.parent / "scripts"))
