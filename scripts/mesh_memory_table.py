@@ -1,7 +1,7 @@
-"""What the ranks hold while a mesh is read and cut: the peak of memory of each of them above that before the mesh is read,
-CPU seconds, and the faces that are cut, by tests/bench/meshpeak.c. The meshes are blocks of tetrahedra of second order
-and two rings of bricks in contact. Ranks may be more than the machine has cores. Leaves one record per run and prints
-the table.
+"""What the ranks hold while a mesh is read and cut: the peak of memory of each of them above that before the mesh is
+read, CPU seconds, and the faces that are cut, by tests/bench/meshpeak.c. The meshes are blocks of tetrahedra of second
+order, a block of bricks and two rings of bricks in contact. Ranks may be more than the machine has cores. Leaves one
+record per run and prints the table.
     python scripts/mesh_memory_table.py [--meshpeak BINARY] [--record FILE] [--program NAME] [--only MESH ...]
 --program names what is run (`now`, or `before` or `whole graph` for older binaries); rows of other programs and meshes
 are kept."""
@@ -12,10 +12,11 @@ import subprocess
 
 from launch import ROOT, environment, read_records
 
-BLOCK = ("mesh: {file: %s, order: 2, parameters: {nx: %d, ny: %d, nz: %d, tet: 1}}\ngeometry: solid\n"
+BLOCK = ("mesh: {file: %s, order: %d, parameters: {nx: %d, ny: %d, nz: %d, tet: %d}}\ngeometry: solid\n"
          "bodies: [{volume: block, material: {law: svk, E: 1, nu: 0.3}}]\n")
 RINGS = "mesh.parameters={n_inner: 100, n_outer: 125, n_len: 33}"
-SIZES = (36, 52, 62)  # bricks along a side of the block, each cut into tetrahedra
+# Bricks along a side of the block, and whether each is cut into tetrahedra. The last one has 1e7 unknowns.
+BLOCKS = ((36, True), (52, True), (62, True), (150, False))
 RANKS = (1, 2, 4, 8)
 COLUMNS = ("program", "mesh", "ranks", "cells", "nodes", "first_mb", "mean_mb", "largest_mb", "first_cpu_s",
            "edge_cut")
@@ -23,10 +24,10 @@ COLUMNS = ("program", "mesh", "ranks", "cells", "nodes", "first_mb", "mean_mb", 
 
 def scenes(out):
     """Name and arguments of each mesh."""
-    for size in SIZES:
+    for size, tet in BLOCKS:
         scene = out / f"block_{size}.yaml"
-        scene.write_text(BLOCK % (ROOT / "meshes/block.geo", size, size, size))
-        yield f"block, {size}", [scene]
+        scene.write_text(BLOCK % (ROOT / "meshes/block.geo", 2 if tet else 1, size, size, size, tet))
+        yield f"{'block' if tet else 'bricks'}, {size}", [scene]
     yield "rings", [ROOT / "runs/ring_in_ring_3d.yaml", RINGS]
 
 
@@ -47,8 +48,8 @@ def table(rows):
           "| first rank, CPU s | edge cut |")
     print("| --- " * 10 + "|")
     for row in sorted(rows, key=lambda row: (row["mesh"], int(row["ranks"]), row["program"])):
-        print(f"| {row['mesh']} | {int(row['cells']):,} | {row['ranks']} | {row['program']} | {float(row['first_mb']):.0f} "
-              f"| {float(row['mean_mb']):.0f} | {float(row['largest_mb']):.0f} "
+        print(f"| {row['mesh']} | {int(row['cells']):,} | {row['ranks']} | {row['program']} "
+              f"| {float(row['first_mb']):.0f} | {float(row['mean_mb']):.0f} | {float(row['largest_mb']):.0f} "
               f"| {float(row['first_mb']) * 2**20 / int(row['cells']):.0f} "
               f"| {row['first_cpu_s']} | {row['edge_cut']} |")
 
