@@ -532,12 +532,16 @@ static PetscBool PairDrifts(const ContactPair *pair)
   return (PetscBool)(pair->formulation.lags || (pair->friction && pair->fit.fitted));
 }
 
+/* Whether the fit of a slave point holds, once it has been asked for. */
+typedef enum { FIT_UNASKED, FIT_HOLDS_ON, FIT_IS_NEW } FitAnswer;
+
 /* What fresh lists find at a solution. */
 typedef struct {
   NeighbourLists   lists;
   PetscBool        alike;               /* PointsAlike() with the lists of the solution */
   PetscBool        lags;                /* factors and fits may lag as offsets do */
   const PetscReal *gaps, *factor;       /* of the points */
+  FitAnswer       *holds;               /* FitHolds() of each point, as terms share points */
   PetscReal        depth, pressure;     /* largest ones of the pair */
   PetscReal        drift, factor_drift; /* see TermAgrees() */
   PetscReal        area_drift;          /* part of a term's area by which factors that lag may change it */
@@ -589,6 +593,16 @@ static PetscBool TermFactorsAgree(const ContactPair *pair, PetscInt c, const Fre
   return PETSC_TRUE;
 }
 
+/* FitHolds() of slave point q. */
+static PetscBool PointHolds(const ContactPair *pair, const Freshly *fresh, PetscInt q)
+{
+  FitAnswer *answer = &fresh->holds[q];
+
+  if (*answer == FIT_UNASKED)
+    *answer = FitHolds(pair->lists, fresh->lists, fresh->alike, q) ? FIT_HOLDS_ON : FIT_IS_NEW;
+  return (PetscBool)(*answer == FIT_HOLDS_ON);
+}
+
 /* Says whether fresh lists find the same of this term as the solve did. An open term must be open, as far as gaps do
    not drift. On facets a closed gap must agree. On fits the gap changes a little with their frames, so frames and
    points must agree, and with offsets the gap must agree within `drift`. Area factors must agree on both, by
@@ -613,8 +627,7 @@ static PetscBool TermAgrees(const ContactPair *pair, PetscInt c, const Freshly *
   if (!(old - rest < 0) && !(gap - rest < -(fitted ? tolerance : drift))) return PETSC_TRUE;
   if (!TermFactorsAgree(pair, c, fresh, share)) return PETSC_FALSE;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && holds; k++)
-    if (fitted && old - rest < 0 && !fresh->lags)
-      holds = FitHolds(pair->lists, fresh->lists, fresh->alike, pair->term_point[k]);
+    if (fitted && old - rest < 0 && !fresh->lags) holds = PointHolds(pair, fresh, pair->term_point[k]);
   if (!holds) return PETSC_FALSE;
   if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(same - old) <= tolerance);
   return (PetscBool)(!PetscIsNanReal(same) && (!PairDrifts(pair) || PetscAbsReal(same - old) <= drift));
@@ -654,12 +667,14 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   PetscCall(PetscMalloc2(n, &gaps, n, &factor));
   for (PetscInt q = 0; q < n; q++) factor[q] = PetscMax(pair->factor[q], pair->next_factor[q]);
   fresh.gaps = gaps;
+  PetscCall(PetscCalloc1(n, &fresh.holds));
   if (pair->fit.fitted) TimingBegin(TIMING_FIT);
   PetscCall(ContactPointGaps(pair, pair->next, factor, NULL, NULL, gaps, NULL));
   if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
     if (TermHasGap(pair, c, gaps)) *agrees = TermAgrees(pair, c, &fresh); /* few have where most have no partner */
   PetscCall(PetscFree2(gaps, factor));
+  PetscCall(PetscFree(fresh.holds));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -790,7 +805,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
     if (!pair->stays) {
       PetscCall(ContactNoteLost(pair, t));
-      ContactNoteTunnelled(pair, t);
+      PetscCall(ContactNoteTunnelled(pair, t));
       ContactNoteJumps(pair, motion);
       PetscCall(PairNextAgrees(contact, pair, t, lag, most, passing, &agrees));
     }

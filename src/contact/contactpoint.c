@@ -134,13 +134,9 @@ static void MapAddRow(const ContactPair *pair, int row, int image, PetscReal cos
 /* Adds a row with the nodes and signs of the row before. */
 static void MapRepeatRow(ContactMap *map, int row, const PetscReal *S)
 {
-  const int k = map->ptr[row], before = map->ptr[row - 1], n = k - before;
+  const int k = map->ptr[row], n = k - map->ptr[row - 1];
 
-  for (int a = 0; a < n; a++) {
-    map->node[k + a] = map->node[before + a];
-    map->S[k + a]    = S[a];
-  }
-  for (int a = 0; a < 3 * n; a++) map->sign[3 * k + a] = map->sign[3 * before + a];
+  for (int a = 0; a < n; a++) map->S[k + a] = S[a];
   map->run[row]     = map->run[row - 1];
   map->ptr[row + 1] = k + n;
 }

@@ -15,15 +15,42 @@ static PetscReal DepthThatCounts(const ContactPair *pair, PetscInt c, PetscInt q
   return pair->scene->listed ? LOST_OF_ENTERED * SEARCH_ENTERED * pair->slaves->height[q] : pair->size[c];
 }
 
+/* Gaps of slave points, each found once although terms share them. */
+typedef struct {
+  PetscBool *known;
+  PetscReal *gap, *past; /* past: how far the foot is past a free edge, where that is asked for */
+} PointGaps;
+
+static PetscErrorCode PointGapsCreate(const ContactPair *pair, PointGaps *gaps)
+{
+  const PetscInt n = pair->lists->n_slaves;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &gaps->known));
+  PetscCall(PetscMalloc2(n, &gaps->gap, n, &gaps->past));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PointGapsDestroy(PointGaps *gaps)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(gaps->known));
+  PetscCall(PetscFree2(gaps->gap, gaps->past));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Gap of slave point q. Where its fit does not reach there any more, it is that over the facets. */
-static PetscReal ReachedGap(const ContactPair *pair, PetscInt q)
+static PetscReal ReachedGap(const ContactPair *pair, PetscInt q, PointGaps *gaps)
 {
   PetscBool found = PETSC_FALSE;
 
+  if (gaps->known[q]) return gaps->gap[q];
+  gaps->known[q] = PETSC_TRUE;
+  gaps->gap[q]   = pair->point_gap[q];
   if (NeighbourListsSlip(pair->lists, q) > NEIGHBOUR_LISTS_MARGIN &&
       !ContactPointEvaluate(pair, pair->facets, pair->lists, q, -1, SMOOTHER_GAP, &found) && found)
-    return pair->work->result.gap;
-  return pair->point_gap[q];
+    gaps->gap[q] = pair->work->result.gap;
+  return gaps->gap[q];
 }
 
 /* Says whether the search has lost slave point q of a term. That is so where the present lists find it behind the
@@ -31,13 +58,14 @@ static PetscReal ReachedGap(const ContactPair *pair, PetscInt q)
    not left past a free edge. Its term would vanish, and nothing would hold the bodies apart. A term that does not press
    holds nothing: in surface to surface contact it has points on faces that slide around an edge of the master, and the
    lists of the step's start find these behind the side from which they come. */
-static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, ContactLost *lost)
+static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, PointGaps *gaps,
+                           ContactLost *lost)
 {
   const NeighbourLists next   = pair->next;
   const PetscReal      offset = ContactTermOffset(pair, c, t);
   PetscBool            found  = PETSC_FALSE;
 
-  *lost = (ContactLost){offset - ReachedGap(pair, q), NAN, pair->size[c], pair->node[c]};
+  *lost = (ContactLost){offset - ReachedGap(pair, q, gaps), NAN, pair->size[c], pair->node[c]};
   if (!(lost->depth > DepthThatCounts(pair, c, q))) return PETSC_FALSE;
   if (pair->master && next->facet_ptr[q] == next->facet_ptr[q + 1]) return PETSC_TRUE;
   if (pair->next_factor[q] == 0) return PETSC_FALSE;
@@ -63,30 +91,31 @@ static void KeepDeepest(ContactPair *pair, const ContactLost *lost)
 @*/
 PetscErrorCode ContactNoteLost(ContactPair *pair, PetscReal t)
 {
+  PointGaps gaps;
+
   PetscFunctionBeginUser;
+  PetscCall(PointGapsCreate(pair, &gaps));
   for (PetscInt c = 0; c < pair->n_sides; c++) {
     for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && pair->force[c] != 0; k++) {
       ContactLost lost;
 
-      if (PointLost(pair, c, pair->term_point[k], t, &lost)) KeepDeepest(pair, &lost);
+      if (PointLost(pair, c, pair->term_point[k], t, &gaps, &lost)) KeepDeepest(pair, &lost);
     }
   }
+  PetscCall(PointGapsDestroy(&gaps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says whether slave point q, which is open, is behind the very facet that was nearest to it when the lists were
-   made. It has then passed through the master, and another part of it is nearer now. */
-static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, ContactLost *lost)
+/* Finds the gap of slave point q over the very facet that was nearest to it when the lists were made. */
+static void NearestGap(const ContactPair *pair, PetscInt q, PointGaps *gaps)
 {
   const NeighbourLists lists = pair->lists;
   const int            dim   = lists->dim;
-  PetscReal            offset, x[FACE_MAX_NODES * 3];
-  Facet                facet;
+  Facet                facet = lists->facet[lists->facet_ptr[q] + lists->nearest[q]];
+  PetscReal            x[FACE_MAX_NODES * 3];
   Foot                 foot;
 
-  offset = ContactTermOffset(pair, c, t);
-  if (!(pair->point_gap[q] - offset >= 0)) return PETSC_FALSE;
-  facet = lists->facet[lists->facet_ptr[q] + lists->nearest[q]];
+  if (gaps->known[q]) return;
   for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
     NeighbourListsRelative(lists, q, lists->list_point[lists->list_ptr[q] + facet.nodes[a]], &x[a * dim]);
     facet.nodes[a] = a;
@@ -94,8 +123,22 @@ static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q,
   facet.free_edges =
     (1 << ElementGet(facet.type)->corners) - 1; /* only a free edge tells a foot past it from one on it */
   FacetProject(dim, &facet, x, &foot);
-  *lost = (ContactLost){offset - foot.gap, pair->point_gap[q] - offset, pair->size[c], pair->node[c]};
-  return (PetscBool)(foot.beyond <= LOST_ON_FACET * lost->size && lost->depth > DepthThatCounts(pair, c, q));
+  gaps->known[q] = PETSC_TRUE;
+  gaps->gap[q]   = foot.gap;
+  gaps->past[q]  = foot.beyond;
+}
+
+/* Says whether slave point q, which is open, is behind the very facet that was nearest to it when the lists were
+   made. It has then passed through the master, and another part of it is nearer now. */
+static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, PointGaps *gaps,
+                                ContactLost *lost)
+{
+  const PetscReal offset = ContactTermOffset(pair, c, t);
+
+  if (!(pair->point_gap[q] - offset >= 0)) return PETSC_FALSE;
+  NearestGap(pair, q, gaps);
+  *lost = (ContactLost){offset - gaps->gap[q], pair->point_gap[q] - offset, pair->size[c], pair->node[c]};
+  return (PetscBool)(gaps->past[q] <= LOST_ON_FACET * lost->size && lost->depth > DepthThatCounts(pair, c, q));
 }
 
 /*@
@@ -112,18 +155,23 @@ static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q,
   Only what was near when the lists were made is known. A point that starts farther away and leaps over the master in
   one step is not seen, nor is a passage through something thinner than a face size.
 @*/
-void ContactNoteTunnelled(ContactPair *pair, PetscReal t)
+PetscErrorCode ContactNoteTunnelled(ContactPair *pair, PetscReal t)
 {
   const PetscInt *nearest = pair->lists->nearest; /* of most points none */
+  PointGaps       gaps;
 
+  PetscFunctionBeginUser;
+  PetscCall(PointGapsCreate(pair, &gaps));
   for (PetscInt c = 0; c < pair->n_sides && pair->master; c++) {
     for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
       ContactLost lost;
 
-      if (nearest[pair->term_point[k]] >= 0 && PointTunnelled(pair, c, pair->term_point[k], t, &lost))
+      if (nearest[pair->term_point[k]] >= 0 && PointTunnelled(pair, c, pair->term_point[k], t, &gaps, &lost))
         KeepDeepest(pair, &lost);
     }
   }
+  PetscCall(PointGapsDestroy(&gaps));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@

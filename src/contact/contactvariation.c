@@ -116,6 +116,14 @@ PetscInt ContactVariationsOwn(const ContactPair *pair, PetscInt q)
   return pair->tool && n ? n - TOOL_NODES : n;
 }
 
+/* Evaluates the first variation of a slave point. */
+static PetscErrorCode Evaluate(const ContactPair *pair, PetscInt q, PetscBool *found)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, found));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactVariationsNeed - evaluates the first variation of a slave point, unless it is kept.
 
@@ -132,10 +140,41 @@ PetscErrorCode ContactVariationsNeed(const ContactPair *pair, PetscInt q)
   PetscFunctionBeginUser;
   if (pair->variations->first[q] >= 0) PetscFunctionReturn(PETSC_SUCCESS);
   if (pair->fit.fitted) TimingBegin(TIMING_FIT);
-  PetscCall(
-    ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
+  PetscCall(Evaluate(pair, q, &found));
   PetscCall(ContactVariationsKeep(pair, q, found));
   if (pair->fit.fitted) TimingEnd(TIMING_FIT);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactVariationsOwnPart - gives the part of a first variation that belongs to the slave point itself.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+- q    - the slave point
+
+  Output Parameters:
++ own   - own[dim] (no unit)
+- found - PETSC_FALSE where no master is near
+
+  Note:
+  A variation that is not kept is not carried to nodes for this.
+@*/
+PetscErrorCode ContactVariationsOwnPart(const ContactPair *pair, PetscInt q, PetscReal own[], PetscBool *found)
+{
+  const int                dim = pair->mesh->dim;
+  const ContactVariations *v   = pair->variations;
+
+  PetscFunctionBeginUser;
+  if (v->first[q] < 0) {
+    if (pair->fit.fitted) TimingBegin(TIMING_FIT);
+    PetscCall(Evaluate(pair, q, found));
+    if (pair->fit.fitted) TimingEnd(TIMING_FIT);
+  } else
+    *found = (PetscBool)(v->first[q] < v->end[q]);
+  if (*found) PetscCall(PetscArraycpy(own, v->first[q] < 0 ? pair->work->result.N : &v->own[q * dim], dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

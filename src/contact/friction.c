@@ -268,23 +268,31 @@ static void MakeLever(const ContactPair *pair, PetscInt q, const PetscReal norma
   if (!FrictionLeverMake(dim, normal, tangent, &pair->friction->lever[q])) pair->friction->lever[q].tangents = 0;
 }
 
-/* Gets the foot of slave point q at the last projection, along its own part of the first variation, and makes its
+/* Finds the foot of slave point q at the last projection along its own part of the first variation, and makes its
    lever. */
+static PetscBool MakeFoot(const ContactPair *pair, PetscInt q, const PetscReal *own)
+{
+  PetscReal normal[3] = {0, 0, 0};
+
+  for (int d = 0; d < pair->mesh->dim; d++) normal[d] = own[d];
+  pair->friction->known[q] = PETSC_TRUE;
+  if (!FindFoot(pair, q, normal)) return PETSC_FALSE;
+  MakeLever(pair, q, normal);
+  return PETSC_TRUE;
+}
+
+/* Gets the foot of slave point q at the last projection. */
 PetscErrorCode FrictionPointFoot(const ContactPair *pair, PetscInt q, const FrictionFoot **foot, PetscBool *found)
 {
-  const int dim       = pair->mesh->dim;
-  Friction  f         = pair->friction;
-  PetscReal normal[3] = {0, 0, 0};
+  Friction f = pair->friction;
 
   PetscFunctionBeginUser;
   PetscCall(ContactVariationsNeed(pair, q));
   *foot  = &f->foot[q];
   *found = (PetscBool)(pair->master && pair->variations->first[q] < pair->variations->end[q]);
-  if (*found && !f->known[q]) {
-    for (int d = 0; d < dim; d++) normal[d] = pair->variations->own[q * dim + d];
-    *found = FindFoot(pair, q, normal);
-    if (*found) MakeLever(pair, q, normal);
-  } else if (*found)
+  if (*found && !f->known[q])
+    *found = MakeFoot(pair, q, &pair->variations->own[q * pair->mesh->dim]);
+  else if (*found)
     *found = (PetscBool)(f->facet[q] >= 0);
   f->known[q] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -366,9 +374,9 @@ static void AddSlip(const ContactPair *pair, PetscInt q, PetscReal t, PetscReal 
 /* Finds the place of the master at which slave point q is anchored: that below it. face[q] < 0: there is none. */
 static PetscErrorCode AnchorFind(ContactPair *pair, PetscInt q)
 {
-  Friction            f = pair->friction;
-  const FrictionFoot *foot;
-  PetscBool           found = PETSC_FALSE;
+  Friction  f = pair->friction;
+  PetscReal own[3];
+  PetscBool found;
 
   PetscFunctionBeginUser;
   f->face[q] = f->at[q] = -1;
@@ -378,12 +386,11 @@ static PetscErrorCode AnchorFind(ContactPair *pair, PetscInt q)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   f->facet[q] = -1; /* the anchor does not depend on where the foot has been before */
-  f->known[q] = PETSC_FALSE;
-  PetscCall(FrictionPointFoot(pair, q, &foot, &found));
-  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactVariationsOwnPart(pair, q, own, &found));
+  if (!found || !MakeFoot(pair, q, own)) PetscFunctionReturn(PETSC_SUCCESS);
   f->face[q] = pair->lists->facet[pair->lists->facet_ptr[q] + f->facet[q]].tag;
   f->at[q]   = NeighbourListsFindFace(pair->lists, f->face[q]);
-  for (int a = 0; a < 2; a++) f->xi[2 * q + a] = foot->xi[a];
+  for (int a = 0; a < 2; a++) f->xi[2 * q + a] = f->foot[q].xi[a];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -18,6 +18,8 @@
 
 /* Size of the sums that are held in registers: so many vectors of a row for so many entries of a run. */
 enum { ROW_VECTORS = 4, ROW_ENTRIES = LANES == 8 ? 4 : 2 };
+/* Entries of a run whose sums of a first variation are held in registers */
+enum { FIRST_ENTRIES = 4 };
 
 /* A run: the rows first to end - 1 of the map, which have the same nodes and signs. Entry k of row r is S[(r -
    first)*entries + k], and its signs are sign[3*k]. */
@@ -239,8 +241,11 @@ LANES_INLINE void Second(const int dim, const int terms, double factor, const Fi
 /* Adds scale times row i of S, which belongs to component c of point r. */
 LANES_INLINE void AddSelection(const int dim, const FitDerivatives *map, int r, int c, double scale, double *row)
 {
-  for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) {
-    if (map->node[e] >= 0) row[map->node[e] * dim + c] += scale * map->S[e] * map->sign[3 * e + c];
+  const int    *node = map->node + map->ptr[map->run[r]];
+  const double *sign = map->sign + 3 * map->ptr[map->run[r]], *S = map->S + map->ptr[r];
+
+  for (int k = 0; k < map->ptr[r + 1] - map->ptr[r]; k++) {
+    if (node[k] >= 0) row[node[k] * dim + c] += scale * S[k] * sign[3 * k + c];
   }
 }
 
@@ -262,20 +267,32 @@ LANES_INLINE void Dense(const int dim, int n, double factor, const double *M, co
   sum->depth += m;
 }
 
+/* Adds a run's part of S^T N to `count` of its nodes. */
+LANES_INLINE void AddFirst(const int dim, const int count, const double *N, const FitRun *run, int k, double *nodal)
+{
+  const double *S = run->S + k, *from = N + run->first * dim;
+  double        sum[3][FIRST_ENTRIES] = {{0}};
+
+  for (int r = run->first; r < run->end; r++, S += run->entries, from += dim) {
+    for (int c = 0; c < dim; c++) {
+      for (int a = 0; a < count; a++) sum[c][a] += S[a] * from[c];
+    }
+  }
+  for (int a = 0; a < count; a++) {
+    if (run->node[k + a] < 0) continue;
+    for (int c = 0; c < dim; c++) nodal[run->node[k + a] * dim + c] += run->sign[3 * (k + a) + c] * sum[c][a];
+  }
+}
+
 /* Adds S^T N to nodal, run by run. */
 LANES_INLINE void First(const int dim, int n, const double *N, const FitDerivatives *map, double *nodal)
 {
   for (FitRun run = {.end = 0}; run.end < 1 + n;) {
-    run = NextRun(map, 1 + n, run.end);
-    for (int k = 0; k < run.entries; k++) {
-      const double *S = run.S + k, *from = N + run.first * dim;
-      double        sum[3] = {0, 0, 0};
+    int k = 0;
 
-      if (run.node[k] < 0) continue;
-      for (int r = run.first; r < run.end; r++, S += run.entries, from += dim)
-        for (int c = 0; c < dim; c++) sum[c] += *S * from[c];
-      for (int c = 0; c < dim; c++) nodal[run.node[k] * dim + c] += run.sign[3 * k + c] * sum[c];
-    }
+    run = NextRun(map, 1 + n, run.end);
+    for (; k + FIRST_ENTRIES <= run.entries; k += FIRST_ENTRIES) AddFirst(dim, FIRST_ENTRIES, N, &run, k, nodal);
+    for (; k < run.entries; k++) AddFirst(dim, 1, N, &run, k, nodal);
   }
 }
 

@@ -23,7 +23,8 @@ typedef struct {
   int        n_nodes;
   const int *ptr; /* [1 + points inside + 1] */
   const int *run; /* of each row: the first of the rows, one after the other, that have the same nodes and signs */
-  /* Node of each entry, below n_nodes. A negative one is left out: a node of a rigid tool, which has no unknowns. */
+  /* Node of each entry, below n_nodes. A negative one is left out: a node of a rigid tool, which has no unknowns. Nodes
+     and signs are read in the first row of each run. */
   const int    *node;
   const double *S;    /* of each entry */
   const double *sign; /* 3 for each entry, each +1 or -1, in 2D too */

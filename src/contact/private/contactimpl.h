@@ -269,6 +269,7 @@ PetscErrorCode ContactVariationsDestroy(ContactVariations **);
 void           ContactVariationsReset(ContactVariations *);
 PetscErrorCode ContactVariationsKeep(const ContactPair *, PetscInt q, PetscBool found);
 PetscErrorCode ContactVariationsNeed(const ContactPair *, PetscInt q);
+PetscErrorCode ContactVariationsOwnPart(const ContactPair *, PetscInt slave, PetscReal own[], PetscBool *found);
 PetscInt       ContactVariationsOwn(const ContactPair *, PetscInt q);
 PetscErrorCode ContactVariationsNodes(const ContactPair *, PetscInt n, const PetscInt points[]);
 void           ContactTermVary(const ContactPair *, PetscInt term, PetscReal scale, PetscReal *v);
@@ -344,5 +345,5 @@ PetscErrorCode ContactListsArchive(Contact, Archive, const PetscReal *u, PetscRe
 PetscErrorCode ContactRefuseImmersed(Contact, int pair);
 /* contacttunnelling.c */
 PetscErrorCode ContactNoteLost(ContactPair *, PetscReal t);
-void           ContactNoteTunnelled(ContactPair *, PetscReal t);
+PetscErrorCode ContactNoteTunnelled(ContactPair *, PetscReal t);
 void           ContactNoteJumps(ContactPair *, PetscReal motion);
