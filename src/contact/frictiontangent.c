@@ -362,12 +362,18 @@ static PetscErrorCode SpreadTurns(const TermBlock *b, PetscInt q)
 /* Adds m times the spread derivative of the own N to dim rows. */
 static void AddTurns(const TermBlock *b, PetscReal *restrict rows, const PetscReal m[3][3])
 {
-  const PetscReal *const restrict turns = b->turns;
   const PetscInt columns                = b->columns;
+  const PetscReal *const restrict turns = b->turns, *const restrict last = b->dim == 3 ? &turns[2 * columns] : NULL;
 
-  for (int r = 0; r < b->dim; r++)
-    for (int d = 0; d < b->dim; d++)
-      for (PetscInt j = 0; j < columns; j++) rows[r * columns + j] += m[r][d] * turns[d * columns + j];
+  for (int r = 0; r < b->dim; r++) {
+    PetscReal *const restrict row = &rows[r * columns];
+    const PetscReal m_0 = m[r][0], m_1 = m[r][1], m_2 = m[r][2];
+
+    if (last)
+      for (PetscInt j = 0; j < columns; j++) row[j] += m_0 * turns[j] + m_1 * turns[columns + j] + m_2 * last[j];
+    else
+      for (PetscInt j = 0; j < columns; j++) row[j] += m_0 * turns[j] + m_1 * turns[columns + j];
+  }
 }
 
 /* The derivatives of the traction by the tangents of the face on which slave point q is anchored: what is off the face

@@ -866,6 +866,30 @@ static PetscErrorCode TakeUneven(BlockMatrix blocks)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the rows of node r, which is in the matrix, to the sums of its pairs. size is a constant in each call, so that
+   the compiler unrolls the loops over dofs. */
+static inline PetscErrorCode SumRows(const int size, BlockMatrix blocks, PetscInt r, const PetscInt *number, PetscInt n,
+                                     const PetscInt *node, const PetscReal *value)
+{
+  const PetscInt *column = blocks->column, first = blocks->own.pair_ptr[r], end = blocks->own.pair_ptr[r + 1];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = first; k < end; k++) blocks->column[blocks->own.pair[k]] = k;
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscInt   c = number[node[j]], k = c < 0 ? -1 : column[c];
+    const PetscReal *from = &value[j * size];
+    PetscReal       *to;
+
+    if (c < 0) continue;
+    PetscCheck(k >= first && k < end, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "a block couples nodes that no named one does");
+    to = &blocks->whole[k * size * size];
+    for (int d = 0; d < size; d++)
+      for (int e = 0; e < size; e++) to[d * size + e] += from[d * n * size + e];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BlockMatrixAddRows - adds some rows of a block that is not symmetric to the sum.
 
@@ -886,28 +910,18 @@ static PetscErrorCode TakeUneven(BlockMatrix blocks)
 PetscErrorCode BlockMatrixAddRows(BlockMatrix blocks, int list, PetscInt n_rows, const PetscInt row[], PetscInt n,
                                   const PetscInt node[], const PetscReal value[])
 {
-  const PetscInt *number = &blocks->list_number[blocks->list[list]], *ptr = blocks->own.pair_ptr;
-  const int       size = blocks->size;
+  const PetscInt *number = &blocks->list_number[blocks->list[list]];
+  const int       size   = blocks->size;
 
   PetscFunctionBeginUser;
   PetscCheck(!blocks->factors, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "blocks that are factors are symmetric");
   PetscCall(TakeUneven(blocks));
   for (PetscInt i = 0; i < n_rows; i++) {
-    const PetscInt r = number[row[i]];
+    const PetscInt   r    = number[row[i]];
+    const PetscReal *from = &value[i * size * n * size];
 
-    if (r < 0) continue;
-    for (PetscInt k = ptr[r]; k < ptr[r + 1]; k++) blocks->column[blocks->own.pair[k]] = k;
-    for (PetscInt j = 0; j < n; j++) {
-      const PetscInt c = number[node[j]], k = c < 0 ? -1 : blocks->column[c];
-      PetscReal     *to;
-
-      if (c < 0) continue;
-      PetscCheck(k >= ptr[r] && k < ptr[r + 1], PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-                 "a block couples nodes that no named one does");
-      to = &blocks->whole[k * size * size];
-      for (int d = 0; d < size; d++)
-        for (int e = 0; e < size; e++) to[d * size + e] += value[(i * size + d) * n * size + j * size + e];
-    }
+    if (r >= 0 && size == 3) PetscCall(SumRows(3, blocks, r, number, n, node, from));
+    if (r >= 0 && size != 3) PetscCall(SumRows(size, blocks, r, number, n, node, from));
   }
   if (blocks->along) MultiplyRows(blocks, n_rows, row, n, node, value);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -945,19 +959,19 @@ static void FillDiagonal(BlockMatrix blocks)
   }
 }
 
-/* Adds the symmetric blocks to the sums of all pairs. */
-static void AddSymmetric(BlockMatrix blocks)
+/* Adds the symmetric blocks to the sums of all pairs. size as in SumRows(). */
+static inline void AddSymmetric(const int size, BlockMatrix blocks)
 {
-  const int       size = blocks->size;
-  const PetscInt *ptr  = blocks->own.pair_ptr;
+  const PetscInt *ptr = blocks->own.pair_ptr, *of_pair = blocks->of_pair;
+  const SumRow   *sums = blocks->sum; /* SumRow may alias anything, as in Sum() */
+  PetscReal      *to   = blocks->whole;
 
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
-    for (PetscInt k = ptr[r]; k < ptr[r + 1]; k++) {
-      const SumRow *sum = &blocks->sum[blocks->of_pair[k] * size];
-      PetscReal    *to  = &blocks->whole[k * size * size];
+    for (PetscInt k = ptr[r], diagonal = blocks->diagonal[r]; k < ptr[r + 1]; k++, to += size * size) {
+      const SumRow *sum = &sums[of_pair[k] * size];
 
       for (int d = 0; d < size; d++)
-        for (int e = 0; e < size; e++) to[d * size + e] += k < blocks->diagonal[r] ? sum[e][d] : sum[d][e];
+        for (int e = 0; e < size; e++) to[d * size + e] += k < diagonal ? sum[e][d] : sum[d][e];
     }
   }
 }
@@ -984,7 +998,10 @@ PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
   }
   FillDiagonal(blocks);
   if (blocks->uneven) {
-    AddSymmetric(blocks);
+    if (blocks->size == 3)
+      AddSymmetric(3, blocks);
+    else
+      AddSymmetric(blocks->size, blocks);
     PetscCall(NodeMatrixSet(blocks->matrix, blocks->whole, NULL, NULL));
   } else
     PetscCall(NodeMatrixSetUpper(blocks->matrix, &values));

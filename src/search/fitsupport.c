@@ -260,20 +260,25 @@ static void WindowSpacing(const FitSupport *fit, PetscInt n, double covariance[3
    Returns how many are inside the support. dim is a constant where this is called. */
 static inline PetscInt TakePoints(const int dim, FitSupport *fit, const FitFoot *at, PetscInt n, const PetscReal *rho2)
 {
-  const NeighbourLists lists = fit->lists;
-  const PetscReal     *X = lists->point_X, *u = lists->point_u;
-  PetscInt             inside = 0;
+  const NeighbourLists lists        = fit->lists;
+  const PetscReal *const restrict X = lists->point_X, *const restrict u = lists->point_u;
+  const PetscReal *const restrict v = lists->point_weight, *const restrict hoop = lists->point_hoop;
+  const PetscInt *const restrict points = fit->points;
+  PetscReal *const restrict x = fit->x, *const restrict weight = fit->multiplier;
+  PetscReal *const restrict taper = fit->taper;
+  PetscInt inside                 = 0;
 
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt  p      = fit->points[i];
-    const PetscReal weight = lists->point_weight[p];
+    const PetscInt p = points[i];
 
-    inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
-    fit->multiplier[i] = weight;
-    fit->hoop[i]       = lists->point_hoop ? lists->point_hoop[p] : 0;
-    fit->taper[i]      = weight * PetscMax(SEARCH_FIT_TIE, 1 - rho2[i] / SEARCH_FIT_MARGIN);
-    for (int d = 0; d < dim; d++) fit->x[i * dim + d] = (X[p * dim + d] - at->X[d]) + (u[p * dim + d] - at->u[d]);
+    for (int d = 0; d < dim; d++) x[i * dim + d] = (X[p * dim + d] - at->X[d]) + (u[p * dim + d] - at->u[d]);
+    weight[i] = v[p];
   }
+  for (PetscInt i = 0; i < n; i++) {
+    inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
+    taper[i] = weight[i] * PetscMax(SEARCH_FIT_TIE, 1 - rho2[i] / SEARCH_FIT_MARGIN);
+  }
+  for (PetscInt i = 0; i < n && dim == 2; i++) fit->hoop[i] = hoop ? hoop[points[i]] : 0;
   return inside;
 }
 
