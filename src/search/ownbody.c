@@ -178,9 +178,9 @@ in front of it with a penetration.
 - foot - of the point on it, without free edges
 
   Notes:
-  Always PETSC_FALSE where the scene names slave and master. A point that is past the end of a facet, in its plane, has
-  its foot at the end. As the two faces are not quite parallel, that is before the point's face or behind it, by no more
-  than the angle between them, and says nothing.
+  Always PETSC_FALSE where the scene names slave and master. A point that is past the end of another body's facet, in
+its plane, has its foot at the end. As the two faces are not quite parallel, that is before the point's face or behind
+it, by no more than the angle between them. Within a face of the slave that says nothing.
 @*/
 PetscBool OwnBodyTurnsFrom(const Nearest *look, const Candidate *c, const Foot *foot)
 {
@@ -193,6 +193,6 @@ PetscBool OwnBodyTurnsFrom(const Nearest *look, const Candidate *c, const Foot *
     cosine += own[d] * c->normal[d];
     square += PetscSqr(own[d]);
   }
-  if (look->one_body) return (PetscBool)(along >= 0);
+  if (look->one_body || PetscAbsReal(foot->gap) > look->size) return (PetscBool)(along >= 0);
   return (PetscBool)(along >= PetscSqrtReal(PetscMax(0, square - PetscSqr(cosine))));
 }
