@@ -510,9 +510,7 @@ static PetscErrorCode EvaluateSealPressure(Probes probes, Probe *probe, PetscRea
 
 static const ProbeType types[PROBE_KINDS] = {
   [PROBE_REACTION]           = {"reaction", NAMES_SURFACE, 0, NULL, EvaluateReaction},
-  [PROBE_REACTION_TORQUE]    = {"reaction_torque", NAMES_SURFACE, 0, NULL, EvaluateReactionTorque},
   [PROBE_CONTACT_FORCE]      = {"contact_force", NAMES_PAIR, 0, NULL, EvaluateContactForce},
-  [PROBE_CONTACT_TORQUE]     = {"contact_torque", NAMES_PAIR, 0, NULL, EvaluateContactTorque},
   [PROBE_DISPLACEMENT]       = {"displacement", NAMES_NOTHING, 1, "displacement", EvaluateDisplacement},
   [PROBE_DISTANCE]           = {"distance", NAMES_NOTHING, 2, "distance", EvaluateDistance},
   [PROBE_GAP]                = {"gap", NAMES_PAIR, 1, "at", EvaluateGap},
@@ -521,6 +519,8 @@ static const ProbeType types[PROBE_KINDS] = {
   [PROBE_PRESSURE_MEAN]      = {"pressure_mean", NAMES_PAIR, 0, NULL, EvaluatePressureMean},
   [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", NAMES_PAIR, 0, NULL, EvaluatePressureDeviation},
   [PROBE_CONTACT_AREA]       = {"contact_area", NAMES_PAIR, 0, NULL, EvaluateContactArea},
+  [PROBE_REACTION_TORQUE]    = {"reaction_torque", NAMES_SURFACE, 0, NULL, EvaluateReactionTorque},
+  [PROBE_CONTACT_TORQUE]     = {"contact_torque", NAMES_PAIR, 0, NULL, EvaluateContactTorque},
   [PROBE_FRICTION_FORCE]     = {"friction_force", NAMES_PAIR, 0, NULL, EvaluateFriction},
   [PROBE_FRICTION_TORQUE]    = {"friction_torque", NAMES_PAIR, 0, NULL, EvaluateFrictionTorque},
   [PROBE_SLIPPED_AREA]       = {"slipped_area", NAMES_PAIR, 0, NULL, EvaluateFriction},

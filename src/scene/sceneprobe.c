@@ -12,9 +12,7 @@ static const struct {
   const char *kind, *needs, *takes;
 } ProbeForms[PROBE_KINDS] = {
   [PROBE_REACTION]           = {"reaction", "component", ""},
-  [PROBE_REACTION_TORQUE]    = {"reaction_torque", "", "axis at"},
   [PROBE_CONTACT_FORCE]      = {"contact_force", "component", ""},
-  [PROBE_CONTACT_TORQUE]     = {"contact_torque", "", "axis at"},
   [PROBE_DISPLACEMENT]       = {"displacement", "component", "body"},
   [PROBE_DISTANCE]           = {"distance", "", "body change"},
   [PROBE_GAP]                = {"gap", "at", ""},
@@ -23,6 +21,8 @@ static const struct {
   [PROBE_PRESSURE_MEAN]      = {"pressure_mean", "", "at within"},
   [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", "", "measure excluding only"},
   [PROBE_CONTACT_AREA]       = {"contact_area", "", ""},
+  [PROBE_REACTION_TORQUE]    = {"reaction_torque", "", "axis at"},
+  [PROBE_CONTACT_TORQUE]     = {"contact_torque", "", "axis at"},
   [PROBE_FRICTION_FORCE]     = {"friction_force", "component", ""},
   [PROBE_FRICTION_TORQUE]    = {"friction_torque", "", "axis at"},
   [PROBE_SLIPPED_AREA]       = {"slipped_area", "", ""},
@@ -56,7 +56,7 @@ static PetscErrorCode SceneProbeKind(Scene scene, SceneProbe *probe)
                                          "side",      "measure", "excluding", "only", "within"};
   Node                     node       = NodeFind(SceneDocument(scene)->root, probe->path);
   int                      kinds      = 0;
-  char                     allowed[200];
+  char                     allowed[500];
 
   PetscFunctionBeginUser;
   for (int k = 0; k < PROBE_KINDS; k++) {

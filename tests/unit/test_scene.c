@@ -77,9 +77,11 @@ static const char Everything[] =
   "  - {name: pressed, contact_area: crown}\n"
   "  - {name: p10, pressure_deviation: crown, measure: rms, excluding: 2}\n"
   "  - {name: p11, pressure_deviation: crown, measure: max, only: 1.5}\n"
-  "  - {name: p12, fluid_front: plate_bottom, axis: y, side: min}\n"
-  "  - {name: p13, fluid_area: plate_bottom}\n"
-  "  - {name: p14, seal_pressure: plate_bottom}\n"
+  "  - {name: p12, reaction_torque: top, axis: z}\n"
+  "  - {name: p13, contact_torque: crown, axis: x, at: [1, 2, 3]}\n"
+  "  - {name: p14, fluid_front: plate_bottom, axis: y, side: min}\n"
+  "  - {name: p15, fluid_area: plate_bottom}\n"
+  "  - {name: p16, seal_pressure: plate_bottom}\n"
   "output: {every: 0, fields: [stress, contact], checkpoint: 0}\n"
   "petsc: {snes_monitor: , -pc_type: lu, ksp_rtol: 1e-9}\n";
 
@@ -237,10 +239,12 @@ static void ProbesOfEveryKindArrive(void **state)
 
   (void)state;
   ReadOrFail(Everything, 0, NULL, &scene);
-  assert_int_equal(scene->n_probes, 18);
+  assert_int_equal(scene->n_probes, 20);
   probe = scene->probes;
-  for (int i = 0; i < PROBE_FRICTION_FORCE; i++) assert_int_equal(probe[i].kind, i);
-  for (int i = PROBE_FLUID_FRONT; i < PROBE_KINDS; i++) /* p10 and p11 are one; none is of friction */
+  for (int i = 0; i <= PROBE_PRESSURE_DEVIATION; i++) assert_int_equal(probe[i].kind, i);
+  for (int i = PROBE_REACTION_TORQUE; i < PROBE_FRICTION_FORCE; i++)
+    assert_int_equal(probe[i + 1].kind, i);             /* p10 and p11 are one */
+  for (int i = PROBE_FLUID_FRONT; i < PROBE_KINDS; i++) /* none is of friction */
     assert_int_equal(probe[PROBE_FRICTION_FORCE + 1 + i - PROBE_FLUID_FRONT].kind, i);
   assert_string_equal(probe[0].target, "top");
   assert_true(probe[0].component == 1 && probe[0].absolute && probe[0].factor == 1);
@@ -264,8 +268,11 @@ static void ProbesOfEveryKindArrive(void **state)
               MotionForce(&scene->bodies[1].motion, 0.5, 0) == 2.5 && SceneBreaks(scene, 0.5));
   assert_true(probe[13].rms && probe[13].edge_filter == 1 && probe[13].edge_faces == 2);
   assert_true(!probe[14].rms && probe[14].edge_filter == 2 && probe[14].edge_faces == 1.5);
-  assert_true(probe[15].axis == 1 && !probe[15].max_side);
-  assert_string_equal(probe[17].target, "plate_bottom");
+  assert_true(probe[15].axis == 2);
+  assert_true(probe[16].axis == 0);
+  AssertPoint(probe[16].point[0], 1, 2, 3);
+  assert_true(probe[17].axis == 1 && !probe[17].max_side);
+  assert_string_equal(probe[19].target, "plate_bottom");
   Free(&scene);
 }
 
