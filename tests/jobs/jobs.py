@@ -370,4 +370,7 @@ JOBS = [
     ], steps=12, stiff=["stepping.dt_max=0.05", "contact.0.friction.stick={slip: 0.001}"]),
     Job("bottle_cap", "cap snapped over a neck", [Answer("force", 198.1, 0.05, "limit")], steps=8,
         picture=["--mirror", "x"]),
+    Job("suction_cup", "suction cup on a pane", [Answer("pull", 3.3407, 0.06, "limit")], steps=12,
+        picture=["--mirror", "x"]),
+    Job("tube_in_box", "rubber tube blown up in a box", [Answer("corner", 4.1137, 0.06, "limit")], steps=12),
 ]
