@@ -168,7 +168,7 @@ PetscReal OwnBodyBehind(const Nearest *look)
 
 /*@
   OwnBodyTurnsFrom - says whether a foot lies on the wrong side of the slave point's own face: behind it with a gap, or
-in front of it with a penetration.
+  in front of it with a penetration.
 
   Not collective
 
@@ -179,8 +179,8 @@ in front of it with a penetration.
 
   Notes:
   Always PETSC_FALSE where the scene names slave and master. A point that is past the end of another body's facet, in
-its plane, has its foot at the end. As the two faces are not quite parallel, that is before the point's face or behind
-it, by no more than the angle between them. Within a face of the slave that says nothing.
+  its plane, has its foot at the end. As the two faces are not quite parallel, that is before the point's face or behind
+  it, by no more than the angle between them. Within a face of the slave that says nothing.
 @*/
 PetscBool OwnBodyTurnsFrom(const Nearest *look, const Candidate *c, const Foot *foot)
 {

@@ -100,7 +100,7 @@ static PetscErrorCode Potential(Model model, Vec x, PetscReal *energy)
   That is what the potential has fallen by at the load of the step, or the work against springs that are anchored at
   each iterate, whichever is less. The first counts what the linear step of the start has put into stiff parts, the
   second what iterates on the way have. With friction, and with loads that have no energy, there is no potential, and
-the work is told.
+  the work is told.
 @*/
 PetscErrorCode ModelShiftEnd(Model model, PetscReal *taken)
 {

@@ -78,7 +78,7 @@ static PetscErrorCode ModelBorder(Model model)
 + model     - the model
 . u         - local displacements u[n_nodes*dim] (length)
 . reference - the state from which the elements extrapolate stresses; NULL: the tangent is the derivative of the
-residual
+  residual
 - t         - load parameter
 
   Note:
