@@ -313,19 +313,20 @@ static int CompareDepth(const void *a, const void *b, void *context)
 - most - number of columns that may be missing
 
   Input/Output Parameters:
-+ m     - number of terms whose columns are missing
++ m     - number of components whose columns are missing
 - which - their numbers
 
   Note:
-  The deepest ones stay. Those that are still pressed with them come back. A body that is held in one point goes so far
-  in a linear step that it presses nearly all terms; few of them bear it.
+  Missing components are all pressures of terms, or all of friction, of which none is taken out. The deepest terms stay.
+  Those that are still pressed with them come back. A body that is held in one point goes so far in a linear step that it
+  presses nearly all terms; few of them bear it.
 @*/
 PetscErrorCode ActiveSetLimit(ActiveSet p, PetscInt most, PetscInt *m, PetscInt *which)
 {
   PetscInt first = 0;
 
   PetscFunctionBeginUser;
-  if (*m <= most) PetscFunctionReturn(PETSC_SUCCESS);
+  if (*m <= most || which[0] >= p->n) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < *m; k++) { /* terms that residual and tangent press have no choice */
     const PetscInt i = which[k];
 

@@ -307,7 +307,7 @@ static PetscErrorCode NeighbourListsTakeFaces(NeighbourLists lists, const Search
   lists->n_faces = field->n_candidates;
   PetscCall(PetscMalloc1(lists->n_faces, &lists->face));
   for (PetscInt c = 0; c < lists->n_faces; c++) lists->face[c] = field->candidates[c].facet;
-  qsort(lists->face, lists->n_faces, sizeof(Facet), CompareTags);
+  if (lists->n_faces) qsort(lists->face, lists->n_faces, sizeof(Facet), CompareTags);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
