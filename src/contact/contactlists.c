@@ -426,7 +426,8 @@ static long ListKey(NeighbourLists lists, PetscInt q, PetscInt place)
 /* Says whether the points of two lists have the same numbers. */
 static PetscBool PointsAlike(NeighbourLists old, NeighbourLists fresh)
 {
-  return (PetscBool)(old->n_points == fresh->n_points &&
+  if (old->n_points != fresh->n_points) return PETSC_FALSE;
+  return (PetscBool)(old->n_points == 0 ||
                      !memcmp(old->point_key, fresh->point_key, old->n_points * sizeof(*old->point_key)));
 }
 
