@@ -317,9 +317,9 @@ static int CompareDepth(const void *a, const void *b, void *context)
 - which - their numbers
 
   Note:
-  Missing components are all pressures of terms, or all of friction, of which none is taken out. The deepest terms stay.
-  Those that are still pressed with them come back. A body that is held in one point goes so far in a linear step that
-it presses nearly all terms; few of them bear it.
+  Missing components are all pressures of terms, or all of friction, of which none is taken out. The deepest
+  terms stay. Those that are still pressed with them come back. A body that is held in one point goes so far in a
+  linear step that it presses nearly all terms; few of them bear it.
 @*/
 PetscErrorCode ActiveSetLimit(ActiveSet p, PetscInt most, PetscInt *m, PetscInt *which)
 {
