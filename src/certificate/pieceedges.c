@@ -30,7 +30,7 @@ static PetscInt ListEdges(Side side, EdgeOf *list)
       list[n++] = (EdgeOf){PetscMin(a, b), PetscMax(a, b), k, e};
     }
   }
-  qsort(list, (size_t)n, sizeof(*list), EarlierEdge);
+  if (n) qsort(list, (size_t)n, sizeof(*list), EarlierEdge);
   return n;
 }
 
