@@ -1,5 +1,6 @@
 /* What tools do to the bodies from outside, and what contact itself stores, for the balance of energies. */
 #include "contactimpl.h"
+#include "base/vectors.h"
 #include "kernels/rigidkernel.h"
 
 /*@
@@ -42,15 +43,15 @@ void ContactPairHold(Contact contact, const ContactPair *pair, PetscReal t, cons
   MotionPlace(motion, t, motion->point, point);
   RigidTurnRate(&q[3], spin);
   for (PetscInt i = 0; i < lists->n_deformable; i++) {
-    PetscReal arm[3] = {0, 0, 0}, force[3] = {0, 0, 0};
+    PetscReal arm[3] = {0, 0, 0}, force[3] = {0, 0, 0}, part[3];
 
     for (int d = 0; d < dim; d++) {
       arm[d]   = lists->X[i * dim + d] + lists->u[i * dim + d] + contact->mesh->centre[d] - point[d];
       force[d] = -values[i * dim + d];
       out[d] += force[d];
     }
-    for (int d = 0; d < 3; d++)
-      moment[d] += arm[(d + 1) % 3] * force[(d + 2) % 3] - arm[(d + 2) % 3] * force[(d + 1) % 3];
+    Cross(arm, force, part);
+    for (int d = 0; d < 3; d++) moment[d] += part[d];
   }
   for (int k = 0; k < 3; k++)
     for (int d = 0; d < 3; d++) out[3 + k] += spin[k][d] * moment[d];

@@ -1,5 +1,6 @@
 /* What contact shows to reports, probes and results. Nothing here changes the state. */
 #include "base/largest.h"
+#include "base/vectors.h"
 #include "contactimpl.h"
 #include "penaltyrule.h"
 #include "search/surfacepatch.h"
@@ -377,15 +378,15 @@ PetscErrorCode ContactMasterMoment(Contact contact, int p, PetscReal moment[3])
     if (pair->point_force[q] == 0 || pair->variations->first[q] == pair->variations->end[q]) continue;
     for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++) {
       const PetscInt node = lists->slave_node[k];
-      PetscReal      x[3] = {0, 0, 0}, force[3] = {0, 0, 0};
+      PetscReal      x[3] = {0, 0, 0}, force[3] = {0, 0, 0}, part[3];
 
       for (int d = 0; d < dim; d++) {
         x[d]     = lists->X[node * dim + d] + lists->u[node * dim + d] + contact->mesh->centre[d];
         force[d] = -pair->point_force[q] * lists->slave_S[k] * pair->images[lists->slave_side[k]].sign[d] *
                    pair->variations->own[q * dim + d];
       }
-      for (int d = 0; d < 3; d++)
-        moment[d] += x[(d + 1) % 3] * force[(d + 2) % 3] - x[(d + 2) % 3] * force[(d + 1) % 3];
+      Cross(x, force, part);
+      for (int d = 0; d < 3; d++) moment[d] += part[d];
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, moment, 3, MPIU_REAL, MPI_SUM, contact->mesh->comm));

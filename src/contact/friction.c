@@ -1,5 +1,6 @@
 /* Friction of a pair: anchors, slip, tractions and forces. */
 #include "contactimpl.h"
+#include "base/vectors.h"
 #include "mesh/mesh.h"
 
 /* A foot that is outside of its reference face by less than this is on it: rounding. Feet on two faces whose distances
@@ -882,7 +883,7 @@ PetscErrorCode FrictionPointForces(const ContactPair *pair, PetscInt q, const Pe
 static PetscErrorCode AddMoment(const ContactPair *pair, PetscInt q, const PetscReal F[3], PetscReal moment[3])
 {
   const FrictionFoot *foot;
-  PetscReal           x[3], u[3];
+  PetscReal           x[3], u[3], part[3];
   PetscBool           found;
 
   PetscFunctionBeginUser;
@@ -892,11 +893,8 @@ static PetscErrorCode AddMoment(const ContactPair *pair, PetscInt q, const Petsc
   PlainPlace(pair, q, x, u);
   for (int d = 0; d < pair->mesh->dim; d++)
     x[d] += u[d] + pair->mesh->centre[d] - (found ? foot->distance * foot->normal[d] : 0);
-  for (int d = 0; d < 3; d++) {
-    const int i = (d + 1) % 3, j = (d + 2) % 3;
-
-    moment[d] += x[i] * F[j] - x[j] * F[i];
-  }
+  Cross(x, F, part);
+  for (int d = 0; d < 3; d++) moment[d] += part[d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,7 +1,6 @@
 /* Parts of a graph of cells, found by METIS with its k-way method. Cells that face each other across contact are joined
-   by links. Cells and contact cells are balanced at the same time. PartitionGraph() does this for a whole graph of
-   cells, PartitionWeighted() for any graph with weights, which WeightedGraphFree() frees. How the ranks of a run get
-   their cells is in private/cellpartition.h. */
+   by links. Cells and contact cells are balanced at the same time. PartitionWeighted() does this for a graph with
+   weights, which WeightedGraphFree() frees. How the ranks of a run get their cells is in private/cellpartition.h. */
 #pragma once
 #include "base/petsccompat.h"
 
@@ -34,8 +33,3 @@ typedef struct {
 
 PetscErrorCode WeightedGraphFree(WeightedGraph *);
 PetscErrorCode PartitionWeighted(WeightedGraph *, PetscInt parts, PetscInt part[]);
-PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[],
-                              const PetscBool contact[], const CellLinks *, PetscInt parts, PetscInt part[],
-                              PetscInt *edge_cut);
-PetscReal      PartitionImbalance(PetscInt n, const PetscInt part[], const PetscBool counted[], PetscInt parts,
-                                  PetscInt count[]);

@@ -13,13 +13,15 @@ static void Place(Probes probes, PetscInt node, PetscReal x[3])
       d < mesh->dim ? mesh->coords[node * mesh->dim + d] + mesh->centre[d] + probes->model->u[node * mesh->dim + d] : 0;
 }
 
-/* A component of forces, or their moment about an axis, is the sum over the nodes of what is given here times their
-   forces. That arms change with displacements is left out: it is as small as the strains that do it. */
-static void ForceWeight(const Probe *probe, const PetscReal x[3], PetscReal weight[3])
+/* A component of forces, or their moment about an axis, is the sum over the nodes of what is given here of a node times
+   its force. That arms change with displacements is left out: it is as small as the strains that do it. */
+static void ForceWeight(Probes probes, const Probe *probe, PetscInt node, PetscReal weight[3])
 {
   const ProbeKind kind = probe->scene->kind;
   const int       i = (probe->scene->axis + 1) % 3, j = (probe->scene->axis + 2) % 3;
+  PetscReal       x[3];
 
+  Place(probes, node, x);
   weight[0] = weight[1] = weight[2] = 0;
   if (kind == PROBE_REACTION || kind == PROBE_CONTACT_FORCE || kind == PROBE_FRICTION_FORCE)
     weight[probe->scene->component] = 1;
@@ -52,10 +54,9 @@ static PetscErrorCode VarySprings(Probes probes, const Probe *probe, Functional 
   PetscCall(MeshCreateLocal(mesh, mesh->dim, &unit));
   PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->direct));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
-    PetscReal x[3], weight[3];
+    PetscReal weight[3];
 
-    Place(probes, n, x);
-    ForceWeight(probe, x, weight);
+    ForceWeight(probes, probe, n, weight);
     for (int d = 0; d < mesh->dim; d++) unit[n * mesh->dim + d] = mark[n] * weight[d];
   }
   LoadsAddSpringForces(problem->loads, probes->model->t, unit, f->direct);
@@ -85,10 +86,9 @@ static PetscErrorCode VaryToolReaction(Probes probes, const Probe *probe, Functi
   for (int p = 0; p < probes->scene->n_contacts; p++)
     f->pairs[p] = SceneContactHasMaster(&probes->scene->contacts[p], probe->scene->target);
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
-    PetscReal x[3], weight[3];
+    PetscReal weight[3];
 
-    Place(probes, n, x);
-    ForceWeight(probe, x, weight);
+    ForceWeight(probes, probe, n, weight);
     for (int d = 0; d < mesh->dim; d++) f->pressed[n * mesh->dim + d] = -weight[d];
   }
   for (int k = 0; k < mesh->n_tools; k++)
@@ -97,13 +97,12 @@ static PetscErrorCode VaryToolReaction(Probes probes, const Probe *probe, Functi
 }
 
 /* A reaction is the residual at the prescribed dofs, and what springs bear; that of a tool is neither. */
-static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional *f, const char **why)
+static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional *f)
 {
   const Problem problem = probes->model->problem;
   const Mesh    mesh    = problem->mesh;
 
   PetscFunctionBeginUser;
-  (void)why;
   if (ProbeOfTool(probes, probe)) {
     PetscCall(VaryToolReaction(probes, probe, f));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -112,10 +111,9 @@ static PetscErrorCode VaryReaction(Probes probes, const Probe *probe, Functional
   PetscCall(MeshCreateLocal(mesh, mesh->dim, &f->held));
   for (PetscInt i = 0; i < probe->group->n_nodes; i++) {
     const PetscInt node = probe->group->nodes[i];
-    PetscReal      x[3], weight[3];
+    PetscReal      weight[3];
 
-    Place(probes, node, x);
-    ForceWeight(probe, x, weight);
+    ForceWeight(probes, probe, node, weight);
     for (int d = 0; d < mesh->dim; d++)
       if (LoadsPrescribed(problem->loads, node * mesh->dim + d)) f->held[node * mesh->dim + d] = weight[d];
   }
@@ -165,10 +163,9 @@ static PetscErrorCode VaryContactForce(Probes probes, const Probe *probe, Functi
   PetscCall(MarkGroup(mesh, probe, &mark));
   PetscCall(CreatePressed(probes, probe->pair, f));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
-    PetscReal x[3], weight[3];
+    PetscReal weight[3];
 
-    Place(probes, n, x);
-    ForceWeight(probe, x, weight);
+    ForceWeight(probes, probe, n, weight);
     for (int d = 0; d < mesh->dim && mark[n] > 0; d++) f->pressed[n * mesh->dim + d] = weight[d];
   }
   PetscCall(PetscFree(mark));
@@ -254,10 +251,9 @@ static PetscErrorCode VaryFriction(Probes probes, const Probe *probe, Functional
   for (PetscInt k = 0; k < slaves.n; k++) {
     const PetscInt   n      = slaves.node[k];
     const PetscReal *normal = &slaves.normal[3 * k];
-    PetscReal        x[3], weight[3], along = 0;
+    PetscReal        weight[3], along = 0;
 
-    Place(probes, n, x);
-    ForceWeight(probe, x, weight);
+    ForceWeight(probes, probe, n, weight);
     for (int i = 0; i < dim; i++) along += weight[i] * normal[i];
     for (int i = 0; i < dim; i++) f->pressed[n * dim + i] = weight[i] - along * normal[i];
   }
@@ -292,7 +288,7 @@ PetscErrorCode ProbeVary(Probes probes, int i, Functional *functional, const cha
   else
     switch (probe->scene->kind) {
     case PROBE_REACTION:
-    case PROBE_REACTION_TORQUE: PetscCall(VaryReaction(probes, probe, functional, why)); break;
+    case PROBE_REACTION_TORQUE: PetscCall(VaryReaction(probes, probe, functional)); break;
     case PROBE_CONTACT_FORCE:
     case PROBE_CONTACT_TORQUE: PetscCall(VaryContactForce(probes, probe, functional, why)); break;
     case PROBE_DISPLACEMENT: PetscCall(VaryDisplacement(probes, probe, functional, why)); break;

@@ -1,6 +1,7 @@
 /* The nodes of a surface and their neighbours on all ranks, see surfacegraph.h. */
 #include "search/surfacegraph.h"
 #include "base/gathertable.h"
+#include "base/vectors.h"
 
 /* Columns of the table of edges between neighbouring nodes, a before b, and of the table of nodes */
 enum { EDGE_A, EDGE_B, EDGE_INNER, EDGE_COLUMNS };
@@ -280,15 +281,6 @@ PetscErrorCode SurfaceGraphGroup(SurfaceGraph s, const MeshGroup *group, char *f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Distance of a node from a point. */
-static PetscReal Distance(SurfaceGraph s, int i, const PetscReal X[3])
-{
-  PetscReal square = 0;
-
-  for (int d = 0; d < s->mesh->dim; d++) square += PetscSqr(s->X[3 * i + d] - X[d]);
-  return PetscSqrtReal(square);
-}
-
 /*@
   SurfaceGraphNearest - finds the node of the surface that is nearest to a point in the reference configuration.
 
@@ -309,13 +301,13 @@ PetscInt SurfaceGraphNearest(SurfaceGraph s, const PetscReal X[3], PetscReal *di
   *distance = PETSC_MAX_REAL;
   *reach    = 0;
   for (int i = 0; i < s->graph.n; i++) {
-    const PetscReal here = Distance(s, i, X);
+    const PetscReal here = Distance(&s->X[3 * i], X);
 
     if (here >= *distance) continue;
     *distance = here;
     nearest   = i;
   }
   for (int k = s->graph.ptr[nearest]; k < s->graph.ptr[nearest + 1]; k++)
-    *reach = PetscMax(*reach, Distance(s, s->graph.adj[k], &s->X[3 * nearest]));
+    *reach = PetscMax(*reach, Distance(&s->X[3 * s->graph.adj[k]], &s->X[3 * nearest]));
   return nearest;
 }

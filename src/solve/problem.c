@@ -2,6 +2,7 @@
  */
 #include "solve/problem.h"
 #include "base/timing.h"
+#include "base/vectors.h"
 #include "matrix/sumoperator.h"
 #include "mesh/pressurenodes.h"
 
@@ -606,7 +607,7 @@ PetscErrorCode ProblemReaction(Problem problem, const MeshGroup *group, PetscRea
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < group->n_nodes; i++) {
-    PetscReal x[3] = {0, 0, 0}, on_node[3] = {0, 0, 0};
+    PetscReal x[3] = {0, 0, 0}, on_node[3] = {0, 0, 0}, part[3];
 
     for (int d = 0; d < dim; d++) {
       const PetscInt dof = group->nodes[i] * dim + d;
@@ -616,8 +617,8 @@ PetscErrorCode ProblemReaction(Problem problem, const MeshGroup *group, PetscRea
       x[d] = mesh->coords[dof] + mesh->centre[d] + moves * problem->trial[dof];
       sum[d] += on_node[d];
     }
-    for (int d = 0; d < 3; d++)
-      sum[3 + d] += x[(d + 1) % 3] * on_node[(d + 2) % 3] - x[(d + 2) % 3] * on_node[(d + 1) % 3];
+    Cross(x, on_node, part);
+    for (int d = 0; d < 3; d++) sum[3 + d] += part[d];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 6, MPIU_REAL, MPI_SUM, mesh->comm));
   PetscCall(PetscArraycpy(force, sum, 3));

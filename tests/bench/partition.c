@@ -7,6 +7,7 @@
 #include <float.h>
 #include "mesh/mesh.h"
 #include "base/boxtree.h"
+#include "../celllists.h"
 
 /* Largest number of parts, and smallest number of cells in a part. No rank of a run would have as few cells as that. */
 enum { MOST_PARTS = 4096, LEAST_CELLS = 16 };

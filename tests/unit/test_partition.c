@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <setjmp.h>
 #include <cmocka.h>
-#include "mesh/partition.h"
+#include "../celllists.h"
 
 enum { LENGTH = 24, WIDTH = 3, STRIPS = 2, CELLS = STRIPS * LENGTH * WIDTH };
 
