@@ -361,14 +361,15 @@ static double PathIsCoarse(const RunFigures *figures, char *text)
   return 1;
 }
 
-/* What friction takes depends on the path, and so does the largest force on it. */
+/* What friction takes depends on the path, and so does the largest force on it. Where it takes next to nothing beside
+   what bodies store, the rule's own error for these is all that is seen. */
 static double SlidingIsCoarse(const RunFigures *figures, char *text)
 {
   const EnergyFigures energy = figures->last ? figures->last->energy : (EnergyFigures){0};
   const double        taken = (double)energy.outer.friction, apart = (double)EnergyApart(&energy);
 
   if (energy.plastic > 0 || !(taken > 0) || !(apart > ADVICE_SLIDING * taken)) return 0;
-  if (!(apart > ADVICE_PATH_ELASTIC * (double)energy.elastic)) return 0;
+  if (!(fmin(apart, taken) > ADVICE_PATH_ELASTIC * (double)energy.elastic)) return 0;
   snprintf(text, ADVICE_TEXT,
            "work and energies are %.2g %% of what friction took apart: steps may be too long for what slides, and that "
            "energy and the largest force on the way wrong; compare with shorter ones",

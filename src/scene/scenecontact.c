@@ -51,8 +51,10 @@ static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
                           NULL));
   if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape == ANALYTIC_PLANE &&
       contact->analytic.axis[0] != 0)
-    PetscCall(
-      SceneRefuse(scene, tool, "normal", "is oblique to the axis: that is a cone, not a plane; allowed: [0, y]", NULL));
+    PetscCall(SceneRefuse(scene, tool, "normal",
+                          "is not along the axis: that is a cone or a cylinder, not a plane; allowed: [0, y]; a wall "
+                          "around the axis is master: {cylinder: ...}, a cone a rigid body with its line in the mesh",
+                          NULL));
   PetscCall(SceneReadMotion(scene, tool, &contact->motion));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
