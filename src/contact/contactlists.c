@@ -488,24 +488,32 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscBool al
   return FitHoldsPoints(old, fresh, q);
 }
 
+/* Says whether the gaps of a pair may drift with its lists: with offsets that are held in a solve, and with friction,
+   where each change of the gaps stays in the tractions. */
+static PetscBool PairDrifts(const ContactPair *pair)
+{
+  return (PetscBool)(pair->formulation.lags || (pair->friction && pair->fit.fitted));
+}
+
 /* A fit that the next lists make with another frame or other points, and that turns back a second time within a step,
    keeps the frame that the next lists have, to the end of the step. The frame is that of the points around the nearest
    facet, and so are the points. On a coarse bend two facets may hand a point to and fro: with the fit of either the
    solution has the other one nearest. A fit turns back where the next frame is far nearer to the last one that was
-   replaced than to the one in force. */
+   replaced than to the one in force. Where gaps may drift by little only, frames that turn by less than 5 degrees count
+   too. */
 static void PairKeepFrames(ContactPair *pair)
 {
   const NeighbourLists now = pair->lists, next = pair->next;
   const int            dim   = pair->mesh->dim;
-  const PetscBool      alike = PointsAlike(now, next);
+  const PetscBool      alike = PointsAlike(now, next), drifts = PairDrifts(pair);
 
   for (PetscInt q = 0; q < now->n_slaves && pair->fit.fitted; q++) {
     const PetscInt   normal = 9 * q + 3 * (dim - 1);
     const PetscReal *frame  = &next->frame[normal];
     PetscReal       *before = &pair->frame_before[3 * q];
-    const PetscBool  turns  = (PetscBool)(now->fit_n[q] && next->fit_n[q] && !FitHolds(now, next, alike, q));
-    const PetscReal  turn   = 1 - FrameCosine(dim, &now->frame[normal], frame);
-    const PetscBool  back   = (PetscBool)(turns && turn > CONTACT_FRAME_SAME &&
+    const PetscBool  turns = (PetscBool)(now->fit_n[q] && next->fit_n[q] && (drifts || !FitHolds(now, next, alike, q)));
+    const PetscReal  turn  = 1 - FrameCosine(dim, &now->frame[normal], frame);
+    const PetscBool  back  = (PetscBool)(turns && turn > CONTACT_FRAME_SAME &&
                                        1 - FrameCosine(dim, before, frame) < CONTACT_FRAME_BACK * turn);
 
     for (int d = 0; d < dim; d++) {
@@ -524,13 +532,6 @@ static void PairDamp(ContactPair *pair)
   PairDampFactors(pair);
   PairKeepRungs(pair);
   PairKeepFrames(pair);
-}
-
-/* Says whether the gaps of a pair may drift with its lists: with offsets that are held in a solve, and with friction,
-   where each change of the gaps stays in the tractions. */
-static PetscBool PairDrifts(const ContactPair *pair)
-{
-  return (PetscBool)(pair->formulation.lags || (pair->friction && pair->fit.fitted));
 }
 
 /* Whether the fit of a slave point holds, once it has been asked for. */

@@ -42,13 +42,18 @@ struct _n_Offsets {
   PetscReal *held, *asked, *change;
   PetscBool  replaced, turning; /* turning: solutions turn them to and fro */
   int        turns;             /* times in a row that they have */
+  /* And of each face: the last change that was not small beside the one before, how often it was turned back, and
+     whether the offsets in use stay to the end of the step. */
+  PetscReal *swing;
+  int       *swings;
+  PetscBool *stays;
 };
 
 /* The arrays that offsets have which are taken again and again. */
-enum { FOLLOWING = 6 };
+enum { FOLLOWING = 7 };
 static PetscReal **Following(Offsets o, int k)
 {
-  PetscReal **arrays[FOLLOWING] = {&o->now, &o->before, &o->last, &o->held, &o->asked, &o->change};
+  PetscReal **arrays[FOLLOWING] = {&o->now, &o->before, &o->last, &o->held, &o->asked, &o->change, &o->swing};
 
   return arrays[k];
 }
@@ -107,6 +112,7 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
   for (int k = 0; k < FOLLOWING && !o->once; k++) PetscCall(MakeValues(o->n, Following(o, k)));
   if (o->once) PetscCall(PetscCalloc1(surface->n_faces, &o->had));
   if (!o->once) PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &o->u_last));
+  if (!o->once) PetscCall(PetscCalloc2(surface->n_faces, &o->swings, surface->n_faces, &o->stays));
   PetscCall(PetscMalloc2(surface->n_faces, &o->wanted, surface->n_faces, &o->touched));
   for (PetscInt f = 0; f < surface->n_faces; f++) o->wanted[f] = o->touched[f] = PETSC_TRUE;
   PetscCall(SearchCreate(mesh, scene, loads, surface, surface->max_size, n_images, images, &o->fit, NULL, NULL, NULL,
@@ -133,6 +139,7 @@ PetscErrorCode OffsetsDestroy(Offsets *offsets)
   for (int k = 0; k < FOLLOWING; k++) free(*Following(*offsets, k));
   PetscCall(PetscFree((*offsets)->had));
   PetscCall(PetscFree((*offsets)->u_last));
+  PetscCall(PetscFree2((*offsets)->swings, (*offsets)->stays));
   PetscCall(PetscFree2((*offsets)->wanted, (*offsets)->touched));
   PetscCall(PetscFree(*offsets));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -622,6 +629,8 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
     for (; i < end; i++) o->held[i] = o->used[i] = InUse(o->now[i]) + ahead * InUse(o->now[i] - o->before[i]);
   o->replaced = o->turning = PETSC_FALSE;
   o->turns                 = 0;
+  PetscCall(PetscArrayzero(o->swings, o->surface->n_faces));
+  PetscCall(PetscArrayzero(o->stays, o->surface->n_faces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -646,6 +655,39 @@ PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
   PetscCall(OffsetsAt(o, u, t, o->used));
   for (PetscInt f = 0, i, end; (end = NextTouched(o, &f, &i)) > i;)
     for (; i < end; i++) o->used[i] = InUse(o->used[i]);
+  for (PetscInt f = 0; f < o->surface->n_faces && Follow(o); f++)
+    if (o->stays[f]) PetscCall(PetscArraycpy(&o->used[f * FaceBlock(o)], &o->held[f * FaceBlock(o)], FaceBlock(o)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Offsets of a face that solutions turn to and fro stay where they are between the two, to the end of the step. The fit
+   of a coarse face changes by a jump where a point comes into its support or it falls to another rung, and may be the
+   one of the two that its own solution does not ask for. *some: there are such faces. */
+static PetscErrorCode StayBetween(Offsets o, PetscBool *some)
+{
+  const PetscInt block = FaceBlock(o);
+
+  PetscFunctionBeginUser;
+  *some = PETSC_FALSE;
+  for (PetscInt f = 0; f < o->surface->n_faces; f++) {
+    PetscReal *used = &o->used[f * block], *held = &o->held[f * block], *swing = &o->swing[f * block];
+    PetscReal  along = 0, now = 0, last = 0;
+
+    if ((o->tracked && !o->touched[f]) || o->stays[f]) continue;
+    for (PetscInt i = 0; i < block; i++) {
+      along += (used[i] - held[i]) * swing[i];
+      now += PetscSqr(used[i] - held[i]);
+      last += o->swings[f] ? PetscSqr(swing[i]) : 0;
+    }
+    if (now <= PetscSqr(OFFSET_SETTLES) * last || now == 0) continue;
+    o->swings[f] += !o->swings[f] || along < 0;
+    o->stays[f] = (PetscBool)(o->swings[f] > OFFSET_TURNS);
+    for (PetscInt i = 0; i < block; i++) {
+      swing[i] = used[i] - held[i];
+      if (o->stays[f]) used[i] -= swing[i] / 2;
+    }
+    *some = (PetscBool)(*some || o->stays[f]);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -663,19 +705,22 @@ PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
   Note:
   A soft body may answer to a change of its offsets by more than that change the other way, as a ring that rolls in its
   groove. Solutions then never settle. From OFFSET_TURNS such answers in a row on, the offsets are set on the line
-through the last two that solutions asked for, where their secant sees no change any more.
+through the last two that solutions asked for, where their secant sees no change any more. Those of single faces
+that are turned to and fro by jumps of their fits stay between both.
 
   Source: Anderson, Iterative procedures for nonlinear integral equations, J. ACM 12 (1965) 547-560.
 @*/
 PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
 {
-  PetscReal sum[3] = {0, 0, 0}; /* squared change before, change times change before, squared change */
-  PetscReal part;
-  PetscBool turns;
+  /* squared change before, change times change before, squared change; faces that stay */
+  PetscReal sum[4] = {0, 0, 0, 0}, part;
+  PetscBool turns, stays;
 
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
   if (!Follow(o)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StayBetween(o, &stays));
+  sum[3] = stays;
   for (PetscInt f = 0, i, end; (end = NextTouched(o, &f, &i)) > i;) {
     for (; i < end; i++) {
       const PetscReal change = o->used[i] - o->held[i];
@@ -685,7 +730,7 @@ PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
       sum[2] += PetscSqr(change);
     }
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, o->search->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, o->search->mesh->comm));
   turns      = (PetscBool)(o->replaced && sum[1] < 0 && sum[2] > PetscSqr(OFFSET_SETTLES) * sum[0]);
   o->turns   = turns ? o->turns + 1 : 0;
   o->turning = (PetscBool)(o->turning || o->turns == OFFSET_TURNS);
@@ -702,6 +747,7 @@ PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
     }
   }
   o->replaced = PETSC_TRUE;
+  *changed    = (PetscBool)(*changed || sum[3] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
