@@ -125,7 +125,7 @@ int UmatOpen(const char *path, const char *name, int n_constants, const double *
   (*umat)->told      = -DBL_MAX;
   memset((*umat)->name, ' ', NAME_LENGTH);
   memcpy((*umat)->name, name, strlen(name) < NAME_LENGTH ? strlen(name) : NAME_LENGTH);
-  memcpy((*umat)->constants, constants, (size_t)n_constants * sizeof(double));
+  for (int k = 0; k < n_constants; k++) (*umat)->constants[k] = constants[k];
   (*umat)->n_constants = n_constants;
   (*umat)->n_states    = n_states;
   InstallHandler();
