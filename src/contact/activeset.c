@@ -27,7 +27,8 @@ static PetscErrorCode BeginFriction(ActiveSet p)
     for (int a = 0; a < p->parts - 1; a++) stiffness += friction->by_slip[a][a];
     for (int a = 0; a < 2; a++) p->slip[2 * i + a] = friction->law.slip[a];
     /* What slips has the stiffness of what sticks across its slip at most. */
-    p->slipped[i] = (PetscBool)(p->terms[i].stiffness > 0 && stiffness < (p->parts - 1.5) * friction->law.stiffness);
+    p->slipped[i] = (PetscBool)((p->terms[i].stiffness > 0 || friction->law.fluid > 0) &&
+                                stiffness < (p->parts - 1.5) * friction->law.stiffness);
   }
   ActiveSetLookAtSlips(p);
   PetscFunctionReturn(PETSC_SUCCESS);

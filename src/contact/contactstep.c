@@ -74,7 +74,7 @@ static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const P
 }
 
 /* Adds a term of a pair, in its state at the last projection and without its variation, if the step may reach its
-   gap. With friction all that press are added, because each may begin or cease to slip. */
+   gap. With friction all at which it acts are added, because each may begin or cease to slip. */
 static PetscErrorCode AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
 {
   const ContactPair *pair  = &step->contact->pairs[p];
@@ -85,8 +85,9 @@ static PetscErrorCode AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
   PetscFunctionBeginUser;
   ContactTermLaw(pair, c, t, &value, &opening, &step->area[step->mine]);
   opening -= LawOnsetGap(&state);
-  if (!(PetscAbsReal(opening) <= step->reach[p] || (pair->friction && value.stiffness > 0)))
-    PetscFunctionReturn(PETSC_SUCCESS); /* also where no master is near: NaN */
+  if (PetscIsNanReal(opening)) PetscFunctionReturn(PETSC_SUCCESS); /* no master is near */
+  if (!(PetscAbsReal(opening) <= step->reach[p] || (pair->friction && FrictionTermActs(pair, c, value.stiffness))))
+    PetscFunctionReturn(PETSC_SUCCESS);
   step->terms[step->mine] = (ActiveSetTerm){.opening   = opening,
                                             .pressure  = value.pressure,
                                             .stiffness = pair->stiffness[c],

@@ -77,6 +77,12 @@ static PetscErrorCode NameFace(Contact contact, const ContactPair *pair, int p, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether a term has a block: it presses, or friction alone acts, as where a fluid bears all of the pressure. */
+static PetscBool HasBlock(const ContactPair *pair, PetscInt c)
+{
+  return (PetscBool)(pair->stiffness[c] > 0 || (pair->friction && FrictionTermActs(pair, c, 0)));
+}
+
 /* Names the blocks of a pair: one for each active term and, where terms share their points, one for each loaded face.
  */
 static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
@@ -84,7 +90,7 @@ static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
   PetscFunctionBeginUser;
   if (pair->friction) PetscCall(FrictionTangentBegin(pair));
   for (PetscInt c = 0; c < pair->n; c++)
-    if (pair->stiffness[c] > 0) PetscCall(NameTerm(contact, pair, p, c));
+    if (HasBlock(pair, c)) PetscCall(NameTerm(contact, pair, p, c));
   for (PetscInt face = 0; pair->formulation.surface && face < pair->slaves->n_faces; face++)
     PetscCall(NameFace(contact, pair, p, face));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -165,6 +171,7 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
   PetscReal     *v, area;
 
   PetscFunctionBeginUser;
+  if (pair->stiffness[c] == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(n * contact->mesh->dim + BLOCK_PADDING, &v));
   ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
   ContactTermVary(pair, c, PetscSqrtReal(pair->stiffness[c] / area), v);
@@ -231,7 +238,7 @@ static PetscBool NextBlock(Contact contact, const ContactPair *pair, PetscInt *k
   const PetscInt faces = pair->formulation.surface ? pair->slaves->n_faces : 0;
 
   for (; *k < pair->n + faces; (*k)++) {
-    if (*k < pair->n && pair->stiffness[*k] <= 0) continue;
+    if (*k < pair->n && !HasBlock(pair, *k)) continue;
     BlockMatrixGetNodes(contact->blocks, (*block)++, n, nodes);
     if (*n) return PETSC_TRUE;
   }

@@ -599,10 +599,19 @@ static PetscReal TermFluid(const ContactPair *pair, PetscInt c)
   return pair->carried_dry ? pair->carried_dry[c] : 0;
 }
 
-/* Says whether friction may act at a term: it presses, or is dry where a fluid's load lies. */
-static PetscBool TermActs(const ContactPair *pair, PetscInt c, const LawValue *value)
+/*@
+  FrictionTermActs - says whether friction may act at a term: it presses, or is dry where a fluid's load lies.
+
+  Not collective
+
+  Input Parameters:
++ pair      - the pair, with friction
+. c         - the term
+- stiffness - its own across the surfaces (force per length and area); 0: it does not press
+@*/
+PetscBool FrictionTermActs(const ContactPair *pair, PetscInt c, PetscReal stiffness)
 {
-  return (PetscBool)(value->stiffness > 0 || TermFluid(pair, c) > 0);
+  return (PetscBool)(stiffness > 0 || TermFluid(pair, c) > 0);
 }
 
 /* Fills the law of a term but for its slip, at a pressure. */
@@ -674,7 +683,7 @@ static PetscBool TermPresses(const ContactPair *pair, PetscInt c, PetscReal t)
   PetscReal area;
 
   ContactTermLaw(pair, c, t, &value, NULL, &area);
-  return TermActs(pair, c, &value);
+  return FrictionTermActs(pair, c, value.stiffness);
 }
 
 /* Finds anchors for the slave points of pressed terms that have none. Returns how many it has found. */
@@ -836,7 +845,7 @@ PetscErrorCode FrictionTerm(const ContactPair *pair, PetscInt c, PetscReal t, Fr
 
   PetscFunctionBeginUser;
   ContactTermLaw(pair, c, t, &value, NULL, &area);
-  *acts = TermActs(pair, c, &value);
+  *acts = FrictionTermActs(pair, c, value.stiffness);
   if (*acts) PetscCall(FrictionTermAsk(pair, c, t, in, acts));
   if (*acts) TermEvaluate(pair, c, area, in, out);
   PetscFunctionReturn(PETSC_SUCCESS);

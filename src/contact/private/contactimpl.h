@@ -298,6 +298,7 @@ void           FrictionAnchorFrame(const ContactPair *, PetscInt q, FrictionFram
 PetscErrorCode FrictionTerm(const ContactPair *, PetscInt term, PetscReal t, FrictionInput *, FrictionTraction *,
                             PetscBool *acts);
 PetscBool      FrictionTermTakes(const ContactPair *, PetscInt k);
+PetscBool      FrictionTermActs(const ContactPair *, PetscInt term, PetscReal stiffness);
 PetscInt       FrictionTermGuide(const ContactPair *, PetscInt term);
 PetscErrorCode FrictionPointFoot(const ContactPair *, PetscInt q, const FrictionFoot **, PetscBool *found);
 PetscInt       FrictionOwnNodes(const ContactPair *, PetscInt q, const PetscInt **node, const PetscReal **S);
