@@ -13,6 +13,7 @@ from harness import Check, arguments, run, run_in_parts, SCENES
 args = arguments(("cases", "few: quick ones", ("few", "all")))
 check = Check()
 SCENE, SEAL, JOINT = SCENES / "uplift.yaml", SCENES.parent / "jobs" / "seal_leak.yaml", SCENES / "joint.yaml"
+CUP = SCENES.parent / "jobs" / "u_cup.yaml"
 SOLID = ("mesh.parameters.solid=1", "geometry=solid",
          "supports=[{surface: pin, ux: 0}, {surface: sides, uz: 0}]",
          "contact.0.master={plane: {point: [0, 0, 0], normal: [0, 1, 0]}}")
@@ -163,6 +164,22 @@ def seal(name, reference, error, *overrides):
                    (0 if args.ranks == 1 else 1e-7) * figures["fluids"][0][key])
 
 
+def drawn_cup():
+    """A U-cup under oil whose rod is drawn out past it. Its lips stick where oil bears all that presses them, and slip
+    anew in the other direction; it holds until the rod has drawn the lip so far that the oil comes through."""
+    sticks = "friction: {mu: 0.1}"
+    pairs = [f"{{name: {name}, slave: skin, master: {name}, {more}{sticks}}}"
+             for name, more in (("rod", "initial_overlap: ramp, "), ("bore", "initial_overlap: ramp, "), ("step", ""))]
+    end = run(args, CUP, out="drawn_cup", overrides=(
+        "bodies.1.rigid={motion: [{uy: 1.5, history: [[0, 0], [0.6, 0], [1, 1]]}]}",
+        "loads.0.history=[[0, 0], [0.5, 0], [0.6, 1], [1, 1]]", f"contact=[{', '.join(pairs)}]")).summary()
+    check.holds("drawn cup: it holds the whole pressure until it leaks",
+                end["status"] == "done" and end["t"] > 0.65 and end["fluids"][0]["leak_pressure"] == 10,
+                f"{end['status']} at {end['t']:.3g}, {end['fluids'][0]}")
+    check.holds("drawn cup: steps", end["steps"] <= 20 and end["steps_failed"] <= 2,
+                f"{end['steps']}, {end['steps_failed']} failed")
+
+
 def refused(what, message, *overrides, scene=SCENE):
     result = run(args, scene, "-check", out="refused", overrides=overrides, must=None)
     check.holds(f"refused: {what}", result.status == 1 and message in result.text, result.text.strip()[:300])
@@ -198,6 +215,7 @@ if args.cases == "all":
     joint("joint_solid", 0.83, 1e-6, *SOLID_JOINT)
     open_and_closed()
     seal("seal", 2.616, 1e-3)
+    drawn_cup()
     seal("seal_friction", 2.654, 1e-2, "contact.0.friction={mu: 0.1}")
     seal("seal_faces", 2.74117, 1e-3, "mesh.order=1", SURFACE)
     refused("both ends open or closed", "of the 2 ends of 'bottom' 0 are open",

@@ -121,6 +121,9 @@ CASES["rubber ring, fluid up to the contact"] = (RUNS / "o_ring_pressure.yaml", 
     "mesh.parameters.n=3", "loads.0.pressure=1", "stepping={control: fixed, initial: 0.5}",
     "contact.0.penalty.scale=1", "contact.1.penalty.scale=1", "output.certificate=false"
 ])
+# The fluid's load lies ahead of what is wet, and contact presses no more than the fluid there: friction alone acts.
+CASES["block, fluid ahead of what is wet, sticks"] = (SCENES / "uplift.yaml",
+                                                      ["contact.0.friction={mu: 0.3, stick: {penalty: 1e5}}"])
 CASES["rubber ring, pressures of corners"] = (RUNS / "o_ring.yaml", [
     "mesh.order=2", "mesh.parameters.triangles=1", "mesh.parameters.n=3", "output.certificate=false"
 ])
