@@ -1,11 +1,14 @@
 /* Sizes of the elements of the next mesh, see elementsizes.h. */
 #include "errors/elementsizes.h"
+#include "errors/contactzone.h"
 #include "mesh/meshsizes.h"
 
 /* An element becomes at most so much smaller from one mesh to the next. */
 #define SIZES_SMALLER 0.25
 /* Cells with a smaller error per measure than this part of the mean count as having this part. */
 #define SIZES_LEAST_ERROR 1e-8
+/* Where the zone in contact has too many elements, they become larger by this factor at a time. */
+#define SIZES_ZONE_STEP 1.2
 /* Halvings of the bracket of ln s. The bracket has the width of all doubles' logarithms at most. */
 enum { SIZES_HALVINGS = 60 };
 
@@ -14,12 +17,16 @@ typedef struct {
   PetscReal *density, *error, *size; /* error per measure to the power -1 / (2p + d); error; present size */
   PetscReal  larger;                 /* a cell becomes at most so many times larger */
   PetscBool *touches;                /* the cell lies at a surface of a contact pair */
+  PetscBool *zone;                   /* it is in contact there */
+  PetscReal  in_zone;                /* a cell of the zone has at most this part of its size */
 } Present;
 
 /* The factor on the size of a cell. */
 static PetscReal Factor(const Present *p, PetscInt cell, PetscReal s)
 {
-  return PetscMin(PetscMax(s * p->density[cell], SIZES_SMALLER), p->touches[cell] ? 1 : p->larger);
+  const PetscReal most = p->zone[cell] ? p->in_zone : p->touches[cell] ? 1 : p->larger;
+
+  return PetscMin(PetscMax(s * p->density[cell], SIZES_SMALLER), most);
 }
 
 /* Elements and error of the next mesh for the common factor s. */
@@ -90,6 +97,21 @@ static PetscErrorCode Take(const PetscReal *cell_error, Present *p, PetscReal *l
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Makes the elements of the zone in contact no smaller than those which the largest number of elements allows. */
+static PetscErrorCode BoundZone(Present *p, PetscReal s, PetscReal most)
+{
+  SizesForecast forecast;
+
+  PetscFunctionBeginUser;
+  p->in_zone = PetscMin(PetscMax(p->in_zone, SIZES_SMALLER), 1);
+  PetscCall(Forecast(p, s, &forecast));
+  while (forecast.elements > most && p->in_zone < 1) {
+    p->in_zone = PetscMin(SIZES_ZONE_STEP * p->in_zone, 1);
+    PetscCall(Forecast(p, s, &forecast));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ElementSizesFind - finds sizes of elements that leave a part of the present error.
 
@@ -100,6 +122,7 @@ static PetscErrorCode Take(const PetscReal *cell_error, Present *p, PetscReal *l
 . cell_error - what each local cell leaves of error; the sign does not count
 . part       - of the present error that is to be left
 . larger     - an element becomes at most so many times larger
+. in_zone    - an element at surfaces in contact has at most this part of its present size
 - most       - elements at most, over the present ones; then more error is left
 
   Output Parameters:
@@ -107,19 +130,21 @@ static PetscErrorCode Take(const PetscReal *cell_error, Present *p, PetscReal *l
 - forecast - of the next mesh
 @*/
 PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscReal part, PetscReal larger,
-                                PetscReal most, PetscReal *size, SizesForecast *forecast)
+                                PetscReal in_zone, PetscReal most, PetscReal *size, SizesForecast *forecast)
 {
   const Mesh mesh = model->mesh;
-  Present    p    = {.mesh = mesh, .larger = larger};
-  PetscReal  low, high, least, largest;
+  Present    p    = {.mesh = mesh, .larger = larger, .in_zone = in_zone};
+  PetscReal  low, high, least, largest, zone_size;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(mesh->n_cells, &p.density, mesh->n_cells, &p.error, mesh->n_cells, &p.size, mesh->n_cells,
-                         &p.touches));
+  PetscCall(PetscCalloc5(mesh->n_cells, &p.density, mesh->n_cells, &p.error, mesh->n_cells, &p.size, mesh->n_cells,
+                         &p.touches, mesh->n_cells, &p.zone));
   PetscCall(FindTouching(model, p.touches));
+  PetscCall(ContactZoneFind(model, p.zone, &zone_size));
   PetscCall(Take(cell_error, &p, &least, &largest));
   low  = PetscLogReal(SIZES_SMALLER / largest); /* all cells become as small, and as large, as they may */
   high = PetscLogReal(larger / least);
+  PetscCall(BoundZone(&p, PetscExpReal(high), most));
   for (int k = 0; k < SIZES_HALVINGS; k++) {
     const PetscReal middle = 0.5 * (low + high);
 
@@ -130,7 +155,7 @@ PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscR
       low = middle;
   }
   for (PetscInt c = 0; c < mesh->n_cells; c++) size[c] = p.size[c] * Factor(&p, c, PetscExpReal(high));
-  PetscCall(PetscFree4(p.density, p.error, p.size, p.touches));
+  PetscCall(PetscFree5(p.density, p.error, p.size, p.touches, p.zone));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -8,7 +8,8 @@
 
    with one factor s for all cells, so that the errors of the new cells are equal (equidistribution). r is bounded,
    since the errors far from those of the present mesh are guesses. Cells at surfaces that may meet do not become
-   larger: how well these surfaces are resolved is in no cell's error. Sources: Zienkiewicz and Zhu (1987); Coorevits,
+   larger: how well these surfaces are resolved is in no cell's error. Where they are in contact they may have to become
+   smaller besides (errors/contactzone.h). Sources: Zienkiewicz and Zhu (1987); Coorevits,
    Hild and Hjiaj, Computer Methods in Applied Mechanics and Engineering 190 (2001). */
 #pragma once
 #include "solve/model.h"
@@ -18,6 +19,6 @@ typedef struct {
   PetscReal error;    /* of the next mesh, over that of the present one */
 } SizesForecast;
 
-PetscErrorCode ElementSizesFind(Model, const PetscReal *cell_error, PetscReal part, PetscReal larger, PetscReal most,
-                                PetscReal *size, SizesForecast *);
+PetscErrorCode ElementSizesFind(Model, const PetscReal *cell_error, PetscReal part, PetscReal larger, PetscReal in_zone,
+                                PetscReal most, PetscReal *size, SizesForecast *);
 PetscErrorCode ToolSizesFind(Model, const PetscReal *size, PetscReal *tool);

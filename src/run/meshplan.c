@@ -14,6 +14,13 @@
 /* What the change implies is taken so many times: where several causes leave errors, the one that falls slowest shows
    least in a change. It is the factor of Roache's grid convergence index for a measured power. */
 #define MESHPLAN_SAFETY 1.25
+/* Power with which the error of a contact zone's end falls with the size of the elements there. */
+#define MESHPLAN_ZONE_RATE 2
+/* Of the error that is wanted, that of the contact zone gets this part, where there is any: few elements take it away. */
+#define MESHPLAN_ZONE_SHARE 0.25
+/* The next mesh leaves at most this part of the error that the shares of the cells show, unless the zone becomes as much
+   finer: the change of the answer would hardly tell anything. */
+#define MESHPLAN_PART 0.5
 /* Power with which a quantity without an estimate is taken to converge: peaks and ends of contact zones follow the size
    of the elements. */
 #define MESHPLAN_ROUGH_RATE 1
@@ -103,8 +110,15 @@ double MeshPlanLargest(int n, const MeshFigures m[], int dim, int order, MeshFig
   return low * m[n - 1].factor;
 }
 
-/* The part that is left of an error from one mesh to the next. Where elements became smaller by the shares of the
-   cells, an error that these do not see falls more slowly than they do: its power is taken as half of theirs. */
+/* The part that is left of an error from one mesh to the next, where elements became smaller by the shares of the
+   cells. An error that these do not see is that of the contact zone, or falls more slowly than they do: its power is
+   taken as half of theirs. What the shares themselves miss falls as they do. */
+static double AdaptedPart(const MeshChange *c)
+{
+  return c->zone > 0 ? fmax(c->fall, pow(c->zone, -MESHPLAN_ZONE_RATE)) : sqrt(c->fall);
+}
+
+/* The part that is left of an error from one mesh to the next. */
 static double PartLeft(const MeshChange *c, int order)
 {
   const double rate  = isnan(c->estimate) ? MESHPLAN_ROUGH_RATE : FirstRate(order),
@@ -112,15 +126,40 @@ static double PartLeft(const MeshChange *c, int order)
 
   if (isnan(c->estimate)) return least > 0 ? fmin(least, MESHPLAN_SLOWEST) : MESHPLAN_SLOWEST;
   if (!isfinite(c->fall)) return MESHPLAN_SLOWEST;
-  return fmin(c->even ? fmax(c->fall, least) : sqrt(c->fall), MESHPLAN_SLOWEST);
+  return fmin(c->even ? fmax(c->fall, least) : AdaptedPart(c), MESHPLAN_SLOWEST);
 }
 
-/* MeshPlanImplied - gives the error of the last of two meshes that the change of the answer implies. order: of the
-   elements. */
+/* Is the first mesh too coarse to compare with? The estimate has grown, although the elements in contact are smaller. */
+static int IsBlind(const MeshChange *c)
+{
+  return !c->even && !isnan(c->estimate) && c->zone > 1 && c->fall >= 1;
+}
+
+/* MeshPlanImplied - gives the error of the last of two meshes that the change of the answer implies. NaN: it implies
+   nothing. order: of the elements. */
 double MeshPlanImplied(const MeshChange *c, int order)
 {
   const double left = PartLeft(c, order), times = MESHPLAN_SAFETY * left / (1 - left);
 
+  if (IsBlind(c)) return NAN;
   if (isnan(c->estimate)) return times * fabs(c->change);
   return MESHPLAN_SAFETY * fabs(c->estimate) + times * fabs(c->change - (c->before - c->estimate));
+}
+
+/* MeshPlanUnseen - gives the part of an implied error that the estimate does not see. */
+double MeshPlanUnseen(double implied, double estimate)
+{
+  return isnan(implied) ? 0 : fmax(implied / MESHPLAN_SAFETY - fabs(estimate), 0);
+}
+
+/* MeshPlanSplit - gives errors of the bodies and of the contact zone their shares. wanted: error that the next mesh is
+   to have with the factor of safety. */
+MeshWish MeshPlanSplit(double wanted, double bodies, double zone)
+{
+  const double sum = wanted / MESHPLAN_SAFETY, for_bodies = fmax((1 - MESHPLAN_ZONE_SHARE) * sum, sum - zone),
+               for_zone = fmax(MESHPLAN_ZONE_SHARE * sum, sum - bodies);
+  MeshWish wish         = {.bodies = fmin(for_bodies / bodies, 1), .zone = fmin(sqrt(for_zone / zone), 1)};
+
+  if (wish.zone > MESHPLAN_PART) wish.bodies = fmin(wish.bodies, MESHPLAN_PART);
+  return wish;
 }

@@ -1,6 +1,7 @@
 /* The loop over meshes of a run that is to reach an accuracy, see refinement.h. */
 #include "refinement.h"
 #include <math.h>
+#include "errors/contactzone.h"
 #include "errors/elementsizes.h"
 #include "files/textfile.h"
 #include "mesh/meshdensities.h"
@@ -37,6 +38,7 @@ enum { TABLE_ROW = 1024, EDIT_LENGTH = 2 * PETSC_MAX_PATH_LEN };
 typedef struct {
   QuantityError error;
   PetscReal     value, mesh_s;
+  PetscReal zone;    /* size of its elements at surfaces in contact; 0: nothing is in contact */
   PetscReal implied; /* error of the elements and surfaces by the change of the answer; NaN: there is no mesh before */
   PetscInt  dofs;
   double    factor; /* its elements are smaller by it than those of the first mesh */
@@ -215,10 +217,11 @@ static void Compare(Refinement *r)
                                 .estimate = (double)MeshPart(&mesh->error),
                                 .fall     = Spread(&mesh->error) / Spread(&before->error),
                                 .finer    = r->tries_order ? 2 : mesh->factor / before->factor,
+                                .zone     = mesh->zone > 0 ? (double)(before->zone / mesh->zone) : 0,
                                 .even     = r->even};
   mesh->implied  = (PetscReal)MeshPlanImplied(&change, before->order);
   figures->error = (double)MeshError(mesh);
-  last->error    = fmax(last->error, (double)mesh->implied + fabs(change.change));
+  if (!isnan((double)mesh->implied)) last->error = fmax(last->error, (double)mesh->implied + fabs(change.change));
 }
 
 /* How much finer the elements of the present mesh are than those of the first one; planned: by densities. */
@@ -253,6 +256,18 @@ static void ChooseOrder(Refinement *r)
     r->order = 1;
 }
 
+/* Measures the elements of the present mesh at surfaces in contact. */
+static PetscErrorCode MeasureZone(const Refinement *r, PetscReal *size)
+{
+  PetscBool *cells;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(r->run->mesh->n_cells, &cells));
+  PetscCall(ContactZoneFind(r->run->model, cells, size));
+  PetscCall(PetscFree(cells));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Takes the figures of the mesh that was solved last. */
 static PetscErrorCode Record(Refinement *r, double planned)
 {
@@ -272,6 +287,7 @@ static PetscErrorCode Record(Refinement *r, double planned)
   mesh->error       = *error;
   mesh->error.cells = NULL; /* they go with the run */
   mesh->mesh_s      = r->run->mesh_s;
+  PetscCall(MeasureZone(r, &mesh->zone));
   mesh->rough       = (PetscBool)(why != NULL);
   mesh->factor      = factor;
   mesh->order       = r->run->mesh->order;
@@ -311,6 +327,7 @@ static void Print(const Refinement *r)
       Say(r, " %s %+.2g", ErrorCauses[c], part * (double)mesh->error.part[c]);
   if (MeshError(mesh) > MeshEstimate(&mesh->error))
     Say(r, "; %.2g by the change from the mesh before", fabs(part) * (double)MeshError(mesh));
+  if (getenv("DBG")) printf(" [zone %g spread %g%% unseen %g%%]", mesh->zone, part*Spread(&mesh->error), part*MeshPlanUnseen(mesh->implied, MeshEstimate(&mesh->error)));
   Say(r, "; CPU %.2f s, gmsh %.2f s\n", r->figures[r->n - 1].cpu_s, (double)mesh->mesh_s);
 }
 
@@ -364,13 +381,27 @@ static PetscReal Largest(const Refinement *r)
   return Last(r)->rough ? 1 : REFINEMENT_LARGER;
 }
 
+/* What the next mesh is to leave of the present errors. Without contact, and where the probe has no estimate, shares of
+   the cells stand for all of it. */
+static MeshWish WishedParts(const Refinement *r)
+{
+  const SolvedMesh *mesh   = Last(r);
+  const PetscReal   wanted = WantedMeshError(r), surfaces = PetscAbsReal(SurfacesPart(&mesh->error)),
+                  bodies = MeshEstimate(&mesh->error) - surfaces,
+                  unseen = (PetscReal)MeshPlanUnseen((double)mesh->implied, (double)(bodies + surfaces));
+
+  if (mesh->rough || !(mesh->zone > 0))
+    return (MeshWish){.bodies = fmin((double)wanted / r->plan[r->n_plan - 1].error, REFINEMENT_PART), .zone = 1};
+  return MeshPlanSplit((double)wanted, (double)bodies, (double)(surfaces + unseen));
+}
+
 /* Chooses the sizes of the next mesh's elements and forecasts it. finer: it may have so many times the elements, to the
    power of 1 / dim. */
 static PetscErrorCode PlanSizes(Refinement *r, PetscReal finer, MeshFigures *next)
 {
   const Mesh           mesh   = r->run->mesh;
   const MeshFigures   *last   = &r->plan[r->n_plan - 1];
-  const PetscReal      wanted = WantedMeshError(r) / (PetscReal)last->error;
+  const MeshWish       wish = WishedParts(r);
   const QuantityError *error;
   const char          *why;
   PetscReal            value;
@@ -380,7 +411,7 @@ static PetscErrorCode PlanSizes(Refinement *r, PetscReal finer, MeshFigures *nex
   PetscCall(ResultsGetError(r->run->results, r->wish.probe, &value, &why, &error));
   PetscCall(PetscFree(r->size));
   PetscCall(PetscMalloc1(mesh->n_cells, &r->size));
-  PetscCall(ElementSizesFind(r->run->model, error->cells, PetscMin(wanted, REFINEMENT_PART), Largest(r),
+  PetscCall(ElementSizesFind(r->run->model, error->cells, (PetscReal)wish.bodies, Largest(r), (PetscReal)wish.zone,
                              PetscMin(PetscPowRealInt(finer, r->dim), REFINEMENT_MOST_ELEMENTS), r->size, &forecast));
   r->even = PETSC_FALSE;
   *next =
@@ -463,7 +494,7 @@ static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
   if (r->why) PetscFunctionReturn(PETSC_SUCCESS);
   if (r->may_try && !doubted && largest >= REFINEMENT_ORDER_ROOM * present)
     PlanOrder(r, next);
-  else if (doubted)
+  else if (doubted && (r->n == 1 || r->structured || !(last->zone > 0)))
     PetscCall(PlanEven(r, fmin(largest, REFINEMENT_WITNESS * present), next));
   else if (r->structured || r->run->mesh->order != r->order)
     PetscCall(
@@ -586,7 +617,7 @@ static PetscErrorCode Loop(Refinement *r, BurnishStatus *status)
     PetscCall(Record(r, next.factor));
     Print(r);
     PetscCall(Write(r));
-    if (r->n > 1 && Error(Last(r)) <= r->wish.to) break;
+    if (!isnan((double)Last(r)->implied) && Error(Last(r)) <= r->wish.to) break;
     PetscCall(Plan(r, &next));
     if (!r->why) PetscCall(SolveNext(r, &next, status));
   }

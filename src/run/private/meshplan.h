@@ -10,7 +10,11 @@
    Two meshes are witnesses of each other: where the error falls by the part q from one to the next, the change of the
    answer is (1 - q) / q times what is left. MeshPlanImplied() gives that of the change that the estimates of both
    meshes have not forecast, and adds the estimate of the last mesh, both with a factor of safety. Source: Roache,
-   Journal of Fluids Engineering 116 (1994), 405. */
+   Journal of Fluids Engineering 116 (1994), 405.
+
+   Where surfaces are in contact, what no estimate sees is that of the zone's end, which falls with the square of the
+   size of the elements there (errors/contactzone.h). MeshPlanUnseen() tells it from what is implied, MeshPlanSplit()
+   gives either kind of error its share of what is wanted. */
 #pragma once
 
 typedef struct {
@@ -24,10 +28,19 @@ typedef struct {
   double before, estimate; /* estimated error of either mesh, with its sign; NaN: there is no estimate */
   double fall;             /* sum of the magnitudes of what single places leave: of the last mesh over the one before */
   double finer;            /* elements are smaller by this factor: all of them, or on average */
+  double zone;             /* those at surfaces in contact are smaller by this factor; 0: nothing is in contact */
   int    even;             /* all */
 } MeshChange;
+
+/* What the next mesh is to leave of the present errors */
+typedef struct {
+  double bodies; /* part of that which the shares of the cells show */
+  double zone;   /* elements at surfaces in contact have this part of their size */
+} MeshWish;
 
 double      MeshPlanFactor(int n, const MeshFigures[], int order, double wanted);
 MeshFigures MeshPlanForecast(int n, const MeshFigures[], int dim, int order, double factor);
 double      MeshPlanLargest(int n, const MeshFigures[], int dim, int order, MeshFigures limit);
 double      MeshPlanImplied(const MeshChange *, int order);
+double      MeshPlanUnseen(double implied, double estimate);
+MeshWish    MeshPlanSplit(double wanted, double bodies, double zone);
