@@ -36,9 +36,9 @@ static PetscErrorCode NodalForces(Model model, int pair, PetscReal *force, Petsc
 }
 
 /* Marks the cells behind the faces of a surface that are in contact, and adds their forces and the logarithms of their
-   sizes, weighted with these, to sum[2]. */
+   sizes, weighted with these, to sum[0] and sum[1]; to sum[2] the number of those that are not. */
 static void MarkFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force, PetscReal least, const PetscReal *size,
-                      PetscBool *cells, PetscReal sum[2])
+                      PetscBool *cells, PetscReal sum[3])
 {
   for (PetscInt f = 0; group && f < group->n_faces; f++) {
     PetscInt  nodes[FACE_MAX_NODES];
@@ -49,6 +49,7 @@ static void MarkFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force,
       most = PetscMax(most, force[nodes[k]]);
       total += force[nodes[k]];
     }
+    if (!(most > least)) sum[2]++;
     if (!(most > least)) continue;
     cells[group->face_cell[f]] = PETSC_TRUE;
     sum[0] += total;
@@ -66,12 +67,13 @@ static void MarkFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force,
 
   Output Parameters:
 + cells - for each local cell: a face of it is in contact
-- size  - mean size of these cells, weighted with the forces (length), the same on all ranks; 0: nothing is in contact
+. size  - mean size of these cells, weighted with the forces (length), the same on all ranks; 0: nothing is in contact
+- ends  - some face of a slave is not in contact; the same on all ranks
 @*/
-PetscErrorCode ContactZoneFind(Model model, PetscBool *cells, PetscReal *size)
+PetscErrorCode ContactZoneFind(Model model, PetscBool *cells, PetscReal *size, PetscBool *ends)
 {
   const Mesh mesh   = model->mesh;
-  PetscReal  sum[2] = {0, 0}, *force, *sizes, *measure;
+  PetscReal  sum[3] = {0, 0, 0}, open, *force, *sizes, *measure;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(cells, mesh->n_cells));
@@ -84,10 +86,13 @@ PetscErrorCode ContactZoneFind(Model model, PetscBool *cells, PetscReal *size)
     PetscCall(NodalForces(model, p, force, &most));
     ContactPairSides(model->contact, p, &sides);
     MarkFaces(mesh, sides.slave->group, force, ZONE_LEAST_FORCE * most, sizes, cells, sum);
+    open = sum[2];
     if (sides.master) MarkFaces(mesh, sides.master->group, force, ZONE_LEAST_FORCE * most, sizes, cells, sum);
+    sum[2] = open;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPIU_SUM, mesh->comm));
   *size = sum[0] > 0 ? PetscExpReal(sum[1] / sum[0]) : 0;
+  *ends = (PetscBool)(sum[2] > 0);
   PetscCall(PetscFree3(force, sizes, measure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -7,4 +7,4 @@
 #pragma once
 #include "solve/model.h"
 
-PetscErrorCode ContactZoneFind(Model, PetscBool *cells, PetscReal *size);
+PetscErrorCode ContactZoneFind(Model, PetscBool *cells, PetscReal *size, PetscBool *ends);

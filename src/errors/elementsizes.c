@@ -135,12 +135,13 @@ PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscR
   const Mesh mesh = model->mesh;
   Present    p    = {.mesh = mesh, .larger = larger, .in_zone = in_zone};
   PetscReal  low, high, least, largest, zone_size;
+  PetscBool  ends;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc5(mesh->n_cells, &p.density, mesh->n_cells, &p.error, mesh->n_cells, &p.size, mesh->n_cells,
                          &p.touches, mesh->n_cells, &p.zone));
   PetscCall(FindTouching(model, p.touches));
-  PetscCall(ContactZoneFind(model, p.zone, &zone_size));
+  PetscCall(ContactZoneFind(model, p.zone, &zone_size, &ends));
   PetscCall(Take(cell_error, &p, &least, &largest));
   low  = PetscLogReal(SIZES_SMALLER / largest); /* all cells become as small, and as large, as they may */
   high = PetscLogReal(larger / least);

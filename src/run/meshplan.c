@@ -14,6 +14,8 @@
 /* What the change implies is taken so many times: where several causes leave errors, the one that falls slowest shows
    least in a change. It is the factor of Roache's grid convergence index for a measured power. */
 #define MESHPLAN_SAFETY 1.25
+/* This factor counts for a power that is assumed, as long as there are two meshes. */
+#define MESHPLAN_TWO_MESHES 3
 /* Power with which the error of a contact zone's end falls with the size of the elements there. */
 #define MESHPLAN_ZONE_RATE 2
 /* Of the error that is wanted, that of the contact zone gets this part, where there is any: few elements take it away. */
@@ -129,36 +131,45 @@ static double PartLeft(const MeshChange *c, int order)
   return fmin(c->even ? fmax(c->fall, least) : AdaptedPart(c), MESHPLAN_SLOWEST);
 }
 
-/* Is the first mesh too coarse to compare with? The estimate has grown, although the elements in contact are smaller. */
-static int IsBlind(const MeshChange *c)
+/* The part of the change that the estimates have not forecast. */
+static double Unforecast(const MeshChange *c)
 {
-  return !c->even && !isnan(c->estimate) && c->zone > 1 && c->fall >= 1;
+  return fabs(isnan(c->estimate) ? c->change : c->change - (c->before - c->estimate));
+}
+
+/* Do sizes by the shares of the cells stand beside those of a zone in contact? */
+static int HasZone(const MeshChange *c)
+{
+  return !c->even && !isnan(c->estimate) && c->zone > 0;
+}
+
+/* MeshPlanUnseen - gives the error of the last of two meshes that its estimate does not see. NaN: the mesh before was
+   too coarse to tell. order: of the elements. */
+double MeshPlanUnseen(const MeshChange *c, int order)
+{
+  const double left = PartLeft(c, order);
+
+  if (HasZone(c) && Unforecast(c) > fmax(MESHPLAN_TWO_MESHES * c->most, c->allowed)) return NAN;
+  return Unforecast(c) * left / (1 - left);
 }
 
 /* MeshPlanImplied - gives the error of the last of two meshes that the change of the answer implies. NaN: it implies
    nothing. order: of the elements. */
 double MeshPlanImplied(const MeshChange *c, int order)
 {
-  const double left = PartLeft(c, order), times = MESHPLAN_SAFETY * left / (1 - left);
+  const double safety = HasZone(c) && !c->known ? MESHPLAN_TWO_MESHES : MESHPLAN_SAFETY;
 
-  if (IsBlind(c)) return NAN;
-  if (isnan(c->estimate)) return times * fabs(c->change);
-  return MESHPLAN_SAFETY * fabs(c->estimate) + times * fabs(c->change - (c->before - c->estimate));
-}
-
-/* MeshPlanUnseen - gives the part of an implied error that the estimate does not see. */
-double MeshPlanUnseen(double implied, double estimate)
-{
-  return isnan(implied) ? 0 : fmax(implied / MESHPLAN_SAFETY - fabs(estimate), 0);
+  return (isnan(c->estimate) ? 0 : MESHPLAN_SAFETY * fabs(c->estimate)) + safety * MeshPlanUnseen(c, order);
 }
 
 /* MeshPlanSplit - gives errors of the bodies and of the contact zone their shares. wanted: error that the next mesh is
-   to have with the factor of safety. */
+   to have with the factor of safety; zone: NaN where it is not known. */
 MeshWish MeshPlanSplit(double wanted, double bodies, double zone)
 {
   const double sum = wanted / MESHPLAN_SAFETY, for_bodies = fmax((1 - MESHPLAN_ZONE_SHARE) * sum, sum - zone),
                for_zone = fmax(MESHPLAN_ZONE_SHARE * sum, sum - bodies);
-  MeshWish wish         = {.bodies = fmin(for_bodies / bodies, 1), .zone = fmin(sqrt(for_zone / zone), 1)};
+  MeshWish wish         = {.bodies = fmin(for_bodies / bodies, 1),
+                           .zone   = isnan(zone) ? MESHPLAN_PART : fmin(sqrt(for_zone / zone), 1)};
 
   if (wish.zone > MESHPLAN_PART) wish.bodies = fmin(wish.bodies, MESHPLAN_PART);
   return wish;

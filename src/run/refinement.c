@@ -39,6 +39,9 @@ typedef struct {
   QuantityError error;
   PetscReal     value, mesh_s;
   PetscReal zone;    /* size of its elements at surfaces in contact; 0: nothing is in contact */
+  PetscBool ends;    /* a zone in contact has an end */
+  PetscReal unseen;  /* error of the zone that no estimate sees; NaN: not known */
+  int       known;   /* changes up to it that tell something, one after the other */
   PetscReal implied; /* error of the elements and surfaces by the change of the answer; NaN: there is no mesh before */
   PetscInt  dofs;
   double    factor; /* its elements are smaller by it than those of the first mesh */
@@ -210,16 +213,21 @@ static void Compare(Refinement *r)
   MeshFigures      *figures = &r->figures[r->n], *last = r->n_plan ? &r->plan[r->n_plan - 1] : NULL;
   MeshChange        change;
 
-  mesh->implied = NAN;
+  mesh->implied = mesh->unseen = NAN;
   if (!r->n) return;
   change         = (MeshChange){.change   = (double)(MeshAnswer(mesh) - MeshAnswer(before)),
                                 .before   = (double)MeshPart(&before->error),
                                 .estimate = (double)MeshPart(&mesh->error),
                                 .fall     = Spread(&mesh->error) / Spread(&before->error),
                                 .finer    = r->tries_order ? 2 : mesh->factor / before->factor,
-                                .zone     = mesh->zone > 0 ? (double)(before->zone / mesh->zone) : 0,
+                                .zone     = mesh->ends && mesh->zone > 0 ? (double)(before->zone / mesh->zone) : 0,
+                                .most     = Spread(&before->error) + (before->known ? (double)before->unseen : 0),
+                                .allowed  = (double)(r->wish.to * PetscAbsReal(mesh->value)),
+                                .known    = before->known,
                                 .even     = r->even};
   mesh->implied  = (PetscReal)MeshPlanImplied(&change, before->order);
+  mesh->unseen   = (PetscReal)MeshPlanUnseen(&change, before->order);
+  mesh->known    = isnan((double)mesh->unseen) ? 0 : before->known + 1;
   figures->error = (double)MeshError(mesh);
   if (!isnan((double)mesh->implied)) last->error = fmax(last->error, (double)mesh->implied + fabs(change.change));
 }
@@ -257,13 +265,13 @@ static void ChooseOrder(Refinement *r)
 }
 
 /* Measures the elements of the present mesh at surfaces in contact. */
-static PetscErrorCode MeasureZone(const Refinement *r, PetscReal *size)
+static PetscErrorCode MeasureZone(const Refinement *r, SolvedMesh *mesh)
 {
   PetscBool *cells;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(r->run->mesh->n_cells, &cells));
-  PetscCall(ContactZoneFind(r->run->model, cells, size));
+  PetscCall(ContactZoneFind(r->run->model, cells, &mesh->zone, &mesh->ends));
   PetscCall(PetscFree(cells));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -287,7 +295,7 @@ static PetscErrorCode Record(Refinement *r, double planned)
   mesh->error       = *error;
   mesh->error.cells = NULL; /* they go with the run */
   mesh->mesh_s      = r->run->mesh_s;
-  PetscCall(MeasureZone(r, &mesh->zone));
+  PetscCall(MeasureZone(r, mesh));
   mesh->rough       = (PetscBool)(why != NULL);
   mesh->factor      = factor;
   mesh->order       = r->run->mesh->order;
@@ -327,7 +335,7 @@ static void Print(const Refinement *r)
       Say(r, " %s %+.2g", ErrorCauses[c], part * (double)mesh->error.part[c]);
   if (MeshError(mesh) > MeshEstimate(&mesh->error))
     Say(r, "; %.2g by the change from the mesh before", fabs(part) * (double)MeshError(mesh));
-  if (getenv("DBG")) printf(" [zone %g spread %g%% unseen %g%%]", mesh->zone, part*Spread(&mesh->error), part*MeshPlanUnseen(mesh->implied, MeshEstimate(&mesh->error)));
+  if (getenv("DBG")) printf(" [zone %g spread %g%% unseen %g%%]", mesh->zone, part*Spread(&mesh->error), part*mesh->unseen);
   Say(r, "; CPU %.2f s, gmsh %.2f s\n", r->figures[r->n - 1].cpu_s, (double)mesh->mesh_s);
 }
 
@@ -388,11 +396,11 @@ static MeshWish WishedParts(const Refinement *r)
   const SolvedMesh *mesh   = Last(r);
   const PetscReal   wanted = WantedMeshError(r), surfaces = PetscAbsReal(SurfacesPart(&mesh->error)),
                   bodies = MeshEstimate(&mesh->error) - surfaces,
-                  unseen = (PetscReal)MeshPlanUnseen((double)mesh->implied, (double)(bodies + surfaces));
+                  zone   = surfaces + (r->n == 1 || !mesh->ends ? 0 : mesh->unseen);
 
   if (mesh->rough || !(mesh->zone > 0))
     return (MeshWish){.bodies = fmin((double)wanted / r->plan[r->n_plan - 1].error, REFINEMENT_PART), .zone = 1};
-  return MeshPlanSplit((double)wanted, (double)bodies, (double)(surfaces + unseen));
+  return MeshPlanSplit((double)wanted, (double)bodies, (double)zone);
 }
 
 /* Chooses the sizes of the next mesh's elements and forecasts it. finer: it may have so many times the elements, to the

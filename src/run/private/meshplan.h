@@ -13,8 +13,11 @@
    Journal of Fluids Engineering 116 (1994), 405.
 
    Where surfaces are in contact, what no estimate sees is that of the zone's end, which falls with the square of the
-   size of the elements there (errors/contactzone.h). MeshPlanUnseen() tells it from what is implied, MeshPlanSplit()
-   gives either kind of error its share of what is wanted. */
+   size of the elements there (errors/contactzone.h). MeshPlanSplit() gives either kind of
+   error its share of what is wanted. As the power at the zone is no measured one, the factor of safety is
+   3 after one change, as Roache has it for two meshes. A change is not forecast by more than this factor times all that
+   is known to leave errors, and by more than what is asked for, where the mesh before was too coarse to tell anything:
+   it implies nothing. */
 #pragma once
 
 typedef struct {
@@ -28,7 +31,10 @@ typedef struct {
   double before, estimate; /* estimated error of either mesh, with its sign; NaN: there is no estimate */
   double fall;             /* sum of the magnitudes of what single places leave: of the last mesh over the one before */
   double finer;            /* elements are smaller by this factor: all of them, or on average */
-  double zone;             /* those at surfaces in contact are smaller by this factor; 0: nothing is in contact */
+  double zone;             /* those at surfaces in contact are smaller by this factor; 0: no zone in contact has an end */
+  double most;             /* sum of the magnitudes of all that is known to leave errors on the mesh before */
+  double allowed;          /* error that is asked for */
+  int    known;            /* changes to the mesh before that have told something, one after the other */
   int    even;             /* all */
 } MeshChange;
 
@@ -41,6 +47,6 @@ typedef struct {
 double      MeshPlanFactor(int n, const MeshFigures[], int order, double wanted);
 MeshFigures MeshPlanForecast(int n, const MeshFigures[], int dim, int order, double factor);
 double      MeshPlanLargest(int n, const MeshFigures[], int dim, int order, MeshFigures limit);
+double      MeshPlanUnseen(const MeshChange *, int order);
 double      MeshPlanImplied(const MeshChange *, int order);
-double      MeshPlanUnseen(double implied, double estimate);
 MeshWish    MeshPlanSplit(double wanted, double bodies, double zone);
