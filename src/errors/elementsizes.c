@@ -1,10 +1,13 @@
 /* Sizes of the elements of the next mesh, see elementsizes.h. */
 #include "errors/elementsizes.h"
 #include "errors/contactzone.h"
+#include "errors/singularpoints.h"
 #include "mesh/meshsizes.h"
 
 /* An element becomes at most so much smaller from one mesh to the next. */
 #define SIZES_SMALLER 0.25
+/* At a point where stresses have no bound it becomes at most so much smaller: as in two meshes. */
+#define SIZES_SINGULAR (SIZES_SMALLER * SIZES_SMALLER)
 /* Cells with a smaller error per measure than this part of the mean count as having this part. */
 #define SIZES_LEAST_ERROR 1e-8
 /* Where the zone in contact has too many elements, they become larger by this factor at a time. */
@@ -18,15 +21,23 @@ typedef struct {
   PetscReal  larger;                 /* a cell becomes at most so many times larger */
   PetscBool *touches;                /* the cell lies at a surface of a contact pair */
   PetscBool *zone;                   /* it is in contact there */
+  PetscBool *singular;               /* it has a point with stresses without a bound as a corner */
   PetscReal  in_zone;                /* a cell of the zone has at most this part of its size */
 } Present;
 
 /* The factor on the size of a cell. */
 static PetscReal Factor(const Present *p, PetscInt cell, PetscReal s)
 {
-  const PetscReal most = p->zone[cell] ? p->in_zone : p->touches[cell] ? 1 : p->larger;
+  const int       power = 2 * p->mesh->order, dim = p->mesh->dim;
+  const PetscReal most   = p->zone[cell] ? p->in_zone : p->touches[cell] ? 1 : p->larger;
+  PetscReal       factor = s * p->density[cell], least = SIZES_SMALLER;
 
-  return PetscMin(PetscMax(s * p->density[cell], SIZES_SMALLER), most);
+  if (p->singular[cell]) {
+    factor = PetscPowReal((PetscReal)power / SINGULAR_RATE * PetscPowRealInt(factor, power + dim),
+                          (PetscReal)1 / (SINGULAR_RATE + dim));
+    least  = SIZES_SINGULAR;
+  }
+  return PetscMin(PetscMax(factor, least), most);
 }
 
 /* Elements and error of the next mesh for the common factor s. */
@@ -40,7 +51,7 @@ static PetscErrorCode Forecast(const Present *p, PetscReal s, SizesForecast *for
     const PetscReal r = Factor(p, c, s);
 
     sum[0] += PetscPowRealInt(r, -mesh->dim);
-    sum[1] += p->error[c] * PetscPowRealInt(r, 2 * mesh->order);
+    sum[1] += p->error[c] * PetscPowRealInt(r, p->singular[c] ? SINGULAR_RATE : 2 * mesh->order);
     sum[2] += p->error[c];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPIU_SUM, mesh->comm));
@@ -138,11 +149,12 @@ PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscR
   PetscBool  ends;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc5(mesh->n_cells, &p.density, mesh->n_cells, &p.error, mesh->n_cells, &p.size, mesh->n_cells,
-                         &p.touches, mesh->n_cells, &p.zone));
+  PetscCall(PetscCalloc6(mesh->n_cells, &p.density, mesh->n_cells, &p.error, mesh->n_cells, &p.size, mesh->n_cells,
+                         &p.touches, mesh->n_cells, &p.zone, mesh->n_cells, &p.singular));
   PetscCall(FindTouching(model, p.touches));
   PetscCall(ContactZoneFind(model, p.zone, &zone_size, &ends));
   PetscCall(Take(cell_error, &p, &least, &largest));
+  PetscCall(SingularCellsFind(mesh, cell_error, p.touches, p.singular));
   low  = PetscLogReal(SIZES_SMALLER / largest); /* all cells become as small, and as large, as they may */
   high = PetscLogReal(larger / least);
   PetscCall(BoundZone(&p, PetscExpReal(high), most));
@@ -156,7 +168,7 @@ PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscR
       low = middle;
   }
   for (PetscInt c = 0; c < mesh->n_cells; c++) size[c] = p.size[c] * Factor(&p, c, PetscExpReal(high));
-  PetscCall(PetscFree5(p.density, p.error, p.size, p.touches, p.zone));
+  PetscCall(PetscFree6(p.density, p.error, p.size, p.touches, p.zone, p.singular));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
