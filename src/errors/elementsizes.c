@@ -95,9 +95,9 @@ static PetscErrorCode Take(const PetscReal *cell_error, Present *p, PetscReal *l
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const PetscReal mean = sum[0] > 0 ? sum[0] / sum[1] : 1;
+    const PetscReal mean = sum[0] > 0 ? sum[0] / (PetscReal)mesh->n_cells_global : 1;
 
-    p->density[c] = PetscPowReal(PetscMax(p->error[c] / p->density[c] / mean, SIZES_LEAST_ERROR),
+    p->density[c] = PetscPowReal(PetscMax(p->error[c] / mean, SIZES_LEAST_ERROR),
                                  -1.0 / (2 * mesh->order + mesh->dim));
     bound[0]      = PetscMax(bound[0], -p->density[c]);
     bound[1]      = PetscMax(bound[1], p->density[c]);
