@@ -8,6 +8,9 @@
 #define SIZES_SMALLER 0.25
 /* At a point where stresses have no bound it becomes at most so much smaller: as in two meshes. */
 #define SIZES_SINGULAR (SIZES_SMALLER * SIZES_SMALLER)
+/* Cells of a regular mesh whose size grows by 0.35 of the distance: for each factor e in distance, in a sixth of the plane
+   (2 pi / 6 over 0.43, the area of a regular triangle, and the square of the growth). */
+#define SIZES_GRADED 20
 /* Cells with a smaller error per measure than this part of the mean count as having this part. */
 #define SIZES_LEAST_ERROR 1e-8
 /* Where the zone in contact has too many elements, they become larger by this factor at a time. */
@@ -40,6 +43,16 @@ static PetscReal Factor(const Present *p, PetscInt cell, PetscReal s)
   return PetscMin(PetscMax(factor, least), most);
 }
 
+/* New cells in the place of a cell that becomes smaller by the factor r. Around a singular point sizes grow with the
+   distance, so that each factor e in distance takes as many cells. */
+static PetscReal NewCells(const Present *p, PetscInt cell, PetscReal r)
+{
+  const int dim = p->mesh->dim;
+
+  if (!p->singular[cell] || r >= 1) return PetscPowRealInt(r, -dim);
+  return PetscPowRealInt(r, 2 - dim) * PetscMin(1 / (r * r), 1 - SIZES_GRADED * PetscLogReal(r));
+}
+
 /* Elements and error of the next mesh for the common factor s. */
 static PetscErrorCode Forecast(const Present *p, PetscReal s, SizesForecast *forecast)
 {
@@ -50,7 +63,7 @@ static PetscErrorCode Forecast(const Present *p, PetscReal s, SizesForecast *for
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const PetscReal r = Factor(p, c, s);
 
-    sum[0] += PetscPowRealInt(r, -mesh->dim);
+    sum[0] += NewCells(p, c, r);
     sum[1] += p->error[c] * PetscPowRealInt(r, p->singular[c] ? SINGULAR_RATE : 2 * mesh->order);
     sum[2] += p->error[c];
   }

@@ -335,7 +335,6 @@ static void Print(const Refinement *r)
       Say(r, " %s %+.2g", ErrorCauses[c], part * (double)mesh->error.part[c]);
   if (MeshError(mesh) > MeshEstimate(&mesh->error))
     Say(r, "; %.2g by the change from the mesh before", fabs(part) * (double)MeshError(mesh));
-  if (getenv("DBG")) printf(" [zone %g spread %g%% unseen %g%%]", mesh->zone, part*Spread(&mesh->error), part*mesh->unseen);
   Say(r, "; CPU %.2f s, gmsh %.2f s\n", r->figures[r->n - 1].cpu_s, (double)mesh->mesh_s);
 }
 
