@@ -8,8 +8,8 @@
 #define SIZES_SMALLER 0.25
 /* At a point where stresses have no bound it becomes at most so much smaller: as in two meshes. */
 #define SIZES_SINGULAR (SIZES_SMALLER * SIZES_SMALLER)
-/* Cells of a regular mesh whose size grows by 0.35 of the distance: for each factor e in distance, in a sixth of the plane
-   (2 pi / 6 over 0.43, the area of a regular triangle, and the square of the growth). */
+/* Cells of a regular mesh whose size grows by 0.35 of the distance: for each factor e in distance, in a sixth of the
+   plane (2 pi / 6 over 0.43, the area of a regular triangle, and the square of the growth). */
 #define SIZES_GRADED 20
 /* Cells with a smaller error per measure than this part of the mean count as having this part. */
 #define SIZES_LEAST_ERROR 1e-8
@@ -110,8 +110,7 @@ static PetscErrorCode Take(const PetscReal *cell_error, Present *p, PetscReal *l
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const PetscReal mean = sum[0] > 0 ? sum[0] / (PetscReal)mesh->n_cells_global : 1;
 
-    p->density[c] = PetscPowReal(PetscMax(p->error[c] / mean, SIZES_LEAST_ERROR),
-                                 -1.0 / (2 * mesh->order + mesh->dim));
+    p->density[c] = PetscPowReal(PetscMax(p->error[c] / mean, SIZES_LEAST_ERROR), -1.0 / (2 * mesh->order + mesh->dim));
     bound[0]      = PetscMax(bound[0], -p->density[c]);
     bound[1]      = PetscMax(bound[1], p->density[c]);
   }

@@ -4,8 +4,8 @@
 #include "mesh/meshdofs.h"
 #include "mesh/meshsizes.h"
 
-/* The error per measure around such a point is so many times that around the cells there: 3^(2 (1 + p - lambda)) at order
-   1 with lambda = 0.74, that of an end of a support. Of smooth errors on meshes of triangles it is at most 6. */
+/* The error per measure around such a point is so many times that around the cells there: 3^(2 (1 + p - lambda)) at
+   order 1 with lambda = 0.74, that of an end of a support. Of smooth errors on meshes of triangles it is at most 6. */
 #define SINGULAR_RATIO 16
 /* Errors that differ by less than this part are equal: round-off, which depends on the number of ranks, is not to
    decide. */
@@ -18,7 +18,7 @@ typedef struct {
   Mesh             mesh;
   const PetscReal *error;
   const PetscBool *skip;
-  PetscReal       *size, *measure;              /* of the cells */
+  PetscReal       *size, *measure;                /* of the cells */
   PetscReal       *patch, *outer, *ring, *beaten; /* [n_nodes][SUMS], the last one [n_nodes] */
 } Points;
 
@@ -90,8 +90,7 @@ static PetscErrorCode SumRings(const Points *p, const PetscBool *inner)
     const PetscInt peak = Peak(p, c);
 
     for (int k = 0, n = Corners(p, c, &nodes); k < n && peak >= 0; k++)
-      for (int s = 0; s < SUMS && nodes[k] != peak; s++)
-        p->ring[peak * SUMS + s] += p->outer[nodes[k] * SUMS + s];
+      for (int s = 0; s < SUMS && nodes[k] != peak; s++) p->ring[peak * SUMS + s] += p->outer[nodes[k] * SUMS + s];
   }
   PetscCall(MeshSumNodes(p->mesh, SUMS, p->ring));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -18,10 +18,11 @@
 #define MESHPLAN_TWO_MESHES 3
 /* Power with which the error of a contact zone's end falls with the size of the elements there. */
 #define MESHPLAN_ZONE_RATE 2
-/* Of the error that is wanted, that of the contact zone gets this part, where there is any: few elements take it away. */
+/* Of the error that is wanted, that of the contact zone gets this part, where there is any: few elements take it away.
+ */
 #define MESHPLAN_ZONE_SHARE 0.25
-/* The next mesh leaves at most this part of the error that the shares of the cells show, unless the zone becomes as much
-   finer: the change of the answer would hardly tell anything. */
+/* The next mesh leaves at most this part of the error that the shares of the cells show, unless the zone becomes as
+   much finer: the change of the answer would hardly tell anything. */
 #define MESHPLAN_PART 0.5
 /* Power with which a quantity without an estimate is taken to converge: peaks and ends of contact zones follow the size
    of the elements. */

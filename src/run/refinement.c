@@ -38,10 +38,10 @@ enum { TABLE_ROW = 1024, EDIT_LENGTH = 2 * PETSC_MAX_PATH_LEN };
 typedef struct {
   QuantityError error;
   PetscReal     value, mesh_s;
-  PetscReal zone;    /* size of its elements at surfaces in contact; 0: nothing is in contact */
-  PetscBool ends;    /* a zone in contact has an end */
-  PetscReal unseen;  /* error of the zone that no estimate sees; NaN: not known */
-  int       known;   /* changes up to it that tell something, one after the other */
+  PetscReal     zone;   /* size of its elements at surfaces in contact; 0: nothing is in contact */
+  PetscBool     ends;   /* a zone in contact has an end */
+  PetscReal     unseen; /* error of the zone that no estimate sees; NaN: not known */
+  int           known;  /* changes up to it that tell something, one after the other */
   PetscReal implied; /* error of the elements and surfaces by the change of the answer; NaN: there is no mesh before */
   PetscInt  dofs;
   double    factor; /* its elements are smaller by it than those of the first mesh */
@@ -296,15 +296,15 @@ static PetscErrorCode Record(Refinement *r, double planned)
   mesh->error.cells = NULL; /* they go with the run */
   mesh->mesh_s      = r->run->mesh_s;
   PetscCall(MeasureZone(r, mesh));
-  mesh->rough       = (PetscBool)(why != NULL);
-  mesh->factor      = factor;
-  mesh->order       = r->run->mesh->order;
-  r->figures[r->n]  = (MeshFigures){.factor   = factor,
-                                    .unknowns = (double)mesh->dofs,
-                                    .error    = (double)MeshEstimate(error),
-                                    .cpu_s    = (double)usage.cpu_s - r->cpu_s,
-                                    .rss_mb   = (double)usage.peak_rss_mb};
-  r->cpu_s          = (double)usage.cpu_s;
+  mesh->rough      = (PetscBool)(why != NULL);
+  mesh->factor     = factor;
+  mesh->order      = r->run->mesh->order;
+  r->figures[r->n] = (MeshFigures){.factor   = factor,
+                                   .unknowns = (double)mesh->dofs,
+                                   .error    = (double)MeshEstimate(error),
+                                   .cpu_s    = (double)usage.cpu_s - r->cpu_s,
+                                   .rss_mb   = (double)usage.peak_rss_mb};
+  r->cpu_s         = (double)usage.cpu_s;
   Compare(r);
   if (r->tries_order)
     ChooseOrder(r);
@@ -406,8 +406,8 @@ static MeshWish WishedParts(const Refinement *r)
    power of 1 / dim. */
 static PetscErrorCode PlanSizes(Refinement *r, PetscReal finer, MeshFigures *next)
 {
-  const Mesh           mesh   = r->run->mesh;
-  const MeshFigures   *last   = &r->plan[r->n_plan - 1];
+  const Mesh           mesh = r->run->mesh;
+  const MeshFigures   *last = &r->plan[r->n_plan - 1];
   const MeshWish       wish = WishedParts(r);
   const QuantityError *error;
   const char          *why;

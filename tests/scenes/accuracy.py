@@ -17,6 +17,12 @@ def wish(scene, probe, per_cent, name, *overrides, must=0, ranks=None):
         return finished, [{key: float(value or "nan") for key, value in row.items()} for row in csv.DictReader(file)]
 
 
+def steps(finished, mesh):
+    """Load steps of a mesh."""
+    with open(finished.directory / f"mesh-{mesh}" / "summary.json") as file:
+        return json.load(file)["steps"]
+
+
 def has_errors(finished, mesh):
     """Says whether the last mesh's results hold as many errors as it has elements, with their sum."""
     import h5py
@@ -47,6 +53,7 @@ free = ("mesh.parameters.refine=0.5", "mesh.order=1")
 finished, meshes = wish(JOBS / "lip_seal.yaml", "lip_up", 1, "sizes", *free)
 check.holds("sizes: several meshes", len(meshes) > 1, f"{len(meshes)}")
 check.holds("the estimate is below the wish", meshes[-1]["per_cent"] <= 1)
+check.holds("a way that may count is taken in steps", steps(finished, len(meshes)) > 1)
 _, alone = wish(JOBS / "lip_seal.yaml", "lip_up", 1, "sizes_alone", *free, ranks=1)
 check.near("the same on all ranks", meshes[-1]["value"], alone[-1]["value"], 1e-7)
 check.holds("errors of elements are there", has_errors(finished, len(meshes)))
@@ -68,6 +75,16 @@ scene.write_text((RUNS / "free" / "bracket.yaml").read_text().replace(", order: 
 finished, meshes = wish(scene, "force", 0.5, "order")
 check.holds("elements of second order are tried, and are cheaper", "order   2 takes" in finished.text)
 check.near("order: the error is below the wish", meshes[-1]["value"], 0.227703, 0.005 * 0.227703)
+# Sharp corner; zones in contact that the first mesh does not resolve. References: those of scripts/adaptive_table.py
+finished, meshes = wish(RUNS / "free" / "bracket.yaml", "force", 0.2, "corner")
+check.holds("corner: the second mesh is near the forecast", meshes[1]["per_cent"] < 0.4, f"{meshes[1]['per_cent']}")
+check.near("corner: the error is below the wish", meshes[-1]["value"], 0.227703, 0.002 * 0.227703)
+check.holds("a way that does not count is taken in one step", steps(finished, 1) == steps(finished, 2) == 1)
+for scene, probe, true in ("hertz_line", "patch", 1365.39), ("hertz_sphere", "force", 17318.5):
+    finished, meshes = wish(RUNS / "free" / f"{scene}.yaml", probe, 0.2, f"free_{scene}")
+    check.near(f"free {scene}: the error is below the wish", meshes[-1]["value"], true, 0.002 * true)
+    check.holds("a mesh that cannot tell confirms nothing", meshes[1]["by_change"] != meshes[1]["by_change"])
+    check.holds("the zone takes few elements", meshes[-1]["unknowns"] < 5000, f"{meshes[-1]['unknowns']}")
 finished, meshes = wish(RUNS / "cook.yaml", "tip_uy", 0.01, "limit", "accuracy.meshes=2", must=5)
 check.holds("a limit ends it", len(meshes) == 2 and "is not reached" in finished.text)
 finished, meshes = wish(RUNS / "cook.yaml", "tip_uy", 5, "alone", "accuracy.meshes=1", "mesh.order=2",

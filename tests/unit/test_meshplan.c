@@ -80,6 +80,55 @@ static void test_forecast_change(void **state)
   assert_float_equal(MeshPlanImplied(&c, 1), 1.25 * 27 / 2, 1e-12);
 }
 
+/* Where surfaces are in contact, what no estimate sees falls with the square of the size of the elements there, and at
+   least as what it sees. After one change the factor of safety is 3. */
+static void test_zone(void **state)
+{
+  MeshChange c = {.change = -11, .before = -10, .estimate = -1, .fall = 0.1, .zone = 2, .most = 10, .allowed = 1};
+
+  (void)state;
+  assert_float_equal(MeshPlanUnseen(&c, 2), 2.0 / 3, 1e-12);
+  assert_float_equal(MeshPlanImplied(&c, 2), 1.25 + 3 * 2.0 / 3, 1e-12);
+  c.known = 1;
+  assert_float_equal(MeshPlanImplied(&c, 2), 1.25 * (1 + 2.0 / 3), 1e-12);
+  c.fall = 0.5;
+  assert_float_equal(MeshPlanUnseen(&c, 2), 2, 1e-12);
+  c.zone = 0; /* no zone has an end */
+  assert_float_equal(MeshPlanUnseen(&c, 2), 2 * sqrt(0.5) / (1 - sqrt(0.5)), 1e-12);
+}
+
+/* A change that is beyond all that the mesh before could tell implies nothing, unless it is less than what is asked
+   for. */
+static void test_mesh_that_cannot_tell(void **state)
+{
+  MeshChange c = {.change = -40, .before = -10, .estimate = -1, .fall = 0.1, .zone = 2, .most = 10, .allowed = 1};
+
+  (void)state;
+  assert_true(isnan(MeshPlanUnseen(&c, 2)));
+  assert_true(isnan(MeshPlanImplied(&c, 2)));
+  c.allowed = 50;
+  assert_float_equal(MeshPlanUnseen(&c, 2), 31.0 / 3, 1e-12);
+  c.allowed = 1;
+  c.even    = 1; /* all elements became smaller: they are compared whatever they say */
+  assert_float_equal(MeshPlanUnseen(&c, 2), 31.0 / 9, 1e-12);
+}
+
+/* The zone gets a quarter of what is wanted, or what the bodies leave of it. */
+static void test_split(void **state)
+{
+  MeshWish wish = MeshPlanSplit(1.25, 3, 4);
+
+  (void)state;
+  assert_float_equal(wish.bodies, 0.25, 1e-12);
+  assert_float_equal(wish.zone, 0.25, 1e-12);
+  wish = MeshPlanSplit(1.25, 0.25, 3);
+  assert_float_equal(wish.bodies, 1, 1e-12);
+  assert_float_equal(wish.zone, 0.5, 1e-12);
+  wish = MeshPlanSplit(1.25, 0.25, 1); /* what is left is to tell something */
+  assert_float_equal(wish.bodies, 0.5, 1e-12);
+  assert_float_equal(MeshPlanSplit(1.25, 3, NAN).zone, 0.5, 1e-12);
+}
+
 /* The largest mesh is that whose forecast is the limit, and there is none where a small step is too much. */
 static void test_limits(void **state)
 {
@@ -94,9 +143,15 @@ static void test_limits(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_first_mesh),           cmocka_unit_test(test_measured),        cmocka_unit_test(test_no_fall),
-    cmocka_unit_test(test_change_implies_error), cmocka_unit_test(test_forecast_change), cmocka_unit_test(test_limits)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_first_mesh),
+                                     cmocka_unit_test(test_measured),
+                                     cmocka_unit_test(test_no_fall),
+                                     cmocka_unit_test(test_change_implies_error),
+                                     cmocka_unit_test(test_forecast_change),
+                                     cmocka_unit_test(test_zone),
+                                     cmocka_unit_test(test_mesh_that_cannot_tell),
+                                     cmocka_unit_test(test_split),
+                                     cmocka_unit_test(test_limits)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -31,11 +31,11 @@ typedef struct {
   double before, estimate; /* estimated error of either mesh, with its sign; NaN: there is no estimate */
   double fall;             /* sum of the magnitudes of what single places leave: of the last mesh over the one before */
   double finer;            /* elements are smaller by this factor: all of them, or on average */
-  double zone;             /* those at surfaces in contact are smaller by this factor; 0: no zone in contact has an end */
-  double most;             /* sum of the magnitudes of all that is known to leave errors on the mesh before */
-  double allowed;          /* error that is asked for */
-  int    known;            /* changes to the mesh before that have told something, one after the other */
-  int    even;             /* all */
+  double zone;    /* those at surfaces in contact are smaller by this factor; 0: no zone in contact has an end */
+  double most;    /* sum of the magnitudes of all that is known to leave errors on the mesh before */
+  double allowed; /* error that is asked for */
+  int    known;   /* changes to the mesh before that have told something, one after the other */
+  int    even;    /* all */
 } MeshChange;
 
 /* What the next mesh is to leave of the present errors */
