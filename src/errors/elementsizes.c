@@ -11,7 +11,7 @@
 /* Cells of a regular mesh whose size grows by 0.35 of the distance: for each factor e in distance, in a sixth of the
    plane (2 pi / 6 over 0.43, the area of a regular triangle, and the square of the growth). */
 #define SIZES_GRADED 20
-/* Cells with a smaller error per measure than this part of the mean count as having this part. */
+/* Cells with a smaller error than this part of the mean count as having this part. */
 #define SIZES_LEAST_ERROR 1e-8
 /* Where the zone in contact has too many elements, they become larger by this factor at a time. */
 #define SIZES_ZONE_STEP 1.2
@@ -20,12 +20,12 @@ enum { SIZES_HALVINGS = 60 };
 
 typedef struct {
   Mesh       mesh;
-  PetscReal *density, *error, *size; /* error per measure to the power -1 / (2p + d); error; present size */
-  PetscReal  larger;                 /* a cell becomes at most so many times larger */
-  PetscBool *touches;                /* the cell lies at a surface of a contact pair */
-  PetscBool *zone;                   /* it is in contact there */
-  PetscBool *singular;               /* it has a point with stresses without a bound as a corner */
-  PetscReal  in_zone;                /* a cell of the zone has at most this part of its size */
+  PetscReal *weight, *error, *size; /* error to the power -1 / (2p + d); error; present size */
+  PetscReal  larger;                /* a cell becomes at most so many times larger */
+  PetscBool *touches;               /* the cell lies at a surface of a contact pair */
+  PetscBool *zone;                  /* it is in contact there */
+  PetscBool *singular;              /* it has a point with stresses without a bound as a corner */
+  PetscReal  in_zone;               /* a cell of the zone has at most this part of its size */
 } Present;
 
 /* The factor on the size of a cell. */
@@ -33,7 +33,7 @@ static PetscReal Factor(const Present *p, PetscInt cell, PetscReal s)
 {
   const int       power = 2 * p->mesh->order, dim = p->mesh->dim;
   const PetscReal most   = p->zone[cell] ? p->in_zone : p->touches[cell] ? 1 : p->larger;
-  PetscReal       factor = s * p->density[cell], least = SIZES_SMALLER;
+  PetscReal       factor = s * p->weight[cell], least = SIZES_SMALLER;
 
   if (p->singular[cell]) {
     factor = PetscPowReal((PetscReal)power / SINGULAR_RATE * PetscPowRealInt(factor, power + dim),
@@ -93,26 +93,25 @@ static PetscErrorCode FindTouching(Model model, PetscBool *touches)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes the errors of the cells. *least, *most: of the densities' powers. */
+/* Takes the errors of the cells. *least, *most: of their powers. */
 static PetscErrorCode Take(const PetscReal *cell_error, Present *p, PetscReal *least, PetscReal *most)
 {
-  const Mesh mesh   = p->mesh;
-  PetscReal  sum[2] = {0, 0}, bound[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL};
+  const Mesh mesh = p->mesh;
+  PetscReal  sum = 0, bound[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL};
 
   PetscFunctionBeginUser;
-  MeshCellSizes(mesh, p->size, p->density);
+  MeshCellSizes(mesh, p->size, p->weight);
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     p->error[c] = PetscAbsReal(cell_error[c]);
-    sum[0] += p->error[c];
-    sum[1] += p->density[c];
+    sum += p->error[c];
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const PetscReal mean = sum[0] > 0 ? sum[0] / (PetscReal)mesh->n_cells_global : 1;
+    const PetscReal mean = sum > 0 ? sum / (PetscReal)mesh->n_cells_global : 1;
 
-    p->density[c] = PetscPowReal(PetscMax(p->error[c] / mean, SIZES_LEAST_ERROR), -1.0 / (2 * mesh->order + mesh->dim));
-    bound[0]      = PetscMax(bound[0], -p->density[c]);
-    bound[1]      = PetscMax(bound[1], p->density[c]);
+    p->weight[c] = PetscPowReal(PetscMax(p->error[c] / mean, SIZES_LEAST_ERROR), -1.0 / (2 * mesh->order + mesh->dim));
+    bound[0]     = PetscMax(bound[0], -p->weight[c]);
+    bound[1]     = PetscMax(bound[1], p->weight[c]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bound, 2, MPIU_REAL, MPIU_MAX, mesh->comm));
   *least = -bound[0];
@@ -161,7 +160,7 @@ PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscR
   PetscBool  ends;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc6(mesh->n_cells, &p.density, mesh->n_cells, &p.error, mesh->n_cells, &p.size, mesh->n_cells,
+  PetscCall(PetscCalloc6(mesh->n_cells, &p.weight, mesh->n_cells, &p.error, mesh->n_cells, &p.size, mesh->n_cells,
                          &p.touches, mesh->n_cells, &p.zone, mesh->n_cells, &p.singular));
   PetscCall(FindTouching(model, p.touches));
   PetscCall(ContactZoneFind(model, p.zone, &zone_size, &ends));
@@ -180,7 +179,7 @@ PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscR
       low = middle;
   }
   for (PetscInt c = 0; c < mesh->n_cells; c++) size[c] = p.size[c] * Factor(&p, c, PetscExpReal(high));
-  PetscCall(PetscFree6(p.density, p.error, p.size, p.touches, p.zone, p.singular));
+  PetscCall(PetscFree6(p.weight, p.error, p.size, p.touches, p.zone, p.singular));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -21,8 +21,9 @@
 /* Of the error that is wanted, that of the contact zone gets this part, where there is any: few elements take it away.
  */
 #define MESHPLAN_ZONE_SHARE 0.25
-/* The next mesh leaves at most this part of the error that the shares of the cells show, unless the zone becomes as
-   much finer: the change of the answer would hardly tell anything. */
+/* The next mesh leaves at most this part of the error that the shares of the cells show: what they do not see may be in
+   the bodies, too, and the change of the answer is to tell something. The zone has this part of its size where nothing
+   is known of its error. */
 #define MESHPLAN_PART 0.5
 /* Power with which a quantity without an estimate is taken to converge: peaks and ends of contact zones follow the size
    of the elements. */
@@ -172,6 +173,6 @@ MeshWish MeshPlanSplit(double wanted, double bodies, double zone)
   MeshWish wish         = {.bodies = fmin(for_bodies / bodies, 1),
                            .zone   = isnan(zone) ? MESHPLAN_PART : fmin(sqrt(for_zone / zone), 1)};
 
-  if (wish.zone > MESHPLAN_PART) wish.bodies = fmin(wish.bodies, MESHPLAN_PART);
+  if (!isnan(zone)) wish.bodies = fmin(wish.bodies, MESHPLAN_PART);
   return wish;
 }

@@ -379,13 +379,14 @@ static void TakeScale(Refinement *r, double more)
 }
 
 /* How many times larger an element may become. After a mesh that is finer everywhere an element does not become larger
-   than it was before that one, whose answer would then be no witness of the next one. Without an estimate of the probe
-   the errors of the cells are those of the energy, and say nothing of what the probe needs: no element becomes larger.
- */
+   than it was before that one, whose answer would then be no witness of the next one. Where surfaces are in contact,
+   what the first mesh says is not yet compared with anything; later ones are compared, and powers of sizes hold for
+   elements that become smaller. Without an estimate of the probe the errors of the cells are those of the energy, and
+   say nothing of what the probe needs: no element becomes larger. */
 static PetscReal Largest(const Refinement *r)
 {
   if (r->even) return REFINEMENT_WITNESS;
-  return Last(r)->rough ? 1 : REFINEMENT_LARGER;
+  return Last(r)->rough || (r->n > 1 && Last(r)->zone > 0) ? 1 : REFINEMENT_LARGER;
 }
 
 /* What the next mesh is to leave of the present errors. Without contact, and where the probe has no estimate, shares of

@@ -121,12 +121,12 @@ static void test_split(void **state)
   (void)state;
   assert_float_equal(wish.bodies, 0.25, 1e-12);
   assert_float_equal(wish.zone, 0.25, 1e-12);
-  wish = MeshPlanSplit(1.25, 0.25, 3);
+  wish = MeshPlanSplit(1.25, 0.25, 3); /* what is left is to tell something */
+  assert_float_equal(wish.bodies, 0.5, 1e-12);
+  assert_float_equal(wish.zone, 0.5, 1e-12);
+  wish = MeshPlanSplit(1.25, 0.25, NAN);
   assert_float_equal(wish.bodies, 1, 1e-12);
   assert_float_equal(wish.zone, 0.5, 1e-12);
-  wish = MeshPlanSplit(1.25, 0.25, 1); /* what is left is to tell something */
-  assert_float_equal(wish.bodies, 0.5, 1e-12);
-  assert_float_equal(MeshPlanSplit(1.25, 3, NAN).zone, 0.5, 1e-12);
 }
 
 /* The largest mesh is that whose forecast is the limit, and there is none where a small step is too much. */
