@@ -349,7 +349,9 @@ const SchemaKey SchemaKeys[] = {
   {"stepping", MAP, .help = "load steps"},
   {"stepping.control", CHOICE, .values = CHOICE_WORDS(STEP_CONTROLS), .preset = "iterations",
    .help = "control of the step size; contact needs N_c or N_c_fraction"},
-  {"stepping.initial", REAL, .range = "(0, 1]", .preset = "0.1", .help = "first step of the load parameter"},
+  {"stepping.initial", REAL, .range = "(0, 1]", .preset = "0.1",
+   .help = "first step of the load parameter; with accuracy, where strains are small and nothing yields or rubs, the "
+           "default is dt_max, as the way to the answer does not count"},
   {"stepping.N_c", INTEGER, .range = "[1, inf)", .unit = "nodes",
    .help = "number of nodes that come into contact in a step; not allowed with N_c_fraction"},
   {"stepping.N_c_fraction", REAL, .range = "(0, 1]",
