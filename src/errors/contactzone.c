@@ -36,9 +36,9 @@ static PetscErrorCode NodalForces(Model model, int pair, PetscReal *force, Petsc
 }
 
 /* Marks the cells behind the faces of a surface that are in contact, and adds their forces and the logarithms of their
-   sizes, weighted with these, to sum[0] and sum[1]; to sum[2] the number of those that are not. */
+   sizes, weighted with these, to sum[0] and sum[1]; to sum[2] and sum[3] the numbers of those that are and are not. */
 static void MarkFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force, PetscReal least, const PetscReal *size,
-                      PetscBool *cells, PetscReal sum[3])
+                      PetscBool *cells, PetscReal sum[4])
 {
   for (PetscInt f = 0; group && f < group->n_faces; f++) {
     PetscInt  nodes[FACE_MAX_NODES];
@@ -49,7 +49,7 @@ static void MarkFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force,
       most = PetscMax(most, force[nodes[k]]);
       total += force[nodes[k]];
     }
-    if (!(most > least)) sum[2]++;
+    sum[most > least ? 2 : 3]++;
     if (!(most > least)) continue;
     cells[group->face_cell[f]] = PETSC_TRUE;
     sum[0] += total;
@@ -67,13 +67,12 @@ static void MarkFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force,
 
   Output Parameters:
 + cells - for each local cell: a face of it is in contact
-. size  - mean size of these cells, weighted with the forces (length), the same on all ranks; 0: nothing is in contact
-- ends  - some face of a slave is not in contact; the same on all ranks
+- zone  - the same on all ranks
 @*/
-PetscErrorCode ContactZoneFind(Model model, PetscBool *cells, PetscReal *size, PetscBool *ends)
+PetscErrorCode ContactZoneFind(Model model, PetscBool *cells, ContactZone *zone)
 {
   const Mesh mesh   = model->mesh;
-  PetscReal  sum[3] = {0, 0, 0}, open, *force, *sizes, *measure;
+  PetscReal  sum[4] = {0, 0, 0, 0}, *force, *sizes, *measure;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(cells, mesh->n_cells));
@@ -81,18 +80,19 @@ PetscErrorCode ContactZoneFind(Model model, PetscBool *cells, PetscReal *size, P
   MeshCellSizes(mesh, sizes, measure);
   for (int p = 0; p < ContactPairs(model->contact); p++) {
     ContactSides sides;
-    PetscReal    most;
+    PetscReal    most, faces[2];
 
     PetscCall(NodalForces(model, p, force, &most));
     ContactPairSides(model->contact, p, &sides);
     MarkFaces(mesh, sides.slave->group, force, ZONE_LEAST_FORCE * most, sizes, cells, sum);
-    open = sum[2];
+    PetscCall(PetscArraycpy(faces, &sum[2], 2)); /* of slaves alone */
     if (sides.master) MarkFaces(mesh, sides.master->group, force, ZONE_LEAST_FORCE * most, sizes, cells, sum);
-    sum[2] = open;
+    PetscCall(PetscArraycpy(&sum[2], faces, 2));
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPIU_SUM, mesh->comm));
-  *size = sum[0] > 0 ? PetscExpReal(sum[1] / sum[0]) : 0;
-  *ends = (PetscBool)(sum[2] > 0);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPIU_SUM, mesh->comm));
+  *zone = (ContactZone){.size  = sum[0] > 0 ? PetscExpReal(sum[1] / sum[0]) : 0,
+                        .faces = sum[2],
+                        .ends  = (PetscBool)(sum[0] > 0 && sum[3] > 0)};
   PetscCall(PetscFree3(force, sizes, measure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

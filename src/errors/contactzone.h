@@ -7,4 +7,10 @@
 #pragma once
 #include "solve/model.h"
 
-PetscErrorCode ContactZoneFind(Model, PetscBool *cells, PetscReal *size, PetscBool *ends);
+typedef struct {
+  PetscReal size;  /* mean size of the cells behind faces in contact, weighted with the forces; 0: there are none */
+  PetscReal faces; /* of slaves in contact */
+  PetscBool ends;  /* some face of a slave is in contact, and some is not */
+} ContactZone;
+
+PetscErrorCode ContactZoneFind(Model, PetscBool *cells, ContactZone *);

@@ -6,8 +6,10 @@
 
 /* An element becomes at most so much smaller from one mesh to the next. */
 #define SIZES_SMALLER 0.25
-/* At a point where stresses have no bound it becomes at most so much smaller: as in two meshes. */
-#define SIZES_SINGULAR (SIZES_SMALLER * SIZES_SMALLER)
+/* At a point where stresses have no bound and in a zone in contact it becomes at most so much smaller: as in two
+ * meshes.
+ */
+#define SIZES_PLACES (SIZES_SMALLER * SIZES_SMALLER)
 /* Cells of a regular mesh whose size grows by 0.35 of the distance: for each factor e in distance, in a sixth of the
    plane (2 pi / 6 over 0.43, the area of a regular triangle, and the square of the growth). */
 #define SIZES_GRADED 20
@@ -38,7 +40,7 @@ static PetscReal Factor(const Present *p, PetscInt cell, PetscReal s)
   if (p->singular[cell]) {
     factor = PetscPowReal((PetscReal)power / SINGULAR_RATE * PetscPowRealInt(factor, power + dim),
                           (PetscReal)1 / (SINGULAR_RATE + dim));
-    least  = SIZES_SINGULAR;
+    least  = SIZES_PLACES;
   }
   return PetscMin(PetscMax(factor, least), most);
 }
@@ -125,7 +127,7 @@ static PetscErrorCode BoundZone(Present *p, PetscReal s, PetscReal most)
   SizesForecast forecast;
 
   PetscFunctionBeginUser;
-  p->in_zone = PetscMin(PetscMax(p->in_zone, SIZES_SMALLER), 1);
+  p->in_zone = PetscMin(PetscMax(p->in_zone, SIZES_PLACES), 1);
   PetscCall(Forecast(p, s, &forecast));
   while (forecast.elements > most && p->in_zone < 1) {
     p->in_zone = PetscMin(SIZES_ZONE_STEP * p->in_zone, 1);
@@ -154,16 +156,16 @@ static PetscErrorCode BoundZone(Present *p, PetscReal s, PetscReal most)
 PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscReal part, PetscReal larger,
                                 PetscReal in_zone, PetscReal most, PetscReal *size, SizesForecast *forecast)
 {
-  const Mesh mesh = model->mesh;
-  Present    p    = {.mesh = mesh, .larger = larger, .in_zone = in_zone};
-  PetscReal  low, high, least, largest, zone_size;
-  PetscBool  ends;
+  const Mesh  mesh = model->mesh;
+  Present     p    = {.mesh = mesh, .larger = larger, .in_zone = in_zone};
+  PetscReal   low, high, least, largest;
+  ContactZone zone;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc6(mesh->n_cells, &p.weight, mesh->n_cells, &p.error, mesh->n_cells, &p.size, mesh->n_cells,
                          &p.touches, mesh->n_cells, &p.zone, mesh->n_cells, &p.singular));
   PetscCall(FindTouching(model, p.touches));
-  PetscCall(ContactZoneFind(model, p.zone, &zone_size, &ends));
+  PetscCall(ContactZoneFind(model, p.zone, &zone));
   PetscCall(Take(cell_error, &p, &least, &largest));
   PetscCall(SingularCellsFind(mesh, cell_error, p.touches, p.singular));
   low  = PetscLogReal(SIZES_SMALLER / largest); /* all cells become as small, and as large, as they may */

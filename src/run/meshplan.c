@@ -21,6 +21,11 @@
 /* Of the error that is wanted, that of the contact zone gets this part, where there is any: few elements take it away.
  */
 #define MESHPLAN_ZONE_SHARE 0.25
+/* The zone becomes at most so much finer for an error that is implied. */
+#define MESHPLAN_ZONE_FINEST 0.25
+/* A sphere whose zone of contact ends at a (1 + x) presses with a force that is less by this times x^2: by
+   Mossakovskii, F is the integral of 2 E* a over the approach a^2 / R, and what is held outside pulls. */
+#define MESHPLAN_SPHERE 1.5
 /* The next mesh leaves at most this part of the error that the shares of the cells show: what they do not see may be in
    the bodies, too, and the change of the answer is to tell something. The zone has this part of its size where nothing
    is known of its error. */
@@ -171,8 +176,18 @@ MeshWish MeshPlanSplit(double wanted, double bodies, double zone)
   const double sum = wanted / MESHPLAN_SAFETY, for_bodies = fmax((1 - MESHPLAN_ZONE_SHARE) * sum, sum - zone),
                for_zone = fmax(MESHPLAN_ZONE_SHARE * sum, sum - bodies);
   MeshWish wish         = {.bodies = fmin(for_bodies / bodies, 1),
-                           .zone   = isnan(zone) ? MESHPLAN_PART : fmin(sqrt(for_zone / zone), 1)};
+                           .zone   = isnan(zone) ? MESHPLAN_PART : fmin(fmax(sqrt(for_zone / zone), MESHPLAN_ZONE_FINEST), 1)};
 
   if (!isnan(zone)) wish.bodies = fmin(wish.bodies, MESHPLAN_PART);
   return wish;
+}
+
+/* MeshPlanResolve - gives the part of their size that elements at surfaces in contact are to have where a first mesh
+   does not resolve the zone: in that of a sphere an end that is off by half a face would leave the error that is asked
+   for. faces: in contact; to: the error over the value. */
+double MeshPlanResolve(double faces, int dim, double to)
+{
+  const double along = dim == 3 ? sqrt(faces) : faces;
+
+  return fmin(2 * along * sqrt(to / MESHPLAN_SPHERE), 1);
 }

@@ -38,8 +38,7 @@ enum { TABLE_ROW = 1024, EDIT_LENGTH = 2 * PETSC_MAX_PATH_LEN };
 typedef struct {
   QuantityError error;
   PetscReal     value, mesh_s;
-  PetscReal     zone;   /* size of its elements at surfaces in contact; 0: nothing is in contact */
-  PetscBool     ends;   /* a zone in contact has an end */
+  ContactZone   zone;
   PetscReal     unseen; /* error of the zone that no estimate sees; NaN: not known */
   int           known;  /* changes up to it that tell something, one after the other */
   PetscReal implied; /* error of the elements and surfaces by the change of the answer; NaN: there is no mesh before */
@@ -220,7 +219,7 @@ static void Compare(Refinement *r)
                                 .estimate = (double)MeshPart(&mesh->error),
                                 .fall     = Spread(&mesh->error) / Spread(&before->error),
                                 .finer    = r->tries_order ? 2 : mesh->factor / before->factor,
-                                .zone     = mesh->ends && mesh->zone > 0 ? (double)(before->zone / mesh->zone) : 0,
+                                .zone     = mesh->zone.ends ? (double)(before->zone.size / mesh->zone.size) : 0,
                                 .most     = Spread(&before->error) + (before->known ? (double)before->unseen : 0),
                                 .allowed  = (double)(r->wish.to * PetscAbsReal(mesh->value)),
                                 .known    = before->known,
@@ -271,7 +270,7 @@ static PetscErrorCode MeasureZone(const Refinement *r, SolvedMesh *mesh)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(r->run->mesh->n_cells, &cells));
-  PetscCall(ContactZoneFind(r->run->model, cells, &mesh->zone, &mesh->ends));
+  PetscCall(ContactZoneFind(r->run->model, cells, &mesh->zone));
   PetscCall(PetscFree(cells));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -386,7 +385,7 @@ static void TakeScale(Refinement *r, double more)
 static PetscReal Largest(const Refinement *r)
 {
   if (r->even) return REFINEMENT_WITNESS;
-  return Last(r)->rough || (r->n > 1 && Last(r)->zone > 0) ? 1 : REFINEMENT_LARGER;
+  return Last(r)->rough || (r->n > 1 && Last(r)->zone.size > 0) ? 1 : REFINEMENT_LARGER;
 }
 
 /* What the next mesh is to leave of the present errors. Without contact, and where the probe has no estimate, shares of
@@ -396,11 +395,15 @@ static MeshWish WishedParts(const Refinement *r)
   const SolvedMesh *mesh   = Last(r);
   const PetscReal   wanted = WantedMeshError(r), surfaces = PetscAbsReal(SurfacesPart(&mesh->error)),
                   bodies = MeshEstimate(&mesh->error) - surfaces,
-                  zone   = surfaces + (r->n == 1 || !mesh->ends ? 0 : mesh->unseen);
+                  zone   = surfaces + (r->n == 1 || !mesh->zone.ends ? 0 : mesh->unseen);
+  MeshWish split;
 
-  if (mesh->rough || !(mesh->zone > 0))
+  if (mesh->rough || !(mesh->zone.size > 0))
     return (MeshWish){.bodies = fmin((double)wanted / r->plan[r->n_plan - 1].error, REFINEMENT_PART), .zone = 1};
-  return MeshPlanSplit((double)wanted, (double)bodies, (double)zone);
+  split = MeshPlanSplit((double)wanted, (double)bodies, (double)zone);
+  if (r->n == 1 && mesh->zone.ends)
+    split.zone = fmin(split.zone, MeshPlanResolve((double)mesh->zone.faces, r->dim, (double)r->wish.to));
+  return split;
 }
 
 /* Chooses the sizes of the next mesh's elements and forecasts it. finer: it may have so many times the elements, to the
@@ -502,7 +505,7 @@ static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
   if (r->why) PetscFunctionReturn(PETSC_SUCCESS);
   if (r->may_try && !doubted && largest >= REFINEMENT_ORDER_ROOM * present)
     PlanOrder(r, next);
-  else if (doubted && (r->n == 1 || r->structured || !(last->zone > 0)))
+  else if (doubted && (r->n == 1 || r->structured || !(last->zone.size > 0)))
     PetscCall(PlanEven(r, fmin(largest, REFINEMENT_WITNESS * present), next));
   else if (r->structured || r->run->mesh->order != r->order)
     PetscCall(

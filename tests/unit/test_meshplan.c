@@ -129,6 +129,15 @@ static void test_split(void **state)
   assert_float_equal(wish.zone, 0.5, 1e-12);
 }
 
+/* A zone of one face gets as many as an error of its end in a sphere's contact asks for. */
+static void test_resolve(void **state)
+{
+  (void)state;
+  assert_float_equal(MeshPlanResolve(1, 2, 0.015), 0.2, 1e-12);
+  assert_float_equal(MeshPlanResolve(4, 3, 0.015), 0.4, 1e-12);
+  assert_float_equal(MeshPlanResolve(9, 2, 0.015), 1, 1e-12);
+}
+
 /* The largest mesh is that whose forecast is the limit, and there is none where a small step is too much. */
 static void test_limits(void **state)
 {
@@ -151,6 +160,7 @@ int main(void)
                                      cmocka_unit_test(test_zone),
                                      cmocka_unit_test(test_mesh_that_cannot_tell),
                                      cmocka_unit_test(test_split),
+                                     cmocka_unit_test(test_resolve),
                                      cmocka_unit_test(test_limits)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
