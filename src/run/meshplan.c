@@ -175,9 +175,9 @@ MeshWish MeshPlanSplit(double wanted, double bodies, double zone)
 {
   const double sum = wanted / MESHPLAN_SAFETY, for_bodies = fmax((1 - MESHPLAN_ZONE_SHARE) * sum, sum - zone),
                for_zone = fmax(MESHPLAN_ZONE_SHARE * sum, sum - bodies);
-  MeshWish wish         = {.bodies = fmin(for_bodies / bodies, 1),
-                           .zone   = isnan(zone) ? MESHPLAN_PART : fmin(fmax(sqrt(for_zone / zone), MESHPLAN_ZONE_FINEST), 1)};
+  MeshWish wish         = {.bodies = fmin(for_bodies / bodies, 1), .zone = MESHPLAN_PART};
 
+  if (!isnan(zone)) wish.zone = fmin(fmax(sqrt(for_zone / zone), MESHPLAN_ZONE_FINEST), 1);
   if (!isnan(zone)) wish.bodies = fmin(wish.bodies, MESHPLAN_PART);
   return wish;
 }

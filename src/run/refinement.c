@@ -334,6 +334,7 @@ static void Print(const Refinement *r)
       Say(r, " %s %+.2g", ErrorCauses[c], part * (double)mesh->error.part[c]);
   if (MeshError(mesh) > MeshEstimate(&mesh->error))
     Say(r, "; %.2g by the change from the mesh before", fabs(part) * (double)MeshError(mesh));
+  if (r->n > 1 && isnan((double)mesh->implied)) Say(r, "; the mesh before is too coarse to confirm it");
   Say(r, "; CPU %.2f s, gmsh %.2f s\n", r->figures[r->n - 1].cpu_s, (double)mesh->mesh_s);
 }
 

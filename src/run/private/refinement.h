@@ -7,7 +7,8 @@
    the other parts leave of it.
 
    No estimate is trusted alone. The change of the answer from one mesh to the next, at the fall of the error that the
-   shares of the cells show, implies what is left (meshplan.h); the error that counts is no smaller than that. A first
+   shares of the cells show, implies what is left (meshplan.h); the error that counts is no smaller than that. Where
+   surfaces are in contact, a mesh that is too coarse to tell is no witness, and the next one has to confirm. A first
    mesh whose estimate is below the wish is confirmed by a second one, whose elements all are smaller. A probe that has
    no estimate, such as a peak, is judged by the change alone (MeshPlanImplied()); elements become smaller where the
    strain energy has its error. */
