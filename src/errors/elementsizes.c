@@ -158,7 +158,7 @@ PetscErrorCode ElementSizesFind(Model model, const PetscReal *cell_error, PetscR
 {
   const Mesh  mesh = model->mesh;
   Present     p    = {.mesh = mesh, .larger = larger, .in_zone = in_zone};
-  PetscReal   low, high, least, largest;
+  PetscReal   low, high, least = 0, largest = 0;
   ContactZone zone;
 
   PetscFunctionBeginUser;
