@@ -13,9 +13,9 @@
    Journal of Fluids Engineering 116 (1994), 405.
 
    Where surfaces are in contact, what no estimate sees is that of the zone's end, which falls with the square of the
-   size of the elements there (errors/contactzone.h). MeshPlanSplit() gives either kind of
-   error its share of what is wanted. As the power at the zone is no measured one, the factor of safety is
-   3 after one change, as Roache has it for two meshes. A change is not forecast by more than this factor times all that
+   size of the elements there (errors/contactzone.h). MeshPlanSplit() gives either kind of error its share of what is
+   wanted. As the power at the zone is no measured one, the factor of safety is 3 after one change, as Roache has it for
+   two meshes. A change is not forecast by more than this factor times all that
    is known to leave errors, and by more than what is asked for, where the mesh before was too coarse to tell anything:
    it implies nothing. */
 #pragma once
