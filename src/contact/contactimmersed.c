@@ -61,10 +61,10 @@ static PetscErrorCode AskBodies(Mesh mesh, int n_bodies, const int *bodies, doub
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Centres of the cells behind the faces of a surface, or of the faces, but for faces with a node that is marked
-   and for those that a pair with slave and master treats. */
-static PetscErrorCode Centres(Mesh mesh, ContactSurface surface, PetscBool faces, const PetscReal *mark, PetscInt *n,
-                              PetscReal *x)
+/* Centres of the cells behind the faces of a surface, or of the faces, but for faces with a node that is marked, for
+   faces that are met, where that is given, and for those that a pair with slave and master treats. */
+static PetscErrorCode Centres(Mesh mesh, ContactSurface surface, PetscBool faces, const PetscReal *mark,
+                              const PetscBool *met, PetscInt *n, PetscReal *x)
 {
   double X[ELEMENT_MAX_NODES * 3];
 
@@ -77,7 +77,7 @@ static PetscErrorCode Centres(Mesh mesh, ContactSurface surface, PetscBool faces
     PetscBool      marked  = PETSC_FALSE;
 
     for (int a = 0; a < ElementGet(face->type)->nodes; a++) marked = (PetscBool)(marked || mark[face->nodes[a]] > 0);
-    if (marked || (surface->face_marks && surface->face_marks[f])) continue;
+    if (marked || (met && met[f]) || (surface->face_marks && surface->face_marks[f])) continue;
     MeshCellCoordinates(mesh, c, X);
     for (int k = 0; k < corners && faces; k++)
       for (int d = 0; d < mesh->dim; d++) X[k * mesh->dim + d] = mesh->coords[face->nodes[k] * mesh->dim + d];
@@ -92,7 +92,7 @@ static PetscErrorCode Centres(Mesh mesh, ContactSurface surface, PetscBool faces
 
 /* Finds the centre of a cell behind one surface, or of a face of it, that is in the bodies of the other. */
 static PetscErrorCode FindImmersed(Mesh mesh, int n_bodies, const int *bodies, ContactSurface surface, PetscBool faces,
-                                   const PetscReal *mark, PetscReal X[3], PetscBool *found)
+                                   const PetscReal *mark, const PetscBool *met, PetscReal X[3], PetscBool *found)
 {
   PetscInt       n;
   PetscReal     *x;
@@ -100,7 +100,7 @@ static PetscErrorCode FindImmersed(Mesh mesh, int n_bodies, const int *bodies, C
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(surface->n_faces * mesh->dim, &x));
-  PetscCall(Centres(mesh, surface, faces, mark, &n, x));
+  PetscCall(Centres(mesh, surface, faces, mark, met, &n, x));
   PetscCall(AskBodies(mesh, n_bodies, bodies, IMMERSED_CORE, n, x, &all));
   *found = PETSC_FALSE;
   for (PetscInt i = 0; i < all.n && !*found; i++) {
@@ -178,7 +178,35 @@ static PetscErrorCode FindPointless(Contact contact, const ContactPair *pair, co
   for (PetscInt c = 0; c < pair->n_nodes; c++)
     room[pair->node[c]] = !PetscIsNanReal(pair->now.gap[ContactNodeTerm(pair, &pair->now, c)]);
   PetscCall(MeshSumNodes(mesh, 1, room));
-  PetscCall(FindImmersed(mesh, contact->scene->n_bodies, bodies, pair->slave, PETSC_TRUE, room, X, found));
+  PetscCall(FindImmersed(mesh, contact->scene->n_bodies, bodies, pair->slave, PETSC_TRUE, room, NULL, X, found));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds a face of a listed surface that lies in cells of its own bodies, though none of its points has found a master:
+   parts of one body, which share no nodes, lie in each other. The cell below a face, shrunk, does not hold its centre.
+   bodies: of the surface; room: by local node */
+static PetscErrorCode FindHidden(Contact contact, const ContactPair *pair, const int *bodies, PetscReal *room,
+                                 PetscReal X[3], PetscBool *found)
+{
+  const SlavePoints points = pair->slaves;
+  const PetscInt    faces  = pair->slave->n_faces;
+  int              *has, *any;
+  PetscBool        *met;
+
+  PetscFunctionBeginUser;
+  *found = PETSC_FALSE;
+  if (!points->face_sf) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc3(points->n_faces, &has, faces, &any, faces, &met));
+  for (PetscInt f = 0; f < points->n_faces; f++)
+    for (PetscInt q = points->first[f]; q < points->first[f + 1]; q++)
+      has[f] = has[f] || !PetscIsNanReal(pair->point_gap[q]);
+  PetscCall(PetscSFReduceBegin(points->face_sf, MPI_INT, has, any, MPI_MAX));
+  PetscCall(PetscSFReduceEnd(points->face_sf, MPI_INT, has, any, MPI_MAX));
+  for (PetscInt f = 0; f < faces; f++) met[f] = (PetscBool)any[f];
+  PetscCall(PetscArrayzero(room, contact->mesh->n_nodes));
+  PetscCall(
+    FindImmersed(contact->mesh, contact->scene->n_bodies, bodies, pair->slave, PETSC_TRUE, room, met, X, found));
+  PetscCall(PetscFree3(has, any, met));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -209,24 +237,25 @@ PetscErrorCode ContactRefuseImmersed(Contact contact, int p)
   PetscCall(MarkBodies(mesh, scene, pair->slave->group, slave));
   PetscCall(MarkBodies(mesh, scene, pair->master->group, master));
   for (int b = 0; b < scene->n_bodies; b++) same = same || (slave[b] && master[b]);
+  PetscCall(PetscCalloc1(mesh->n_nodes, &overlaps));
+  if (same && pair->scene->listed) PetscCall(FindHidden(contact, pair, slave, overlaps, X, &found));
   if (!same) {
     int any = 0;
 
-    PetscCall(PetscCalloc1(mesh->n_nodes, &overlaps));
     for (PetscInt c = 0; c < pair->n_nodes; c++)
       overlaps[pair->node[c]] = pair->now.gap[ContactNodeTerm(pair, &pair->now, c)] < 0;
     for (PetscInt c = 0; c < pair->n_sides; c++)
       any = any || pair->now.gap[c] + ContactEndDepth(pair, c) < -ContactTouchTolerance(pair, c);
     PetscCall(MeshSumNodes(mesh, 1, overlaps));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, mesh->comm));
-    PetscCall(FindImmersed(mesh, scene->n_bodies, master, pair->slave, PETSC_FALSE, overlaps, X, &found));
+    PetscCall(FindImmersed(mesh, scene->n_bodies, master, pair->slave, PETSC_FALSE, overlaps, NULL, X, &found));
     PetscCall(PetscArrayzero(overlaps, mesh->n_nodes));
     if (!found && !any)
-      PetscCall(FindImmersed(mesh, scene->n_bodies, slave, pair->master, PETSC_FALSE, overlaps, X, &found));
+      PetscCall(FindImmersed(mesh, scene->n_bodies, slave, pair->master, PETSC_FALSE, overlaps, NULL, X, &found));
     if (!found && pair->scene->listed) PetscCall(FindPointless(contact, pair, master, overlaps, X, &found));
     if (!found && any) PetscCall(OverlapIsDeep(contact, pair, master, &deep));
-    PetscCall(PetscFree(overlaps));
   }
+  PetscCall(PetscFree(overlaps));
   PetscCall(PetscFree2(slave, master));
   if (found)
     PetscCall(

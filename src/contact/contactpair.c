@@ -395,6 +395,9 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   if (contact->master)
     PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, contact->listed ? "surfaces" : "master",
                             contact->master, &pair->master));
+  if (contact->listed && pair->master) PetscCall(PairIsOneBody(mesh, scene, pair, &pair->one_body));
+  if (pair->one_body) PetscCall(SurfaceFindPieces(pair->slave));
+  if (pair->one_body) PetscCall(SurfaceFindPieces(pair->master));
   PetscCall(PairTurnMaster(scene, loads, pair));
   PetscCall(SurfaceImages(mesh, scene, contact, pair->slave, pair->master, &pair->n_images, pair->images));
   if (contact->find_symmetry && (pair->smoother->fitted || contact->listed)) /* a body may meet its own image */
@@ -414,7 +417,6 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images,
                          &pair->fit, pair->slaves, pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL,
                          pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL, &pair->search));
-  if (contact->listed && pair->master) PetscCall(PairIsOneBody(mesh, scene, pair, &pair->one_body));
   if (contact->listed) SearchAllSides(pair->search, pair->one_body);
   if (contact->share < 1) PetscCall(MeshCreateLocal(mesh, mesh->dim, &pair->reaction));
   pair->tool = ToolOfPair(mesh, scene, (int)(contact - scene->contacts));

@@ -26,6 +26,7 @@ void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry,
   *record =
     (FaceRecord){.facet = *facet, .size = surface->face_size[f], .height = surface->face_height[f], .home_face = f};
   if (surface->face_marks) record->marks = surface->face_marks[f];
+  if (surface->face_piece) record->piece = surface->face_piece[f];
   if (surface->face_ends) record->ends = surface->face_ends[f];
   for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
     const PetscInt node = facet->nodes[a];

@@ -19,7 +19,8 @@ typedef struct {
   PetscReal    offset[FACE_RULE_POINTS * 3]; /* of its quadrature points, where they have one (length) */
   PetscInt     home, home_face;              /* the face's rank, and its number there */
   FaceMarks    marks;
-  int          ends; /* see surfaceends.h */
+  PetscInt     piece; /* of the mesh, 0 where it is not sought */
+  int          ends;  /* see surfaceends.h */
 } FaceRecord;
 
 /* A node of a contact surface, whichever rank owns it. */

@@ -22,6 +22,16 @@ static void FootAt(int dim, Facet facet, const PetscReal *X, const PetscReal *pl
   FacetProject(dim, &facet, x, foot);
 }
 
+/* Is a facet of the same body as the slave point? Pieces of the mesh that share no nodes are bodies of their own,
+   whatever the scene calls them. Of slave points that are nodes the piece is not known. */
+static PetscBool OnOwnPiece(const Nearest *look, const Candidate *c)
+{
+  const SlavePoints slaves = look->slaves;
+
+  return (PetscBool)(look->one_body &&
+                     (!slaves->face_sf || c->piece == slaves->piece[SlavePointFace(slaves, look->q)]));
+}
+
 /* How far the slave point is behind a facet in the reference configuration (length); negative in front of it. */
 static PetscReal ReferenceDepth(const Nearest *look, const Candidate *c)
 {
@@ -94,7 +104,7 @@ PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot
 
   if (!look->listed || depth <= 0) return PETSC_FALSE;
   if (depth > SEARCH_ENTERED * look->height) return PETSC_TRUE;
-  if (!look->one_body) return PETSC_FALSE;
+  if (!OnOwnPiece(look, c)) return PETSC_FALSE;
   wall = ReferenceDepth(look, c);
   return (PetscBool)(wall > OWN_BODY_TOUCHES * look->size && depth > SEARCH_ENTERED * wall);
 }

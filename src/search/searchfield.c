@@ -32,7 +32,10 @@ static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, cons
       PetscReal  own[6];
 
       if (s->images[m].left_out) continue;
-      *c           = (Candidate){.record = r, .image = m, .facet = SurfaceImageFacet(&record->facet, &s->images[m])};
+      *c           = (Candidate){.record = r,
+                                 .image  = m,
+                                 .piece  = record->piece,
+                                 .facet  = SurfaceImageFacet(&record->facet, &s->images[m])};
       c->facet.tag = record->facet.tag * SURFACE_MAX_IMAGES + m;
       ImagePositions(s, lists, c, x);
       CandidatePlace(dim, x, record->size, c);

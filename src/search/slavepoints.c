@@ -139,7 +139,8 @@ static PetscErrorCode TakeRecords(SlavePoints points, PetscInt n_records, FaceRe
 
   PetscFunctionBeginUser;
   points->n_faces = n_records;
-  PetscCall(PetscMalloc3(n_records, &points->faces, n_records + 1, &points->first, n_records, &points->ends));
+  PetscCall(PetscMalloc4(n_records, &points->faces, n_records + 1, &points->first, n_records, &points->ends, n_records,
+                         &points->piece));
   PetscCall(PetscMalloc1(n_records * FACE_MAX_NODES, &points->nodes));
   for (PetscInt f = 0; f < n_records; f++) {
     FaceRecordKeys(&records[f], &points->nodes[points->n_nodes]);
@@ -150,6 +151,7 @@ static PetscErrorCode TakeRecords(SlavePoints points, PetscInt n_records, FaceRe
   for (PetscInt f = 0; f < n_records; f++) {
     points->faces[f] = records[f].facet;
     points->ends[f]  = records[f].ends;
+    points->piece[f] = records[f].piece;
     for (int a = 0; a < ElementGet(records[f].facet.type)->nodes; a++)
       points->faces[f].nodes[a] = NodeKeysFind(points->n_nodes, points->nodes, records[f].id[a]);
     remote[f] = (PetscSFNode){records[f].home, records[f].home_face};
@@ -294,7 +296,7 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *points)
   if (p->face_sf) {
     PetscCall(PetscSFDestroy(&p->face_sf));
     PetscCallMPI(MPI_Type_free(&p->face_block));
-    PetscCall(PetscFree3(p->faces, p->first, p->ends));
+    PetscCall(PetscFree4(p->faces, p->first, p->ends, p->piece));
     PetscCall(FaceMapsDestroy(&p->maps));
     PetscCall(PetscFree(p->normal));
   }

@@ -35,6 +35,7 @@ typedef struct {
   Facet       *faces;      /* nodes: positions in nodes[] */
   PetscInt    *first;      /* first point of each face */
   int         *ends;       /* of each face, see surfaceends.h; the rule of a face with an end has points on it */
+  PetscInt    *piece;      /* of the mesh, of each face; 0 where it is not sought */
   int          finer;      /* how fine the quadrature is, see FaceRuleGet() */
   PetscSF      face_sf;    /* roots: faces where they live */
   MPI_Datatype face_block; /* FACE_RULE_POINTS*dim reals */

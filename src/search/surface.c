@@ -1,6 +1,7 @@
 /* Contact surfaces: faces, sizes, free edges, nodal areas, mirror images. */
 #include "kernels/elementkernel.h"
 #include "base/refusal.h"
+#include "mesh/meshpieces.h"
 #include "search/surface.h"
 
 /* Directions are distinguished by cells on the faces of a cube, with this many cells along an edge of the cube. A
@@ -200,9 +201,31 @@ PetscErrorCode SurfaceDestroy(ContactSurface *surface)
   if (!*surface) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree3((*surface)->faces, (*surface)->face_size, (*surface)->face_height));
   PetscCall(PetscFree((*surface)->face_marks));
+  PetscCall(PetscFree((*surface)->face_piece));
   PetscCall(PetscFree((*surface)->face_ends));
   PetscCall(FaceBlocksDestroy(&(*surface)->blocks));
   PetscCall(PetscFree(*surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SurfaceFindPieces - finds the connected piece of the mesh to which each face belongs.
+
+  Collective
+
+  Input Parameter:
+. surface - the surface of deformable bodies
+@*/
+PetscErrorCode SurfaceFindPieces(ContactSurface surface)
+{
+  PetscInt *piece, n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(surface->mesh->n_nodes, &piece));
+  PetscCall(MeshFindPieces(surface->mesh, &n, piece));
+  PetscCall(PetscMalloc1(surface->n_faces + 1, &surface->face_piece)); /* not NULL on a rank without faces */
+  for (PetscInt f = 0; f < surface->n_faces; f++) surface->face_piece[f] = piece[surface->faces[f].nodes[0]];
+  PetscCall(PetscFree(piece));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

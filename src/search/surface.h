@@ -43,6 +43,7 @@ typedef struct {
   /* Area-weighted mean of E over element height, over all ranks; 0 for a rigid tool. */
   PetscReal  stiffness;
   FaceMarks *face_marks; /* of each face; NULL: there are none */
+  PetscInt  *face_piece; /* of each face: the connected piece of the mesh to which it belongs; NULL: not sought */
   int       *face_ends;  /* of each face, bit e: edge e is an end, see surfaceends.h; NULL: none was sought */
   PetscInt   turned;     /* faces of a rigid tool whose normals were turned */
   FaceBlocks blocks;     /* NULL before a search has asked for them; of a rigid tool in its own frame */
@@ -51,6 +52,7 @@ typedef struct {
 PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const char *key, const char *name,
                              ContactSurface *);
 PetscErrorCode SurfaceDestroy(ContactSurface *);
+PetscErrorCode SurfaceFindPieces(ContactSurface);
 PetscBool      SurfaceOnPlane(Mesh, const SurfaceImage *, const PetscReal *x);
 PetscErrorCode SurfaceFindFreeEdges(ContactSurface, int n_images, const SurfaceImage *);
 PetscErrorCode SurfaceNodeEnds(ContactSurface, const PetscReal *u, PetscReal *end);

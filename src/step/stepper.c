@@ -633,6 +633,8 @@ static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscRe
   const PetscBool   slowly  = (PetscBool)(*failures >= STEPPER_STATIC);
 
   PetscFunctionBeginUser;
+  PetscCall(
+    PetscInfo(stepper->model->snes, "step to t = %g, dt %g%s\n", (double)end, (double)dt, slowly ? ", damped" : ""));
   stepper->model->doubts   = (PetscBool)(damping == DAMPING_AUTO && *failures > 0);
   stepper->model->shortens = (PetscBool)(stepper->shortens && !slowly && STEPPER_CUT * dt >= stepper->size.dt_min);
   if (slowly) {

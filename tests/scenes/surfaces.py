@@ -10,6 +10,8 @@ BEAMS, BLOCK, BLADE = SCENES / "crossed_beams.yaml", SCENES / "patch.yaml", SCEN
 PRESSED = ["supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_min, uz: 0}]",
            "loads=[{surface: y_max, uy: -0.1}]", "contact=[{name: own, surfaces: all}]"]
 PLATE = SCENES / "plate_block.yaml"
+DISCS = SCENES / "two_parts.yaml"
+PARTS = 1e-2  # of a force: between one and both roles of slave and master on a coarse mesh
 PAD = SCENES / "pad_between_tools.yaml"
 BUMPER_SPREAD = 5e-3  # of its force: the two formulations on its coarse mesh
 EXACT = 1e-6  # forces and pressures of the same problem written in another way
@@ -281,6 +283,23 @@ def knife():
             check.near(f"blade, {kind}, order {order}: nodes in contact", moved["contact_nodes"], 0, 0)
 
 
+def parts():
+    """Two parts of one body that share no nodes are partners like two bodies: what overlaps before any load is seen, and
+    refused where it is too deep to be."""
+    two = ["mesh.parameters.bodies=2", "bodies.1={volume: upper, material: {law: neo_hookean, E: 1, nu: 0.3}}"]
+    for overlap in (0.04, -0.04):
+        one, other = (run(args, DISCS, out=f"parts_{overlap}_{len(bodies)}", overrides=[
+            f"mesh.parameters.overlap={overlap}", "contact.0.initial_overlap=resolve", *bodies]).summary()
+            for bodies in ([], two))
+        check.near(f"overlap of {overlap}: force of two parts over that of two bodies",
+                   one["probes"]["force"] / other["probes"]["force"], 1, PARTS)
+    for name, bodies in (("parts", []), ("bodies", two)):
+        for overlap, text in ((0.04, "lies 0.0335526 behind the master"), (0.3, "lie in each other before any load")):
+            finished = run(args, DISCS, "-check", out=f"refused_{name}", must=1,
+                           overrides=[f"mesh.parameters.overlap={overlap}", *bodies])
+            check.holds(f"overlap of {overlap} between two {name} is refused", text in finished.text)
+
+
 def refused(what, text, contact):
     finished = run(args, RINGS, "-check", out="refused", ranks=1, must=1, overrides=[f"contact=[{contact}]", "probes=[]"])
     check.holds(f"refused: {what}", text in finished.text, finished.text.strip().splitlines()[0])
@@ -313,7 +332,7 @@ def refusals():
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, refined, mirror, walls, ranks, refusals, override, friction, overlap, bumper, edges, knife, live, still or "
+args = arguments(("case", "frame, refined, mirror, walls, ranks, refusals, override, friction, overlap, bumper, edges, knife, live, still, parts or "
                               "tools"))
 check = Check()
 if args.case == "frame":
@@ -325,6 +344,6 @@ elif args.case == "mirror":
     mirror("surface_to_surface")
 else:
     {"walls": walls, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
-     "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "live": live, "refined": refined, "still": still,
+     "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "live": live, "parts": parts, "refined": refined, "still": still,
      "tools": tools}[args.case]()
 check.finish()

@@ -72,6 +72,7 @@ struct _n_ContactSearch {
 typedef struct {
   PetscInt  record;
   int       image;
+  PetscInt  piece;        /* of the mesh */
   Facet     facet;        /* nodes: contact nodes until the points are numbered, then points */
   PetscInt  first, count; /* fit points of its quadrature rule */
   PetscReal centre[3], normal[3], lower[3], upper[3];
@@ -104,8 +105,8 @@ typedef struct {
   PetscReal least, tie;
   Foot      foot;      /* on the best candidate */
   PetscReal normal[3]; /* of the master there: where there are fits, one that does not jump from facet to facet */
-  PetscBool averse;  /* a candidate within a face of the slave does not face the point */
-  PetscInt *aversed; /* of every point of the lists: 1 + the last slave point that does not face a facet there */
+  PetscBool averse;    /* a candidate within a face of the slave does not face the point */
+  PetscInt *aversed;   /* of every point of the lists: 1 + the last slave point that does not face a facet there */
 } Nearest;
 
 /* Growing lists of all slave points. */
