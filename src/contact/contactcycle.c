@@ -199,6 +199,23 @@ static PetscErrorCode GatherChanges(ContactCycle cycle, PetscInt period, GatherT
 }
 
 /*@
+  ContactCycleLeast - returns the least residual of the iterates of a cycle.
+
+  Not collective, the same on all ranks
+
+  Input Parameters:
++ cycle  - the watch
+- period - of ContactCycleLook()
+@*/
+PetscReal ContactCycleLeast(ContactCycle cycle, PetscInt period)
+{
+  PetscReal least = PETSC_MAX_REAL;
+
+  for (PetscInt back = 0; back < period; back++) least = PetscMin(least, cycle->residual[Slot(cycle, back)]);
+  return least;
+}
+
+/*@
   ContactCycleLocate - writes the nodes and faces (gmsh's tags) that come and go in a cycle, such as "the contact set
   repeats every 3 iterations, 2 nodes come and go: node 17 of 'crown', node 21 of 'crown'".
 

@@ -12,4 +12,5 @@ PetscErrorCode ContactCycleCreate(Contact, ContactCycle *);
 PetscErrorCode ContactCycleDestroy(ContactCycle *);
 PetscErrorCode ContactCycleStart(ContactCycle);
 PetscErrorCode ContactCycleLook(ContactCycle, PetscReal residual, PetscInt *period, PetscInt *steady);
+PetscReal      ContactCycleLeast(ContactCycle, PetscInt period);
 PetscErrorCode ContactCycleLocate(ContactCycle, PetscInt period, char *text, size_t size);

@@ -61,30 +61,49 @@ static PetscErrorCode AskBodies(Mesh mesh, int n_bodies, const int *bodies, doub
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Centre of a face, which its own cell has on its boundary, however curved it is. */
+static void FaceCentre(Mesh mesh, const Facet *face, PetscReal *x)
+{
+  const Element *e     = ElementGet(face->type);
+  double         xi[2] = {0, 0}, N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2];
+
+  if (e->corners == 3) xi[0] = xi[1] = 1.0 / 3;
+  ElementShape(e->type, xi, N, dN, NULL);
+  for (int d = 0; d < mesh->dim; d++) x[d] = 0;
+  for (int a = 0; a < e->nodes; a++)
+    for (int d = 0; d < mesh->dim; d++) x[d] += N[a] * mesh->coords[face->nodes[a] * mesh->dim + d];
+}
+
+/* Mean of a cell's corners. */
+static void CellCentre(Mesh mesh, PetscInt c, PetscReal *x)
+{
+  const int corners = ElementGet(mesh->cell_type[c])->corners;
+  double    X[ELEMENT_MAX_NODES * 3];
+
+  MeshCellCoordinates(mesh, c, X);
+  for (int d = 0; d < mesh->dim; d++) x[d] = 0;
+  for (int k = 0; k < corners; k++)
+    for (int d = 0; d < mesh->dim; d++) x[d] += X[k * mesh->dim + d] / corners;
+}
+
 /* Centres of the cells behind the faces of a surface, or of the faces, but for faces with a node that is marked, for
    faces that are met, where that is given, and for those that a pair with slave and master treats. */
 static PetscErrorCode Centres(Mesh mesh, ContactSurface surface, PetscBool faces, const PetscReal *mark,
                               const PetscBool *met, PetscInt *n, PetscReal *x)
 {
-  double X[ELEMENT_MAX_NODES * 3];
-
   PetscFunctionBeginUser;
   *n = 0;
   for (PetscInt f = 0; f < surface->n_faces; f++) {
-    const PetscInt c       = surface->group->face_cell[f];
-    const Facet   *face    = &surface->faces[f];
-    const int      corners = ElementGet(faces ? face->type : mesh->cell_type[c])->corners;
-    PetscBool      marked  = PETSC_FALSE;
+    const PetscInt c      = surface->group->face_cell[f];
+    const Facet   *face   = &surface->faces[f];
+    PetscBool      marked = PETSC_FALSE;
 
     for (int a = 0; a < ElementGet(face->type)->nodes; a++) marked = (PetscBool)(marked || mark[face->nodes[a]] > 0);
     if (marked || (met && met[f]) || (surface->face_marks && surface->face_marks[f])) continue;
-    MeshCellCoordinates(mesh, c, X);
-    for (int k = 0; k < corners && faces; k++)
-      for (int d = 0; d < mesh->dim; d++) X[k * mesh->dim + d] = mesh->coords[face->nodes[k] * mesh->dim + d];
-    for (int d = 0; d < mesh->dim; d++) {
-      x[*n * mesh->dim + d] = 0;
-      for (int k = 0; k < corners; k++) x[*n * mesh->dim + d] += X[k * mesh->dim + d] / corners;
-    }
+    if (faces)
+      FaceCentre(mesh, face, &x[*n * mesh->dim]);
+    else
+      CellCentre(mesh, c, &x[*n * mesh->dim]);
     (*n)++;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

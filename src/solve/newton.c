@@ -9,6 +9,9 @@
 #define NEWTON_MAX_DAMPED 3
 /* After this many iterations without a change of the contact set, steps have their full length again. */
 #define NEWTON_STEADY 2
+/* After a contact set that repeats itself, the springs of free bodies are relaxed at the first iterate whose residual
+   is below this multiple of the least one of the repeated sets. */
+#define NEWTON_SLACK 2
 /* With softened penalties a solve only has to find which nodes touch. This residual, relative to F_ref, is enough. A
    value ten times smaller or three times larger cost a pipe between plates more iterations. */
 #define NEWTON_SOFT_ENOUGH 0.1
@@ -209,6 +212,27 @@ static PetscErrorCode ModelLeaveLists(Model model, SNESConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Relaxes the springs of free bodies at an iterate of a contact set that repeats itself. A body with play on two sides
+   touches now one of them and now the other: each step takes it as far as its springs, which are weak, ask for, and the
+   contact that it meets there sends it back. The springs are no part of the problem, and where they are without a force
+   the body may rest. */
+static PetscErrorCode ModelRelaxSprings(Model model, Vec x, Vec F)
+{
+  ModelWork *work = model->work;
+  PetscReal  norm;
+
+  PetscFunctionBeginUser;
+  if (work->slack == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecNorm(F, NORM_2, &norm));
+  if (!(norm <= work->slack)) PetscFunctionReturn(PETSC_SUCCESS);
+  work->slack         = 0;
+  work->relaxed.waits = PETSC_FALSE;
+  PetscCall(ContactSpringsRelax(model->problem->springs, x));
+  PetscCall(ModelFunction(model->snes, x, F, model));
+  PetscCall(PetscInfo(model->snes, "springs relaxed at a repeated contact set\n"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Shortens Newton's steps when the contact set repeats itself. The iterates then stop between the states of the cycle
    and leave it. If they do not, the solve ends. */
 static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConvergedReason *reason)
@@ -222,6 +246,7 @@ static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConverge
   PetscCall(SNESGetLineSearch(model->snes, &search));
   if (steady >= NEWTON_STEADY) PetscCall(SNESLineSearchSetDamping(search, work->damping));
   if (!period) PetscFunctionReturn(PETSC_SUCCESS);
+  if (model->problem->springs) work->slack = NEWTON_SLACK * ContactCycleLeast(work->watch, period);
   PetscCall(ContactCycleLocate(work->watch, period, work->cycle, sizeof(work->cycle)));
   PetscCall(PetscInfo(model->snes, "%s\n", work->cycle));
   PetscCall(ContactCycleStart(work->watch));
@@ -302,6 +327,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   if (it > 0) PetscCall(ModelNoteIndefinite(model));
   PetscCall(ProblemRoundOff(model->problem, &round_off));
   PetscCall(SNESGetFunction(snes, &F, NULL, NULL));
+  if (it > 0) PetscCall(ModelRelaxSprings(model, x, F));
   PetscCall(ModelHeldResidual(model, F, &fnorm, &force));
   if (model->contact) PetscCall(ContactGapsConverged(model->contact, &converged));
   *reason = SNES_CONVERGED_ITERATING;
@@ -497,6 +523,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   model->work->crawls           = 0;
   model->work->indefinite       = 0;
   model->work->odd              = PETSC_FALSE;
+  model->work->slack            = 0;
   model->work->unstable         = PETSC_FALSE;
   model->work->stalled          = PETSC_FALSE;
   model->work->relaxed.waits    = PETSC_FALSE;

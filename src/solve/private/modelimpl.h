@@ -164,6 +164,7 @@ typedef struct _n_ModelWork {
   PetscInt    begun;              /* iterations before, of a solve that goes on */
   PetscBool   balanced;           /* the residual of the iterate is within the tolerance */
   PetscBool   left;               /* the solve ended because a slave point slid out of its lists */
+  PetscReal   slack;              /* residual from which on springs of free bodies are relaxed once; 0: they are not */
   PetscBool   cycling;            /* the solve ended because the contact set repeats itself with shorter steps too */
   PetscInt    cuts[CUT_CAUSES];   /* iterations that the line search shortened, by their cause */
   PetscInt    turned;             /* iterations whose step led uphill and was turned round */
