@@ -6,6 +6,7 @@ struct _n_Stabiliser {
   PetscInt   n_ties;
   SpringTie *ties;
   PetscReal *stretch; /* n_ties (length), at the last evaluation */
+  PetscReal *rest;    /* n_ties (length): stretch that they have at the anchor */
 };
 
 /*@
@@ -48,7 +49,7 @@ PetscErrorCode ContactSpringsDestroy(ContactSprings *s)
   PetscFunctionBeginUser;
   if (!*s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DofSpringsDestroy(&(*s)->dofs));
-  PetscCall(PetscFree2((*s)->ties, (*s)->stretch));
+  PetscCall(PetscFree3((*s)->ties, (*s)->stretch, (*s)->rest));
   PetscCall(PetscFree(*s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -65,7 +66,9 @@ PetscErrorCode ContactSpringsDestroy(ContactSprings *s)
 PetscErrorCode ContactSpringsRelax(ContactSprings s, Vec x)
 {
   PetscFunctionBeginUser;
-  if (s) PetscCall(DofSpringsAnchor(s->dofs, x));
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArrayzero(s->rest, s->n_ties));
+  PetscCall(DofSpringsAnchor(s->dofs, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -82,10 +85,11 @@ PetscErrorCode ContactSpringsRelax(ContactSprings s, Vec x)
 PetscErrorCode ContactSpringsSetTies(ContactSprings s, PetscInt n, const SpringTie *ties)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree2(s->ties, s->stretch));
-  PetscCall(PetscMalloc2(n, &s->ties, n, &s->stretch));
+  PetscCall(PetscFree3(s->ties, s->stretch, s->rest));
+  PetscCall(PetscMalloc3(n, &s->ties, n, &s->stretch, n, &s->rest));
   PetscCall(PetscArraycpy(s->ties, ties, n));
   PetscCall(PetscArrayzero(s->stretch, n));
+  PetscCall(PetscArrayzero(s->rest, n));
   s->n_ties = n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -197,8 +201,8 @@ PetscBool ContactSpringsHaveTie(ContactSprings s, int motion)
   return (PetscBool)(tie && !tie->released);
 }
 
-/* Computes the stretches of the ties at x into s->stretch; a released one has none. */
-static PetscErrorCode Stretch(ContactSprings s, Vec x)
+/* Computes the stretches of all ties at x into s->stretch, whether they are released or not. */
+static PetscErrorCode StretchAll(ContactSprings s, Vec x)
 {
   const PetscScalar *d;
   PetscInt           first, end;
@@ -213,13 +217,43 @@ static PetscErrorCode Stretch(ContactSprings s, Vec x)
     const SpringTie *tie = &s->ties[i];
 
     s->stretch[i] = 0;
-    for (PetscInt k = 0; k < tie->n && !tie->released; k++)
+    for (PetscInt k = 0; k < tie->n; k++)
       if (tie->dof[k] >= first && tie->dof[k] < end)
         s->stretch[i] += tie->value[k] * PetscRealPart(d[tie->dof[k] - first]);
   }
   PetscCall(VecRestoreArrayRead(moved, &d));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->stretch, (PetscMPIInt)s->n_ties, MPIU_REAL, MPI_SUM,
                              PetscObjectComm((PetscObject)x)));
+  for (PetscInt i = 0; i < s->n_ties; i++) s->stretch[i] += s->rest[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Computes the stretches of the ties at x into s->stretch; a released one has none. */
+static PetscErrorCode Stretch(ContactSprings s, Vec x)
+{
+  PetscFunctionBeginUser;
+  PetscCall(StretchAll(s, x));
+  for (PetscInt i = 0; i < s->n_ties; i++)
+    if (s->ties[i].released) s->stretch[i] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSpringsSlacken - moves the anchors of the springs, so that they are without force at x. Ties keep theirs.
+
+  Collective
+
+  Input Parameters:
++ s - the springs, or NULL
+- x - free displacements (length)
+@*/
+PetscErrorCode ContactSpringsSlacken(ContactSprings s, Vec x)
+{
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StretchAll(s, x));
+  PetscCall(PetscArraycpy(s->rest, s->stretch, s->n_ties));
+  PetscCall(DofSpringsAnchor(s->dofs, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,12 +2,13 @@
 
    Springs join dofs to where these were, see dofsprings.h. A tie holds one rigid motion of a body and resists no other:
    it measures the motion of a few nodes, those of one cell. ContactSpringsRelax() moves the anchors to a state, in
-   which springs and ties then have no force. The owner gives the stiffness of each; freebodies.h decides which bodies
-   have them and how stiff they are. All functions but those that create accept NULL for no springs. */
+   which springs and ties then have no force, and ContactSpringsSlacken() those of the springs alone. The owner gives
+   the stiffness of each; freebodies.h decides which bodies have them and how stiff they are. All functions but those
+   that create accept NULL for no springs. */
 #pragma once
 #include "bodies/dofsprings.h"
 
-/* stretch = sum value * (displacement of the dof less that of its anchor) */
+/* stretch = sum value * (displacement of the dof less that of its anchor), and what ContactSpringsSlacken() has kept */
 typedef struct {
   int       motion;                        /* which one it holds: a number of the owner */
   PetscBool released;                      /* it has no force for the time being */
@@ -28,6 +29,7 @@ PetscErrorCode ContactSpringsRetie(ContactSprings, PetscBool *any);
 void           ContactSpringsGetTie(ContactSprings, int motion, const SpringTie **, PetscReal *force);
 PetscBool      ContactSpringsHaveTie(ContactSprings, int motion);
 PetscErrorCode ContactSpringsRelax(ContactSprings, Vec x);
+PetscErrorCode ContactSpringsSlacken(ContactSprings, Vec x);
 PetscErrorCode ContactSpringsResidual(ContactSprings, Vec x, Vec F);
 PetscErrorCode ContactSpringsEnergy(ContactSprings, Vec x, PetscReal *energy);
 PetscErrorCode ContactSpringsTangent(ContactSprings, Mat A);

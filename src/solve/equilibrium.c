@@ -462,6 +462,7 @@ static PetscErrorCode ModelSolveReleased(Model model, SolveReport *report, Petsc
     model->work->cycling = PETSC_FALSE;
     report->result       = SOLVE_CONVERGED;
     PetscCall(VecCopy(x, model->x));
+    PetscCall(ContactSpringsRelax(problem->springs, x));
     PetscCall(ModelSolveVolumes(model, report));
   }
   PetscCall(VecDestroy(&x));

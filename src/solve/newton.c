@@ -227,7 +227,7 @@ static PetscErrorCode ModelRelaxSprings(Model model, Vec x, Vec F)
   if (!(norm <= work->slack)) PetscFunctionReturn(PETSC_SUCCESS);
   work->slack         = 0;
   work->relaxed.waits = PETSC_FALSE;
-  PetscCall(ContactSpringsRelax(model->problem->springs, x));
+  PetscCall(ContactSpringsSlacken(model->problem->springs, x));
   PetscCall(ModelFunction(model->snes, x, F, model));
   PetscCall(PetscInfo(model->snes, "springs relaxed at a repeated contact set\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
