@@ -62,6 +62,7 @@ struct _n_LoadStepper {
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
   PetscReal            used[BOUNDS]; /* by the last attempt of this step, of what is allowed; 0: none */
+  PetscBool            in_vain;      /* this step was shortened for a bound that it passes all the same */
   PetscBool            shortens;     /* this step may be made shorter if its first linear step goes too far */
   PetscReal            most_facing;  /* turn (radians) of surfaces that lie opposite each other in this step */
   Pace                 pace;
@@ -560,6 +561,15 @@ static PetscBool StepStays(LoadStepper stepper, Bound bound, PetscReal used)
   return (PetscBool)(used <= 1 || (before > 0 && used > STEPPER_GAIN * before));
 }
 
+/* What a step that stays used of a bound, for the length of the next one. Where it was shortened in vain, more than is
+   allowed does not come from the length, and the next step is to be as long as this one was before. */
+static PetscReal UsedByLength(LoadStepper stepper, PetscReal used, PetscBool stays)
+{
+  if (!stays || used <= 1) return used;
+  stepper->in_vain = PETSC_TRUE;
+  return STEPPER_STRAIN;
+}
+
 /* What the flow of the bodies in a step of dt to the present solution uses of what the scene allows, and whether the
    step stays. */
 static PetscErrorCode LoadStepperFlow(LoadStepper stepper, PetscReal dt, PetscReal *used, PetscBool *stays)
@@ -577,8 +587,9 @@ static PetscErrorCode LoadStepperFlow(LoadStepper stepper, PetscReal dt, PetscRe
   PetscCall(ElasticityPlasticPath(model->problem->elasticity, model->u, model->t, &path));
   growth = strain > 0 ? path.growth / strain : 0;
   lag    = LagUsed(stepper, &path, dt);
-  *used  = PetscMax(growth, lag);
-  *stays = (PetscBool)(StepStays(stepper, BOUND_LAG, lag) && growth <= 1);
+  *stays = StepStays(stepper, BOUND_LAG, lag);
+  *used  = PetscMax(growth, UsedByLength(stepper, lag, *stays));
+  *stays = (PetscBool)(*stays && growth <= 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -598,6 +609,7 @@ static PetscErrorCode LoadStepperTravel(LoadStepper stepper, PetscReal *used, Pe
   if (!(bound > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   *used  = PetscSqrtReal(travel / bound);
   *stays = StepStays(stepper, BOUND_TRAVEL, *used);
+  *used  = UsedByLength(stepper, *used, *stays);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -701,6 +713,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   PetscFunctionBeginUser;
   *advanced = PETSC_FALSE;
   PetscCall(PetscArrayzero(stepper->used, BOUNDS));
+  stepper->in_vain     = PETSC_FALSE;
   stepper->most_facing = STEPPER_FACING;
   stepper->shortens    = (PetscBool)(stepper->kind != STEP_FIXED);
   *record              = (StepRecord){.step = report->steps + 1};
@@ -731,6 +744,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
       if (solve.damped || solve.jump[0])
         stepper->size.last_dt = last; /* behind a jump steps may be as long as before */
       PetscCall(LoadStepperAccept(stepper, dt, most, clipped, &solve, record));
+      if (stepper->in_vain) stepper->size.dt = PetscMax(stepper->size.dt, first);
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     PetscCall(
