@@ -6,9 +6,8 @@
    reads the scene of a checkpoint, and SceneSameProblem() tells whether a restart may continue results of another text.
    Reading loads and runs nothing: SceneLoadRoutines() loads the libraries of users that the scene names.
    Checks that need the mesh are made later by the part that owns them. Their messages start with SceneWhere().
-   SceneBreaks() tells the step control where loads change their rate, SceneMoves() whether they go on, SceneStepAt()
-   the name of the step at t, and SceneStepFrom() the number of the one that follows. SceneSupportsChange() and
-   SceneHolds() tell about supports.
+   SceneBreaks() tells the step control where loads change their rate, SceneStepAt() the name of the step at t, and
+   SceneStepFrom() the number of the one that follows. SceneSupportsChange() and SceneHolds() tell about supports.
    SceneReference() prints the scene reference. */
 #pragma once
 #include <petscsys.h>
@@ -329,7 +328,6 @@ PetscBool      SceneHasRoutine(Scene);
 PetscBool      SceneHasFluid(Scene);
 PetscBool      SceneContactHasMaster(const SceneContact *, const char *surface);
 PetscBool      SceneBreaks(Scene, PetscReal t);
-PetscBool      SceneMoves(Scene, PetscReal t);
 const char    *SceneStepAt(Scene, PetscReal t);
 int            SceneStepFrom(Scene, PetscReal t);
 PetscBool      SceneSupportsChange(Scene);

@@ -108,45 +108,6 @@ PetscBool SceneBreaks(Scene scene, PetscReal t)
   return PETSC_FALSE;
 }
 
-/* Tells whether a motion, or the force on it, goes on right of t by a history. */
-static PetscBool MotionMoves(const Motion *motion, PetscReal t)
-{
-  PetscBool pushed = PETSC_FALSE;
-
-  for (int m = 0; m < motion->n; m++)
-    if (motion->components[m].value != 0 && HistorySlope(&motion->components[m].history, t) != 0) return PETSC_TRUE;
-  for (int c = 0; c < MOTION_COMPONENTS; c++) pushed = (PetscBool)(pushed || motion->force[c] != 0);
-  return (PetscBool)(pushed && HistorySlope(&motion->history, t) != 0);
-}
-
-/*@
-  SceneMoves - tells whether some load, imposed displacement or motion goes on by its history from load parameter t on.
-
-  Not collective
-
-  Input Parameters:
-+ scene - the scene
-- t     - load parameter
-
-  Note:
-  Where it is false, the load may rest. Of expressions with t nothing is known: they count as resting.
-@*/
-PetscBool SceneMoves(Scene scene, PetscReal t)
-{
-  for (int l = 0; l < scene->n_loads; l++) {
-    const SceneLoad *load = &scene->loads[l];
-    PetscBool        some = PETSC_FALSE;
-
-    for (int d = 0; d < 3; d++) some = (PetscBool)(some || load->value[d] != 0 || load->expression[d]);
-    if (some && load->history.n && HistorySlope(&load->history, t) != 0) return PETSC_TRUE;
-  }
-  for (int b = 0; b < scene->n_bodies; b++)
-    if (MotionMoves(&scene->bodies[b].motion, t)) return PETSC_TRUE;
-  for (int c = 0; c < scene->n_contacts; c++)
-    if (MotionMoves(&scene->contacts[c].motion, t)) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
 /*@
   SceneLoadVaries - tells whether a component of a load is an expression with t, to which no history applies.
 

@@ -11,6 +11,8 @@
 /* They are damped after so many such turns in a row. One alone may come from nodes that open or close: two cubes that
    overhang each other do not settle if they are damped from the first one on. */
 #define OFFSET_TURNS 2
+/* Those of a single face stay between both after so many: damping, which knows all faces together, has not ended them. */
+#define OFFSET_FACE_TURNS 3
 
 /* Rung with which fits about points of a face at an end of the surface begin: degree 2. They see the surface on one
    side only, and degree 4 runs through the five nodes there. It then answers to a kink at the last node by 0.23 of its
@@ -681,7 +683,7 @@ static PetscErrorCode StayBetween(Offsets o, PetscBool *some)
     }
     if (now <= PetscSqr(OFFSET_SETTLES) * last || now == 0) continue;
     o->swings[f] += !o->swings[f] || along < 0;
-    o->stays[f] = (PetscBool)(o->swings[f] > OFFSET_TURNS);
+    o->stays[f] = (PetscBool)(o->swings[f] > OFFSET_FACE_TURNS);
     for (PetscInt i = 0; i < block; i++) {
       swing[i] = used[i] - held[i];
       if (o->stays[f]) used[i] -= swing[i] / 2;

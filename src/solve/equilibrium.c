@@ -276,15 +276,14 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says whether lists are to settle at the solution: friction may rest there, as no load goes on at once, or the load
-   ends and all surfaces in contact stick. Collective. */
+/* Says whether lists are to settle at the solution: friction may rest there, or the load ends and all surfaces in
+   contact stick. Collective. */
 static PetscErrorCode ModelRests(Model model, PetscBool *rests)
 {
   const PetscBool friction = ContactHasFriction(model->contact);
 
   PetscFunctionBeginUser;
-  *rests =
-    (PetscBool)(friction && (model->t >= 1 || (ModelAsked(model, model->t) && !SceneMoves(model->scene, model->t))));
+  *rests = (PetscBool)(friction && (model->t >= 1 || ModelAsked(model, model->t)));
   for (int p = 0; *rests && model->t >= 1 && p < ContactPairs(model->contact); p++) {
     ContactFriction state;
 
