@@ -11,7 +11,8 @@
 /* They are damped after so many such turns in a row. One alone may come from nodes that open or close: two cubes that
    overhang each other do not settle if they are damped from the first one on. */
 #define OFFSET_TURNS 2
-/* Those of a single face stay between both after so many: damping, which knows all faces together, has not ended them. */
+/* Those of a single face stay between both after so many: damping, which knows all faces together, has not ended them.
+ */
 #define OFFSET_FACE_TURNS 3
 
 /* Rung with which fits about points of a face at an end of the surface begin: degree 2. They see the surface on one

@@ -118,7 +118,7 @@ FULL = {
     f"{PYTHON} scripts/michell_table.py": printed("michell_table", "michell"),
     f"{PYTHON} scripts/penalty_table.py --record runs/records/penalty.csv": printed("penalty_table", "penalty"),
     f"{PYTHON} scripts/adaptive_table.py --record runs/records/adaptive.csv --only bracket hertz_line ring_in_ring "
-    '"hertz_line patch"':
+    '"hertz_line patch" hertz_sphere "hertz_sphere patch"':
     printed("adaptive_table", "adaptive"),
     f"{PYTHON} scripts/error_table.py --record runs/records/error.csv": printed("error_table", "error"),
     f"{PYTHON} scripts/sensitivity_table.py --record runs/records/sensitivity.csv":
