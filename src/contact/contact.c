@@ -1,5 +1,6 @@
 /* The contact object: all pairs of a scene, their accepted state, and what a checkpoint keeps of them. */
 #include "contactimpl.h"
+#include "mesh/meshpieces.h"
 
 /* Offsets of surfaces that occur in several pairs are taken once, by the first one. */
 static PetscErrorCode LendOffsets(Contact contact)
@@ -19,6 +20,21 @@ static PetscErrorCode LendOffsets(Contact contact)
       if (lender) PetscCall(OffsetsLend(lender, offsets, &alike));
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the connected pieces of the mesh, once for all pairs, where the scene lists surfaces; else *piece is NULL. */
+static PetscErrorCode FindPieces(Mesh mesh, Scene scene, PetscInt **piece)
+{
+  PetscBool listed = PETSC_FALSE;
+  PetscInt  n;
+
+  PetscFunctionBeginUser;
+  *piece = NULL;
+  for (int p = 0; p < scene->n_contacts; p++) listed = (PetscBool)(listed || scene->contacts[p].listed);
+  if (!listed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(mesh->n_nodes, piece));
+  PetscCall(MeshFindPieces(mesh, &n, *piece));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -66,14 +82,17 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscCall(PetscLogEventRegister("ContactTouch", SNES_CLASSID, &contact->event_touch));
   PetscCall(BlockMatrixCreate(mesh->comm, mesh->dim, &contact->blocks));
   PetscCall(PetscCalloc1(contact->n_pairs, &contact->pairs));
+  PetscCall(FindPieces(mesh, scene, &contact->piece));
   for (int p = 0; p < contact->n_pairs; p++) {
-    PetscCall(ContactPairCreate(mesh, scene, elasticity, loads, &scene->contacts[p], &contact->pairs[p]));
+    PetscCall(
+      ContactPairCreate(mesh, scene, elasticity, loads, contact->piece, &scene->contacts[p], &contact->pairs[p]));
     contact->pairs[p].work = &contact->work;
     smoother               = contact->pairs[p].smoother;
     capacity               = PetscMax(capacity, PetscMax(smoother->capacity, contact->pairs[p].facets->capacity));
     dense = PetscMax(dense, PetscMax(smoother->dense_capacity, contact->pairs[p].facets->dense_capacity));
     if (smoother->workspace) workspace = PetscMax(workspace, smoother->workspace(mesh->dim));
   }
+  PetscCall(PetscFree(contact->piece));
   PetscCall(LendOffsets(contact));
   PetscCall(ContactRefuseRepeated(contact));
   PetscCall(ContactOverride(contact));
@@ -97,6 +116,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   for (int p = 0; p < c->n_pairs; p++) PetscCall(ContactPairDestroy(&c->pairs[p]));
   PetscCall(PetscFree(c->pairs));
+  PetscCall(PetscFree(c->piece));
   PetscCall(ContactWorkDestroy(&c->work));
   PetscCall(BlockMatrixDestroy(&c->blocks));
   PetscCall(ContactVectorsFree(&c->border));

@@ -87,7 +87,7 @@ static void CellCentre(Mesh mesh, PetscInt c, PetscReal *x)
 }
 
 /* Centres of the cells behind the faces of a surface, or of the faces, but for faces with a node that is marked, for
-   faces that are met, where that is given, and for those that a pair with slave and master treats. */
+   faces that are met, where these are given, and for those that a pair with slave and master treats. */
 static PetscErrorCode Centres(Mesh mesh, ContactSurface surface, PetscBool faces, const PetscReal *mark,
                               const PetscBool *met, PetscInt *n, PetscReal *x)
 {
@@ -98,7 +98,8 @@ static PetscErrorCode Centres(Mesh mesh, ContactSurface surface, PetscBool faces
     const Facet   *face   = &surface->faces[f];
     PetscBool      marked = PETSC_FALSE;
 
-    for (int a = 0; a < ElementGet(face->type)->nodes; a++) marked = (PetscBool)(marked || mark[face->nodes[a]] > 0);
+    for (int a = 0; a < ElementGet(face->type)->nodes; a++)
+      marked = (PetscBool)(marked || (mark && mark[face->nodes[a]] > 0));
     if (marked || (met && met[f]) || (surface->face_marks && surface->face_marks[f])) continue;
     if (faces)
       FaceCentre(mesh, face, &x[*n * mesh->dim]);
@@ -203,9 +204,9 @@ static PetscErrorCode FindPointless(Contact contact, const ContactPair *pair, co
 
 /* Finds a face of a listed surface that lies in cells of its own bodies, though none of its points has found a master:
    parts of one body, which share no nodes, lie in each other. The cell below a face, shrunk, does not hold its centre.
-   bodies: of the surface; room: by local node */
-static PetscErrorCode FindHidden(Contact contact, const ContactPair *pair, const int *bodies, PetscReal *room,
-                                 PetscReal X[3], PetscBool *found)
+   bodies: of the surface */
+static PetscErrorCode FindHidden(Contact contact, const ContactPair *pair, const int *bodies, PetscReal X[3],
+                                 PetscBool *found)
 {
   const SlavePoints points = pair->slaves;
   const PetscInt    faces  = pair->slave->n_faces;
@@ -222,9 +223,8 @@ static PetscErrorCode FindHidden(Contact contact, const ContactPair *pair, const
   PetscCall(PetscSFReduceBegin(points->face_sf, MPI_INT, has, any, MPI_MAX));
   PetscCall(PetscSFReduceEnd(points->face_sf, MPI_INT, has, any, MPI_MAX));
   for (PetscInt f = 0; f < faces; f++) met[f] = (PetscBool)any[f];
-  PetscCall(PetscArrayzero(room, contact->mesh->n_nodes));
   PetscCall(
-    FindImmersed(contact->mesh, contact->scene->n_bodies, bodies, pair->slave, PETSC_TRUE, room, met, X, found));
+    FindImmersed(contact->mesh, contact->scene->n_bodies, bodies, pair->slave, PETSC_TRUE, NULL, met, X, found));
   PetscCall(PetscFree3(has, any, met));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -256,11 +256,11 @@ PetscErrorCode ContactRefuseImmersed(Contact contact, int p)
   PetscCall(MarkBodies(mesh, scene, pair->slave->group, slave));
   PetscCall(MarkBodies(mesh, scene, pair->master->group, master));
   for (int b = 0; b < scene->n_bodies; b++) same = same || (slave[b] && master[b]);
-  PetscCall(PetscCalloc1(mesh->n_nodes, &overlaps));
-  if (same && pair->scene->listed) PetscCall(FindHidden(contact, pair, slave, overlaps, X, &found));
+  if (same && pair->scene->listed) PetscCall(FindHidden(contact, pair, slave, X, &found));
   if (!same) {
     int any = 0;
 
+    PetscCall(PetscCalloc1(mesh->n_nodes, &overlaps));
     for (PetscInt c = 0; c < pair->n_nodes; c++)
       overlaps[pair->node[c]] = pair->now.gap[ContactNodeTerm(pair, &pair->now, c)] < 0;
     for (PetscInt c = 0; c < pair->n_sides; c++)
@@ -273,8 +273,8 @@ PetscErrorCode ContactRefuseImmersed(Contact contact, int p)
       PetscCall(FindImmersed(mesh, scene->n_bodies, slave, pair->master, PETSC_FALSE, overlaps, NULL, X, &found));
     if (!found && pair->scene->listed) PetscCall(FindPointless(contact, pair, master, overlaps, X, &found));
     if (!found && any) PetscCall(OverlapIsDeep(contact, pair, master, &deep));
+    PetscCall(PetscFree(overlaps));
   }
-  PetscCall(PetscFree(overlaps));
   PetscCall(PetscFree2(slave, master));
   if (found)
     PetscCall(

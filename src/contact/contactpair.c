@@ -362,6 +362,7 @@ static PetscErrorCode PairCreateMixing(ContactPair *pair)
 . scene      - the scene, borrowed
 . elasticity - the bodies, for the automatic penalty
 . loads      - prescribed motions, borrowed
+. piece      - connected piece of the mesh of each local node; NULL where the scene lists no surfaces
 - contact    - what the scene says of the pair, borrowed
 
   Output Parameter:
@@ -370,7 +371,7 @@ static PetscErrorCode PairCreateMixing(ContactPair *pair)
   Note:
   Refuses what the mesh shows to be wrong.
 @*/
-PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads,
+PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads, const PetscInt piece[],
                                  const SceneContact *contact, ContactPair *pair)
 {
   const PetscBool friction = (PetscBool)contact->friction;
@@ -396,8 +397,8 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
     PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, contact->listed ? "surfaces" : "master",
                             contact->master, &pair->master));
   if (contact->listed && pair->master) PetscCall(PairIsOneBody(mesh, scene, pair, &pair->one_body));
-  if (pair->one_body) PetscCall(SurfaceFindPieces(pair->slave));
-  if (pair->one_body) PetscCall(SurfaceFindPieces(pair->master));
+  if (pair->one_body) PetscCall(SurfaceTakePieces(pair->slave, piece));
+  if (pair->one_body) PetscCall(SurfaceTakePieces(pair->master, piece));
   PetscCall(PairTurnMaster(scene, loads, pair));
   PetscCall(SurfaceImages(mesh, scene, contact, pair->slave, pair->master, &pair->n_images, pair->images));
   if (contact->find_symmetry && (pair->smoother->fitted || contact->listed)) /* a body may meet its own image */

@@ -35,10 +35,10 @@ static PetscErrorCode NodalForces(Model model, int pair, PetscReal *force, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the cells behind the faces of a surface that are in contact, and adds their forces and the logarithms of their
-   sizes, weighted with these, to sum[0] and sum[1]; to sum[2] and sum[3] the numbers of those that are and are not. */
+/* Marks the cells behind the faces of a surface that are in contact, where these are wanted, and adds their forces and
+   the logarithms of their sizes, weighted with these, to sum; to faces the numbers of those that are and are not. */
 static void MarkFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force, PetscReal least, const PetscReal *size,
-                      PetscBool *cells, PetscReal sum[4])
+                      PetscBool *cells, PetscReal sum[2], PetscReal faces[2])
 {
   for (PetscInt f = 0; group && f < group->n_faces; f++) {
     PetscInt  nodes[FACE_MAX_NODES];
@@ -49,9 +49,9 @@ static void MarkFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force,
       most = PetscMax(most, force[nodes[k]]);
       total += force[nodes[k]];
     }
-    sum[most > least ? 2 : 3]++;
+    faces[most > least ? 0 : 1]++;
     if (!(most > least)) continue;
-    cells[group->face_cell[f]] = PETSC_TRUE;
+    if (cells) cells[group->face_cell[f]] = PETSC_TRUE;
     sum[0] += total;
     sum[1] += total * PetscLogReal(size[group->face_cell[f]]);
   }
@@ -66,28 +66,27 @@ static void MarkFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force,
 . model - at its solution
 
   Output Parameters:
-+ cells - for each local cell: a face of it is in contact
++ cells - for each local cell: a face of it is in contact; NULL: not wanted
 - zone  - the same on all ranks
 @*/
 PetscErrorCode ContactZoneFind(Model model, PetscBool *cells, ContactZone *zone)
 {
   const Mesh mesh   = model->mesh;
-  PetscReal  sum[4] = {0, 0, 0, 0}, *force, *sizes, *measure;
+  PetscReal  sum[4] = {0, 0, 0, 0}, of_masters[2] = {0, 0}, *force, *sizes, *measure;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(cells, mesh->n_cells));
+  if (cells) PetscCall(PetscArrayzero(cells, mesh->n_cells));
   PetscCall(PetscCalloc3(mesh->n_nodes, &force, mesh->n_cells, &sizes, mesh->n_cells, &measure));
   MeshCellSizes(mesh, sizes, measure);
   for (int p = 0; p < ContactPairs(model->contact); p++) {
     ContactSides sides;
-    PetscReal    most, faces[2];
+    PetscReal    most;
 
     PetscCall(NodalForces(model, p, force, &most));
     ContactPairSides(model->contact, p, &sides);
-    MarkFaces(mesh, sides.slave->group, force, ZONE_LEAST_FORCE * most, sizes, cells, sum);
-    PetscCall(PetscArraycpy(faces, &sum[2], 2)); /* of slaves alone */
-    if (sides.master) MarkFaces(mesh, sides.master->group, force, ZONE_LEAST_FORCE * most, sizes, cells, sum);
-    PetscCall(PetscArraycpy(&sum[2], faces, 2));
+    MarkFaces(mesh, sides.slave->group, force, ZONE_LEAST_FORCE * most, sizes, cells, sum, &sum[2]);
+    if (sides.master)
+      MarkFaces(mesh, sides.master->group, force, ZONE_LEAST_FORCE * most, sizes, cells, sum, of_masters);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPIU_SUM, mesh->comm));
   *zone = (ContactZone){.size  = sum[0] > 0 ? PetscExpReal(sum[1] / sum[0]) : 0,

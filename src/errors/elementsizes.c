@@ -6,9 +6,8 @@
 
 /* An element becomes at most so much smaller from one mesh to the next. */
 #define SIZES_SMALLER 0.25
-/* At a point where stresses have no bound and in a zone in contact it becomes at most so much smaller: as in two
- * meshes.
- */
+/* At a point where stresses have no bound and in a zone in contact it becomes at most as much smaller as else in two
+   meshes. */
 #define SIZES_PLACES (SIZES_SMALLER * SIZES_SMALLER)
 /* Cells of a regular mesh whose size grows by 0.35 of the distance: for each factor e in distance, in a sixth of the
    plane (2 pi / 6 over 0.43, the area of a regular triangle, and the square of the growth). */

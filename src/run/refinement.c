@@ -263,18 +263,6 @@ static void ChooseOrder(Refinement *r)
     r->order = 1;
 }
 
-/* Measures the elements of the present mesh at surfaces in contact. */
-static PetscErrorCode MeasureZone(const Refinement *r, SolvedMesh *mesh)
-{
-  PetscBool *cells;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(r->run->mesh->n_cells, &cells));
-  PetscCall(ContactZoneFind(r->run->model, cells, &mesh->zone));
-  PetscCall(PetscFree(cells));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Takes the figures of the mesh that was solved last. */
 static PetscErrorCode Record(Refinement *r, double planned)
 {
@@ -294,7 +282,7 @@ static PetscErrorCode Record(Refinement *r, double planned)
   mesh->error       = *error;
   mesh->error.cells = NULL; /* they go with the run */
   mesh->mesh_s      = r->run->mesh_s;
-  PetscCall(MeasureZone(r, mesh));
+  PetscCall(ContactZoneFind(r->run->model, NULL, &mesh->zone));
   mesh->rough      = (PetscBool)(why != NULL);
   mesh->factor     = factor;
   mesh->order      = r->run->mesh->order;

@@ -54,11 +54,9 @@ static void ReleasePenalties(Scene scene)
    one equilibrium under a load, as their energy is convex. */
 static PetscBool AnyWay(Scene scene)
 {
-  if (scene->kinematics != KINEMATICS_SMALL || SceneIsPlastic(scene) || SceneHasRoutine(scene) ||
-      SceneHasFluid(scene) || SceneSupportsChange(scene))
-    return PETSC_FALSE;
+  if (scene->kinematics != KINEMATICS_SMALL || SceneDependsOnPath(scene) || SceneHasFluid(scene)) return PETSC_FALSE;
   for (int i = 0; i < scene->n_contacts; i++)
-    if (scene->contacts[i].friction || scene->contacts[i].adjust) return PETSC_FALSE;
+    if (scene->contacts[i].adjust) return PETSC_FALSE;
   return PETSC_TRUE;
 }
 

@@ -73,18 +73,6 @@ static PetscErrorCode ReadEntry(Scene scene, const char *entry)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Does the answer of a scene depend on the way to it, or on what stays from one solve to the next? */
-static PetscBool DependsOnPath(Scene scene)
-{
-  PetscBool depends = (PetscBool)(SceneIsPlastic(scene) || SceneHasRoutine(scene) || SceneSupportsChange(scene));
-
-  for (int c = 0; c < scene->n_contacts; c++)
-    depends = (PetscBool)(depends || scene->contacts[c].friction || scene->contacts[c].augment);
-  for (int b = 0; b < scene->n_bodies; b++) /* a locked length comes from an earlier force */
-    depends = (PetscBool)(depends || (scene->bodies[b].bolt && scene->bodies[b].locked < 1));
-  return depends;
-}
-
 /*@
   SceneReadSensitivities - reads of which probes the derivatives by which keys are wanted.
 
@@ -109,7 +97,7 @@ PetscErrorCode SceneReadSensitivities(Scene scene)
     PetscCall(Refuse(scene, NULL,
                      "is not available where a fluid enters between surfaces, as the places that it wets change one by "
                      "one; allowed: other loads"));
-  scene->sensitivities_by_runs = DependsOnPath(scene);
+  scene->sensitivities_by_runs = SceneDependsOnPath(scene);
   for (int i = 0; i < list->n; i++) PetscCall(ReadEntry(scene, list->child[i]->text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -45,8 +45,8 @@ struct _n_Offsets {
   PetscReal *held, *asked, *change;
   PetscBool  replaced, turning; /* turning: solutions turn them to and fro */
   int        turns;             /* times in a row that they have */
-  /* And of each face: the last change that was not small beside the one before, how often it was turned back, and
-     whether the offsets in use stay to the end of the step. */
+  /* And of each face: the last change that was not small beside the one before, how many there were that turned
+     the one before back, with the first one, and whether the offsets in use stay to the end of the step. */
   PetscReal *swing;
   int       *swings;
   PetscBool *stays;
@@ -657,9 +657,7 @@ PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
   if (o->blank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OffsetsAt(o, u, t, o->used));
   for (PetscInt f = 0, i, end; (end = NextTouched(o, &f, &i)) > i;)
-    for (; i < end; i++) o->used[i] = InUse(o->used[i]);
-  for (PetscInt f = 0; f < o->surface->n_faces && Follow(o); f++)
-    if (o->stays[f]) PetscCall(PetscArraycpy(&o->used[f * FaceBlock(o)], &o->held[f * FaceBlock(o)], FaceBlock(o)));
+    for (; i < end; i++) o->used[i] = o->stays[f - 1] ? o->held[i] : InUse(o->used[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -676,7 +674,7 @@ static PetscErrorCode StayBetween(Offsets o, PetscBool *some)
     PetscReal *used = &o->used[f * block], *held = &o->held[f * block], *swing = &o->swing[f * block];
     PetscReal  along = 0, now = 0, last = 0;
 
-    if ((o->tracked && !o->touched[f]) || o->stays[f]) continue;
+    if (!o->touched[f] || o->stays[f]) continue;
     for (PetscInt i = 0; i < block; i++) {
       along += (used[i] - held[i]) * swing[i];
       now += PetscSqr(used[i] - held[i]);
@@ -708,8 +706,8 @@ static PetscErrorCode StayBetween(Offsets o, PetscBool *some)
   Note:
   A soft body may answer to a change of its offsets by more than that change the other way, as a ring that rolls in its
   groove. Solutions then never settle. From OFFSET_TURNS such answers in a row on, the offsets are set on the line
-through the last two that solutions asked for, where their secant sees no change any more. Those of single faces
-that are turned to and fro by jumps of their fits stay between both.
+  through the last two that solutions asked for, where their secant sees no change any more. Those of single faces
+  that are turned to and fro by jumps of their fits stay between both.
 
   Source: Anderson, Iterative procedures for nonlinear integral equations, J. ACM 12 (1965) 547-560.
 @*/
@@ -717,7 +715,7 @@ PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
 {
   /* squared change before, change times change before, squared change; faces that stay */
   PetscReal sum[4] = {0, 0, 0, 0}, part;
-  PetscBool turns, stays;
+  PetscBool turns, stays, damps;
 
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
@@ -737,8 +735,9 @@ PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
   turns      = (PetscBool)(o->replaced && sum[1] < 0 && sum[2] > PetscSqr(OFFSET_SETTLES) * sum[0]);
   o->turns   = turns ? o->turns + 1 : 0;
   o->turning = (PetscBool)(o->turning || o->turns == OFFSET_TURNS);
-  *changed   = (PetscBool)(o->turning && sum[2] > 0);
-  part       = *changed ? PetscMax(-1, (sum[2] - sum[1]) / (sum[2] - 2 * sum[1] + sum[0])) : 0;
+  damps      = (PetscBool)(o->turning && sum[2] > 0);
+  *changed   = (PetscBool)(damps || sum[3] > 0);
+  part       = damps ? PetscMax(-1, (sum[2] - sum[1]) / (sum[2] - 2 * sum[1] + sum[0])) : 0;
   for (PetscInt f = 0, i, end; (end = NextTouched(o, &f, &i)) > i;) {
     for (; i < end; i++) {
       const PetscReal asked = o->used[i];
@@ -750,7 +749,6 @@ PetscErrorCode OffsetsDamp(Offsets o, PetscBool *changed)
     }
   }
   o->replaced = PETSC_TRUE;
-  *changed    = (PetscBool)(*changed || sum[3] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

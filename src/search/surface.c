@@ -1,7 +1,6 @@
 /* Contact surfaces: faces, sizes, free edges, nodal areas, mirror images. */
 #include "kernels/elementkernel.h"
 #include "base/refusal.h"
-#include "mesh/meshpieces.h"
 #include "search/surface.h"
 
 /* Directions are distinguished by cells on the faces of a cube, with this many cells along an edge of the cube. A
@@ -209,23 +208,19 @@ PetscErrorCode SurfaceDestroy(ContactSurface *surface)
 }
 
 /*@
-  SurfaceFindPieces - finds the connected piece of the mesh to which each face belongs.
+  SurfaceTakePieces - notes the connected piece of the mesh to which each face belongs.
 
-  Collective
+  Not collective
 
-  Input Parameter:
-. surface - the surface of deformable bodies
+  Input Parameters:
++ surface - the surface of deformable bodies
+- piece   - of each local node, from MeshFindPieces()
 @*/
-PetscErrorCode SurfaceFindPieces(ContactSurface surface)
+PetscErrorCode SurfaceTakePieces(ContactSurface surface, const PetscInt piece[])
 {
-  PetscInt *piece, n;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(surface->mesh->n_nodes, &piece));
-  PetscCall(MeshFindPieces(surface->mesh, &n, piece));
   PetscCall(PetscMalloc1(surface->n_faces + 1, &surface->face_piece)); /* not NULL on a rank without faces */
   for (PetscInt f = 0; f < surface->n_faces; f++) surface->face_piece[f] = piece[surface->faces[f].nodes[0]];
-  PetscCall(PetscFree(piece));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -52,7 +52,7 @@ typedef struct {
 PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const char *key, const char *name,
                              ContactSurface *);
 PetscErrorCode SurfaceDestroy(ContactSurface *);
-PetscErrorCode SurfaceFindPieces(ContactSurface);
+PetscErrorCode SurfaceTakePieces(ContactSurface, const PetscInt piece[]);
 PetscBool      SurfaceOnPlane(Mesh, const SurfaceImage *, const PetscReal *x);
 PetscErrorCode SurfaceFindFreeEdges(ContactSurface, int n_images, const SurfaceImage *);
 PetscErrorCode SurfaceNodeEnds(ContactSurface, const PetscReal *u, PetscReal *end);

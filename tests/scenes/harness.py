@@ -64,6 +64,12 @@ class Check:
         error = numpy.inf if missing else float(numpy.max(numpy.abs(numpy.asarray(value, dtype=float) - reference)))
         self.holds(what, error <= tolerance, f"error {error:.3e}, allowed {tolerance:.3e}")
 
+    def effort(self, summary, steps, failed, iterations):
+        """A run took at most so many steps, failed ones and iterations."""
+        self.holds("steps", summary["steps"] <= steps and summary["steps_failed"] <= failed,
+                   f"{summary['steps']}, {summary['steps_failed']} failed")
+        self.holds("iterations", summary["newton_iterations"] <= iterations, str(summary["newton_iterations"]))
+
     def finish(self):
         sys.exit(1 if self.failed else 0)
 

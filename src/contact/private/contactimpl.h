@@ -165,6 +165,7 @@ struct _n_Contact {
   Loads            loads;
   int              n_pairs;
   ContactPair     *pairs;
+  PetscInt        *piece;   /* connected piece of each local node, while pairs of listed surfaces are made; else NULL */
   const PetscReal *u_begun; /* local displacements at which the load step began, of the model */
   PetscReal        t_begun; /* its load parameter */
   ContactWork      work;
@@ -194,7 +195,8 @@ typedef struct {
 } ContactPressing;
 
 /* contactpair.c */
-PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneContact *, ContactPair *);
+PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const PetscInt piece[], const SceneContact *,
+                                 ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
 /* contactoverride.c */
 PetscErrorCode ContactOverride(Contact);
