@@ -8,6 +8,8 @@
 #define FREE_BODIES_HIDDEN 1e-3
 /* Bodies that were moved into contact touch with the terms that are open by less than this part of a face size. */
 #define FREE_BODIES_TOUCH 1e-4
+/* A traction this part below what friction can bear has reached it: states are known to their residuals. */
+#define FREE_BODIES_LIMIT 1e-4
 
 /* Product of two motions as term i of n sees them: of their travels and, where there are four values, slides. */
 static PetscReal Together(int across, PetscBool along, PetscInt n, PetscInt i, const PetscReal *a, const PetscReal *b)
@@ -21,13 +23,12 @@ static PetscReal Together(int across, PetscBool along, PetscInt n, PetscInt i, c
 /* How the friction of terms counts: what slips too, alone, or not. */
 typedef enum { GRAM_STICKS, GRAM_ALONG, GRAM_SLIPS } GramKind;
 
-/* Does a term slip? Across its slip it has the stiffness of what sticks at most. */
-static PetscBool Slips(const ActiveSetTerm *term, int dim)
+/* Does a term slip, or has it the largest traction that sticks? */
+static PetscBool Slips(const ActiveSetTerm *term)
 {
-  PetscReal stiffness = 0;
+  const PetscReal bound = FrictionBound(&term->friction.law, term->pressure);
 
-  for (int a = 0; a < 2; a++) stiffness += term->friction.by_slip[a][a];
-  return (PetscBool)(stiffness < (dim - 1.5) * term->friction.law.stiffness);
+  return (PetscBool)(hypot(term->friction.traction[0], term->friction.traction[1]) >= (1 - FREE_BODIES_LIMIT) * bound);
 }
 
 /* Adds the force of term i to what the pieces carry that it sees: those whose motions change its gap, by travel[n]. */
@@ -41,14 +42,15 @@ static void Carry(FreeBodies b, PetscInt i, const ActiveSetTerm *term, PetscReal
 }
 
 /* Stiffness gram[n][n] of the terms in contact, or touching, along the motions at (u, t), over the largest diagonal
-   entry. Friction counts as if nothing slipped, unless its kind says otherwise. The pieces remember what they carry. */
+   entry that it would have if nothing slipped. Friction counts as if nothing slipped, unless its kind says otherwise.
+   The pieces remember what they carry. */
 static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, GramKind kind,
                                   double gram[])
 {
   const PetscInt       size   = b->mesh->n_nodes * b->mesh->dim;
   const int            n      = b->n;
   const int            across = ContactHasFriction(b->contact) ? 4 : 1; /* values of a term: travel, slide */
-  PetscReal           *du, **travel, largest = 0;
+  PetscReal           *du, **travel, *sticks, largest = 0;
   double              *a;
   PetscInt             n_terms;
   const ActiveSetTerm *terms;
@@ -56,6 +58,7 @@ static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t,
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(gram, n * n));
+  PetscCall(PetscCalloc1(n, &sticks));
   PetscCall(PetscArrayzero(b->carried, b->n_pieces));
   PetscCall(PetscMalloc1(size, &du));
   PetscCall(PetscMalloc1(n, &travel));
@@ -75,15 +78,19 @@ static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t,
     Carry(b, i, &terms[i], travel);
     for (int k = 0; k < n; k++)
       for (int l = 0; l < n; l++)
-        gram[k * n + l] += Together(kind == GRAM_SLIPS && Slips(&terms[i], b->mesh->dim) ? 1 : across,
+        gram[k * n + l] += Together(kind == GRAM_SLIPS && Slips(&terms[i]) ? 1 : across,
                                     (PetscBool)(kind == GRAM_ALONG), n_terms, i, travel[k], travel[l]) /
                            (b->pieces[b->owner[k]].size * b->pieces[b->owner[l]].size);
+    for (int k = 0; k < n; k++)
+      sticks[k] += Together(across, (PetscBool)(kind == GRAM_ALONG), n_terms, i, travel[k], travel[k]) /
+                   PetscSqr(b->pieces[b->owner[k]].size);
   }
-  for (int k = 0; k < n; k++) largest = PetscMax(largest, gram[k * n + k]);
+  for (int k = 0; k < n; k++) largest = PetscMax(largest, sticks[k]);
   for (int k = 0; k < n * n && largest > 0; k++) gram[k] /= largest;
   PetscCall(ContactStepDestroy(&step));
   for (int k = 0; k < n; k++) PetscCall(PetscFree(travel[k]));
   PetscCall(PetscFree(travel));
+  PetscCall(PetscFree(sticks));
   PetscCall(PetscFree(a));
   PetscCall(PetscFree(du));
   PetscFunctionReturn(PETSC_SUCCESS);
