@@ -60,6 +60,7 @@ PetscErrorCode ActiveSetCreate(PetscInt n, PetscInt parts, PetscInt most, const 
   p->n     = n;
   p->parts = parts;
   p->most  = most;
+  p->allowed = PETSC_MAX_REAL;
   PetscCall(
     PetscMalloc5(n, &p->terms, parts * n, &p->travel, parts * n, &p->end, n, &p->pressed, parts * n, &p->column));
   PetscCall(PetscArraycpy(p->terms, terms, n));
@@ -153,7 +154,7 @@ static PetscErrorCode Relax(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool
   PetscBool settled = PETSC_FALSE, regular, changed;
 
   PetscFunctionBeginUser;
-  for (PetscInt round = 0; round < ACTIVE_SET_RELAX_ROUNDS && !*m && !*converged; round++) {
+  for (PetscInt round = 0; round < ACTIVE_SET_RELAX_ROUNDS && !*m && !*converged && !ActiveSetSpent(p); round++) {
     PetscCall(ActiveSetRelax(p, ACTIVE_SET_RELAX_SWEEPS, &settled));
     ActiveSetLookAtSlips(p);
     *m = ActiveSetMissing(p, which);
@@ -206,6 +207,37 @@ static PetscErrorCode ChangeWay(ActiveSet p)
 void ActiveSetLeaveRelaxation(ActiveSet p)
 {
   p->unrelaxed = PETSC_TRUE;
+}
+
+/*@
+  ActiveSetBound - bounds the work that is done before the problem is left unsolved.
+
+  Not collective
+
+  Input Parameters:
++ p       - the active set
+- allowed - products of two numbers
+
+  Note:
+  The bound is looked at after each dense solve and after each sweep of relaxation, so that it is passed by one of them
+  at most.
+@*/
+void ActiveSetBound(ActiveSet p, PetscReal allowed)
+{
+  p->allowed = allowed;
+}
+
+/*@
+  ActiveSetWork - tells how much work was done.
+
+  Not collective
+
+  Input Parameter:
+. p - the active set
+@*/
+PetscReal ActiveSetWork(ActiveSet p)
+{
+  return p->work;
 }
 
 /*@
@@ -268,7 +300,7 @@ PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBo
       PetscCall(ActiveSetFollowPath(p, m, which, converged));
       if (*converged) *m = ActiveSetMissingFriction(p, which);
     }
-    if (*m || *converged || p->plain || (p->parts == 1 && (p->searches || !regular)))
+    if (*m || *converged || p->plain || ActiveSetSpent(p) || (p->parts == 1 && (p->searches || !regular)))
       PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(ChangeWay(p));
   } while (PETSC_TRUE);

@@ -137,6 +137,7 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
     for (PetscInt i = 0; i < k && p->change[l] != 0; i++)
       b[i] -= p->change[l] * Influence(p, unknown[i], &by[ACTIVE_SET_PARTS * i], l);
   PetscCall(DenseSolve(k, a, b, regular));
+  p->work += (PetscReal)k * k * (p->parts + k / 3.0);
   for (PetscInt i = 0; i < k; i++) p->change[unknown[i]] = b[i];
   PetscCall(PetscFree2(a, b));
   PetscCall(PetscFree(by));
@@ -146,14 +147,22 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
 
 /* By how much an excess[m] of all columns closes the gaps, and slides the terms back: closing[components], the first
    ones of parts*n. Columns are long, so that each is passed through once. */
-static void Closing(const ActiveSet p, const PetscReal *excess, PetscInt components, PetscReal *closing)
+static void Closing(ActiveSet p, const PetscReal *excess, PetscInt components, PetscReal *closing)
 {
   for (PetscInt i = 0; i < components; i++) closing[i] = 0;
   for (PetscInt j = 0; j < p->m; j++) {
     const PetscReal *column = &p->G[j * p->parts * p->n];
 
-    for (PetscInt i = 0; i < components && excess[j] != 0; i++) closing[i] += column[i] * excess[j];
+    if (excess[j] == 0) continue;
+    for (PetscInt i = 0; i < components; i++) closing[i] += column[i] * excess[j];
+    p->work += components;
   }
+}
+
+/* Says whether the problem has taken as much work as it may. */
+PetscBool ActiveSetSpent(ActiveSet p)
+{
+  return (PetscBool)(p->work > p->allowed);
 }
 
 /* Finds the set that the excess at hand leads to, and says whether it is another one, or friction's excess another. */
@@ -197,7 +206,7 @@ static PetscReal Slope(const ActiveSet p, const PetscReal *closing, PetscReal pa
 
 /* The part of the change of the excess at which the energy is least. Its slope is continuous, and linear between the
    parts[] at which a gap opens or closes. */
-static PetscErrorCode LeastEnergy(const ActiveSet p, PetscReal *part)
+static PetscErrorCode LeastEnergy(ActiveSet p, PetscReal *part)
 {
   PetscReal *closing, *parts, low, high;
   PetscInt   first = 0, last = 1;
@@ -284,7 +293,7 @@ PetscErrorCode ActiveSetFollowSets(ActiveSet p, PetscInt most, PetscInt *m, Pets
 {
   PetscFunctionBeginUser;
   *regular = *changed = PETSC_TRUE;
-  for (PetscInt i = 0; i < most && *changed && *regular; i++) {
+  for (PetscInt i = 0; i < most && *changed && *regular && !ActiveSetSpent(p); i++) {
     *m = ActiveSetMissing(p, which);
     if (!*m && !p->m) *m = ActiveSetMissingFriction(p, which);
     if (*m || !p->m) break;

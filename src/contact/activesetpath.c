@@ -45,7 +45,7 @@ static PetscErrorCode Go(ActiveSet p, PetscInt *m, PetscInt *which)
 
   PetscFunctionBeginUser;
   *m = 0;
-  while (p->tries < PATH_TRIES && p->reached < 1 && p->stride >= PATH_LEAST) {
+  while (p->tries < PATH_TRIES && p->reached < 1 && p->stride >= PATH_LEAST && !ActiveSetSpent(p)) {
     const PetscReal next = PetscMin(1, p->reached + p->stride);
 
     PetscCall(PetscArraycpy(p->excess, p->kept, p->m));

@@ -74,6 +74,7 @@ static void Sweep(ActiveSet p, PetscReal enough, PetscReal farthest, PetscReal *
     *most   = PetscMax(*most, PetscMax(PetscAbsReal(change), PetscAbsReal(left)));
     p->excess[j] += change;
     for (PetscInt k = 0; k < all && change != 0; k++) p->end[k] -= change * p->G[j * all + k];
+    p->work += change != 0 ? all : 0;
     p->pressed[i] = (PetscBool)(p->terms[i].opening + p->end[i] < 0);
   }
 }
@@ -116,7 +117,7 @@ PetscErrorCode ActiveSetRelax(ActiveSet p, PetscInt sweeps, PetscBool *settled)
 
     scale = PetscMax(scale, term->penalty * PetscMax(PetscAbsReal(term->opening), PetscAbsReal(p->travel[i])));
   }
-  for (PetscInt sweep = 0; sweep < sweeps && !*settled && !strays; sweep++) {
+  for (PetscInt sweep = 0; sweep < sweeps && !*settled && !strays && !ActiveSetSpent(p); sweep++) {
     Sweep(p, enough, RELAX_FARTHEST * scale, &most, &strays);
     *settled = (PetscBool)(!strays && most <= enough);
   }

@@ -53,6 +53,20 @@ static PetscReal ReachedGap(const ContactPair *pair, PetscInt q, PointGaps *gaps
   return gaps->gap[q];
 }
 
+/* Gap of slave point q as the next lists find it: that over the facets, or behind them over the smooth surface, which
+   may stand out from the facets of a coarse round body by more than counts as depth. NAN where no master is near. */
+static PetscReal NextGap(const ContactPair *pair, PetscInt q, PetscReal offset)
+{
+  const Smoother *surfaces[2] = {pair->facets, pair->smoother};
+  PetscReal       gap         = NAN;
+  PetscBool       found       = PETSC_FALSE;
+
+  for (int s = 0; s < 2 && !(gap < 0); s++)
+    if (!ContactPointEvaluate(pair, surfaces[s], pair->next, q, -1, SMOOTHER_GAP, &found) && found)
+      gap = pair->work->result.gap - offset;
+  return gap;
+}
+
 /* Says whether the search has lost slave point q of a term. That is so where the present lists find it behind the
    master by more than counts, the next lists find it away from the master or in front of it, and it has
    not left past a free edge. Its term would vanish, and nothing would hold the bodies apart. A term that does not press
@@ -63,14 +77,12 @@ static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, Pets
 {
   const NeighbourLists next   = pair->next;
   const PetscReal      offset = ContactTermOffset(pair, c, t);
-  PetscBool            found  = PETSC_FALSE;
 
   *lost = (ContactLost){offset - ReachedGap(pair, q, gaps), NAN, pair->size[c], pair->node[c]};
   if (!(lost->depth > DepthThatCounts(pair, c, q))) return PETSC_FALSE;
   if (pair->master && next->facet_ptr[q] == next->facet_ptr[q + 1]) return PETSC_TRUE;
   if (pair->next_factor[q] == 0) return PETSC_FALSE;
-  if (!ContactPointEvaluate(pair, pair->facets, next, q, -1, SMOOTHER_GAP, &found) && found)
-    lost->gap = pair->work->result.gap - offset;
+  lost->gap = NextGap(pair, q, offset);
   return (PetscBool)(!(lost->gap < 0));
 }
 

@@ -320,7 +320,7 @@ static PetscErrorCode LinearContactForesee(Model model, const PetscReal *carried
 PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y)
 {
   PetscBool     able, converged = PETSC_FALSE;
-  PetscInt     *which, m        = 1;
+  PetscInt     *which, m        = 1, size;
   LinearContact s;
 
   PetscFunctionBeginUser;
@@ -340,8 +340,9 @@ PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const Pe
   }
   if (converged) PetscCall(LinearContactTake(model, carried, t, &s, y, &converged));
   model->work->unsettled = (PetscBool)!converged;
-  PetscCall(PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s\n", s.n, s.m,
-                      converged ? "settled" : "left to the next iteration"));
+  PetscCall(VecGetSize(y, &size));
+  PetscCall(PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s; work of %.2g for each unknown\n", s.n, s.m,
+                      converged ? "settled" : "left to the next iteration", s.active ? (double)ActiveSetWork(s.active)/size : 0.0));
   PetscCall(PetscFree(which));
   PetscCall(LinearContactForesee(model, carried, t, y, &s));
   PetscCall(LinearContactEnd(&s));

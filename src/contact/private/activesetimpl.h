@@ -15,6 +15,7 @@ struct _n_Pressing {
   PetscInt      *term;         /* component of each column */
   PetscReal     *G, *excess;   /* m*parts*n, m */
   PetscReal     *change;       /* m: of the excess, by the last iteration */
+  PetscReal      work, allowed; /* products that were computed, and how many may be */
   PetscBool      searches;     /* sets have repeated themselves: each step ends where the energy is least along it */
   PetscBool     *slipped;      /* n: the term slipped where friction was looked at last */
   PetscBool     *sticks;       /* n: its slip has turned round since, so that it is to stick in the next set */
@@ -33,6 +34,7 @@ struct _n_Pressing {
 };
 
 /* activesetfollow.c */
+PetscBool      ActiveSetSpent(ActiveSet);
 PetscBool      ActiveSetFollow(ActiveSet);
 PetscErrorCode ActiveSetFollowSets(ActiveSet, PetscInt most, PetscInt *m, PetscInt *which, PetscBool *regular,
                                    PetscBool *changed);
