@@ -57,9 +57,9 @@ PetscErrorCode ActiveSetCreate(PetscInt n, PetscInt parts, PetscInt most, const 
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&p));
-  p->n     = n;
-  p->parts = parts;
-  p->most  = most;
+  p->n       = n;
+  p->parts   = parts;
+  p->most    = most;
   p->allowed = PETSC_MAX_REAL;
   PetscCall(
     PetscMalloc5(n, &p->terms, parts * n, &p->travel, parts * n, &p->end, n, &p->pressed, parts * n, &p->column));
@@ -225,19 +225,6 @@ void ActiveSetLeaveRelaxation(ActiveSet p)
 void ActiveSetBound(ActiveSet p, PetscReal allowed)
 {
   p->allowed = allowed;
-}
-
-/*@
-  ActiveSetWork - tells how much work was done.
-
-  Not collective
-
-  Input Parameter:
-. p - the active set
-@*/
-PetscReal ActiveSetWork(ActiveSet p)
-{
-  return p->work;
 }
 
 /*@

@@ -41,7 +41,6 @@ PetscErrorCode ActiveSetCreate(PetscInt n, PetscInt parts, PetscInt most, const 
 PetscErrorCode ActiveSetDestroy(ActiveSet *);
 void           ActiveSetLeaveRelaxation(ActiveSet);
 void           ActiveSetBound(ActiveSet, PetscReal allowed);
-PetscReal      ActiveSetWork(ActiveSet);
 void           ActiveSetAllowPart(ActiveSet);
 PetscErrorCode ActiveSetAddColumns(ActiveSet, PetscInt m, const PetscInt *which, const PetscReal *G);
 PetscErrorCode ActiveSetSolve(ActiveSet, PetscInt *m, PetscInt *which, PetscBool *converged);

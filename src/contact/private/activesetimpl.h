@@ -9,17 +9,17 @@
 struct _n_Pressing {
   PetscInt       n, parts, m, most;
   ActiveSetTerm *terms;
-  PetscReal     *travel, *end; /* parts*n; end: with the excess at hand */
-  PetscBool     *pressed;      /* n: the set at hand */
-  PetscInt      *column;       /* parts*n; -1: none */
-  PetscInt      *term;         /* component of each column */
-  PetscReal     *G, *excess;   /* m*parts*n, m */
-  PetscReal     *change;       /* m: of the excess, by the last iteration */
+  PetscReal     *travel, *end;  /* parts*n; end: with the excess at hand */
+  PetscBool     *pressed;       /* n: the set at hand */
+  PetscInt      *column;        /* parts*n; -1: none */
+  PetscInt      *term;          /* component of each column */
+  PetscReal     *G, *excess;    /* m*parts*n, m */
+  PetscReal     *change;        /* m: of the excess, by the last iteration */
   PetscReal      work, allowed; /* products that were computed, and how many may be */
-  PetscBool      searches;     /* sets have repeated themselves: each step ends where the energy is least along it */
-  PetscBool     *slipped;      /* n: the term slipped where friction was looked at last */
-  PetscBool     *sticks;       /* n: its slip has turned round since, so that it is to stick in the next set */
-  PetscReal     *slip;         /* 2*n: its slip there (length) */
+  PetscBool      searches;      /* sets have repeated themselves: each step ends where the energy is least along it */
+  PetscBool     *slipped;       /* n: the term slipped where friction was looked at last */
+  PetscBool     *sticks;        /* n: its slip has turned round since, so that it is to stick in the next set */
+  PetscReal     *slip;          /* 2*n: its slip there (length) */
   PetscBool      damped;    /* sets with friction have repeated themselves: changes are shortened from the first on */
   PetscBool      unrelaxed; /* sets with friction that repeat themselves are not relaxed */
   PetscBool      plain;     /* friction stays as residual and tangent have it */
