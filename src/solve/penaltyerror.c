@@ -12,10 +12,12 @@
 #include "mesh/pressurenodes.h"
 #include "modelimpl.h"
 
-/* Penalties that the run may choose are made stiffer where an estimate is above this. The estimates for pressures do
-   not count for this. Where the slave's nodes are denser than the master's, pressures scatter, and stiffer penalties
-   only let them scatter more. */
+/* Penalties that the run may choose are made stiffer where an estimate is above this. */
 #define PENALTY_ERROR_LARGE 0.004
+/* The mean pressure may have so many times the error. Where the slave's nodes are denser than the master's, pressures
+   scatter, and stiffer penalties let them scatter more; where a bent ring closes on a shaft, soft ones spread by a
+   third too far what bears at a few places. The largest pressure does not count. */
+#define PENALTY_ERROR_PRESSURE 10
 /* Where the scene asks for an accuracy, it is at most this part of the allowed error: the rest is for the mesh. */
 #define PENALTY_ERROR_SHARE 0.3
 /* They are made so stiff that this part of it is to be expected. */
@@ -355,8 +357,9 @@ static PetscErrorCode ModelFillErrors(Model model, PenaltySource source, Vec slo
 /* The largest error of a pair that stiffer penalties are to lower. */
 static PetscReal WorstError(const PenaltyError *error, PenaltySource source)
 {
-  return source == BY_SLIP ? PetscMax(error->slip_displacement, error->slip_force)
-                           : PetscMax(error->displacement, error->force);
+  return source == BY_SLIP
+           ? PetscMax(error->slip_displacement, error->slip_force)
+           : PetscMax(PetscMax(error->displacement, error->force), error->pressure / PENALTY_ERROR_PRESSURE);
 }
 
 /* Notes whether the last raise of a pair's penalties in this solve has brought too little of what was forecast. */
