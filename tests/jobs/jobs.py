@@ -348,6 +348,15 @@ JOBS = [
     Job("hem", "flange folded over as before hemming", [
         Answer("tip_x", -4.1137, 0.04, "limit"),
     ], steps=20, pairs=2, stiff=["contact.0.initial_overlap=resolve", "stepping.dt_max=0.04"]),
+    Job("coil_spring", "coil spring whose coils come together", [Answer("force", 445, 1, "limit")], steps=12, levels=(1, 1.5, 2)),
+    Job("circlip", "circlip closing on its groove with friction", [
+        Answer("spread", 224, 1, "limit"),
+        Answer("opening", 1.6565, 1, "limit"),
+    ], steps=12),
+    Job("tyre_road", "tyre blown up and pressed on the road", [
+        Answer("load", 18.1, 1, "limit"),
+        Answer("bulge", 1, 1, "limit"),
+    ], steps=12, levels=(1, 2, 3)),
     Job("c_ring", "metal C-ring squeezed and pressed from inside", [Answer("seat", 42443, 0.3, "limit")], steps=20, pairs=3,
         stiff=["stepping.dt_max=0.04"]),
     Job("wire_bent", "wire bent about a pin and let go", [

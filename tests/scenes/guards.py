@@ -56,6 +56,11 @@ ends("adrift", adrift, 2, "nothing holds a body against its load", "'upper': tra
 LATER = ("loads=[{surface: upper_top, pressure: 10, history: [[0, 0], [0.5, 1], [0.75, -1], [1, -1]]}]")
 flies = run(args, stack, out="flies", overrides=(FREE[0], LATER), must=None)
 ends("flies", flies, 2, "'upper': translation along y")
+# It comes so far in one step that rounding of its positions is a force above the load's.
+pulled = run(args, SCENES / "pulled_ball.yaml", out="pulled", must=None)
+ends("pulled", pulled, 2, "nothing holds a body against its load", "'ball': translation along x")
+gripped = run(args, SCENES / "pulled_ball.yaml", out="gripped", overrides=("loads.1.force=[1.5, 0]",))
+check.holds("gripped: held by friction", gripped.summary()["probes"]["way"] < 0.1)
 
 # Plain Newton steps on facets repeat themselves where their contact is not settled, as with GMRES; with a factor, or
 # with the line search, they do not.
