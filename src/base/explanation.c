@@ -354,6 +354,13 @@ static const Explanation Warnings[] = {
    "An elastic edge or corner sinks into coarse faces by less than they can see: in surface to surface contact by up to "
    "a third of a face. The results are those of no contact.",
    "Finer faces on both sides there, or `formulation: node_to_surface` with the body of the edge as `slave`."},
+  {"B156",
+   {"which no estimated error holds"},
+   "warning: a zone of contact has few faces",
+   "The zone ends within a face, and estimated errors take what is in contact as known. With few faces from the zone's "
+   "end to its middle that leaves more than they say.",
+   "Finer elements where the surfaces touch, as many as the message names, or `-to` and `-probe`, with which the change "
+   "of the answer from mesh to mesh counts too."},
   {"B507",
    {"face sizes behind its master", "face sizes deep in its slave"},
    "warning: nodes stood more than a face size behind the other surface",

@@ -9,6 +9,13 @@
    small forces over the master's nodes beyond the zone's end. */
 #define ZONE_LEAST_FORCE 0.01
 
+/* A sphere whose zone ends at a (1 + x) presses with a force that is less by this times x^2. */
+#define ZONE_SPHERE 1.5
+
+/* Sums over faces: of forces, of these times the logarithm of the cells' sizes, numbers of slave faces that are in
+   contact and that are not */
+enum { SUM_FORCE, SUM_LOG_SIZE, SUM_IN, SUM_OUT, SUMS };
+
 /* Gives each node the magnitude of its force from a pair, on all ranks that have it; *most: of all of them. */
 static PetscErrorCode NodalForces(Model model, int pair, PetscReal *force, PetscReal *most)
 {
@@ -35,26 +42,133 @@ static PetscErrorCode NodalForces(Model model, int pair, PetscReal *force, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the cells behind the faces of a surface that are in contact, where these are wanted, and adds their forces and
-   the logarithms of their sizes, weighted with these, to sum; to faces the numbers of those that are and are not. */
+/* Is a face in contact? Its nodes; total: sum of their forces. */
+static PetscBool FaceBears(Mesh mesh, const MeshGroup *group, PetscInt face, const PetscReal *force, PetscReal least,
+                           PetscInt nodes[FACE_MAX_NODES], int *corners, PetscReal *total)
+{
+  const Element *element = ElementGet(MeshFaceNodes(mesh, group, face, nodes));
+  PetscReal      most    = 0;
+
+  *corners = element->corners;
+  *total   = 0;
+  for (int k = 0; k < element->nodes; k++) {
+    most = PetscMax(most, force[nodes[k]]);
+    *total += force[nodes[k]];
+  }
+  return (PetscBool)(most > least);
+}
+
+/* Marks the cells behind the faces of a surface that are in contact, where these are wanted, and adds to the sums. */
 static void MarkFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force, PetscReal least, const PetscReal *size,
-                      PetscBool *cells, PetscReal sum[2], PetscReal faces[2])
+                      PetscBool *cells, PetscReal sum[SUMS])
 {
   for (PetscInt f = 0; group && f < group->n_faces; f++) {
     PetscInt  nodes[FACE_MAX_NODES];
-    const int n    = ElementGet(MeshFaceNodes(mesh, group, f, nodes))->nodes;
-    PetscReal most = 0, total = 0;
+    PetscReal total;
+    int       corners;
 
-    for (int k = 0; k < n; k++) {
-      most = PetscMax(most, force[nodes[k]]);
-      total += force[nodes[k]];
+    if (!FaceBears(mesh, group, f, force, least, nodes, &corners, &total)) {
+      sum[SUM_OUT]++;
+      continue;
     }
-    faces[most > least ? 0 : 1]++;
-    if (!(most > least)) continue;
+    sum[SUM_IN]++;
     if (cells) cells[group->face_cell[f]] = PETSC_TRUE;
-    sum[0] += total;
-    sum[1] += total * PetscLogReal(size[group->face_cell[f]]);
+    sum[SUM_FORCE] += total;
+    sum[SUM_LOG_SIZE] += total * PetscLogReal(size[group->face_cell[f]]);
   }
+}
+
+/* Marks the corners at which faces in contact meet others. */
+static PetscErrorCode MarkEnd(Mesh mesh, const MeshGroup *group, const PetscReal *force, PetscReal least,
+                              PetscReal *mark)
+{
+  PetscReal *around;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * mesh->n_nodes, &around));
+  for (PetscInt f = 0; group && f < group->n_faces; f++) {
+    PetscInt        nodes[FACE_MAX_NODES];
+    PetscReal       total;
+    int             corners;
+    const PetscBool in = FaceBears(mesh, group, f, force, least, nodes, &corners, &total);
+
+    for (int k = 0; k < corners; k++) around[2 * nodes[k] + in]++;
+  }
+  PetscCall(MeshSumNodes(mesh, 2, around));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) mark[n] = around[2 * n] > 0 && around[2 * n + 1] > 0;
+  PetscCall(PetscFree(around));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Counts the layers of faces in contact between the end of the zone and its middle. */
+static PetscErrorCode CountLayers(Mesh mesh, const MeshGroup *group, const PetscReal *force, PetscReal least,
+                                  PetscReal *layers)
+{
+  PetscReal *mark, *next;
+  PetscBool *taken;
+  PetscInt   more = 1;
+
+  PetscFunctionBeginUser;
+  *layers = 0;
+  PetscCall(PetscCalloc3(mesh->n_nodes, &mark, mesh->n_nodes, &next, group ? group->n_faces : 0, &taken));
+  PetscCall(MarkEnd(mesh, group, force, least, mark));
+  while (more) {
+    more = 0;
+    PetscCall(PetscArrayzero(next, mesh->n_nodes));
+    for (PetscInt f = 0; group && f < group->n_faces; f++) {
+      PetscInt  nodes[FACE_MAX_NODES];
+      PetscReal total;
+      int       corners;
+      PetscBool touches = PETSC_FALSE;
+
+      if (taken[f] || !FaceBears(mesh, group, f, force, least, nodes, &corners, &total)) continue;
+      for (int k = 0; k < corners; k++) touches = (PetscBool)(touches || mark[nodes[k]] > 0);
+      if (!touches) continue;
+      taken[f] = PETSC_TRUE;
+      more     = 1;
+      for (int k = 0; k < corners; k++) next[nodes[k]] = 1;
+    }
+    PetscCall(MeshSumNodes(mesh, 1, next));
+    PetscCall(PetscArraycpy(mark, next, mesh->n_nodes));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &more, 1, MPIU_INT, MPI_MAX, mesh->comm));
+    *layers += (PetscReal)more;
+  }
+  PetscCall(PetscFree3(mark, next, taken));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds one pair to the sums of this rank, and counts its layers. sizes: of the cells. */
+static PetscErrorCode AddPair(Model model, int pair, const PetscReal *sizes, PetscBool *cells, PetscReal sum[SUMS],
+                              PetscReal *layers)
+{
+  const Mesh   mesh             = model->mesh;
+  PetscReal    of_masters[SUMS] = {0}, most, *force;
+  ContactSides sides;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes, &force));
+  PetscCall(NodalForces(model, pair, force, &most));
+  ContactPairSides(model->contact, pair, &sides);
+  MarkFaces(mesh, sides.slave->group, force, ZONE_LEAST_FORCE * most, sizes, cells, sum);
+  if (sides.master) MarkFaces(mesh, sides.master->group, force, ZONE_LEAST_FORCE * most, sizes, cells, of_masters);
+  sum[SUM_FORCE] += of_masters[SUM_FORCE];
+  sum[SUM_LOG_SIZE] += of_masters[SUM_LOG_SIZE];
+  PetscCall(CountLayers(mesh, sides.slave->group, force, ZONE_LEAST_FORCE * most, layers));
+  PetscCall(PetscFree(force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes a zone of the sums of this rank. */
+static PetscErrorCode MakeZone(MPI_Comm comm, PetscReal sum[SUMS], PetscReal layers, ContactZone *zone)
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, SUMS, MPIU_REAL, MPIU_SUM, comm));
+  *zone = (ContactZone){.size   = sum[SUM_FORCE] > 0 ? PetscExpReal(sum[SUM_LOG_SIZE] / sum[SUM_FORCE]) : 0,
+                        .faces  = sum[SUM_IN],
+                        .layers = layers,
+                        .force  = sum[SUM_FORCE],
+                        .ends   = (PetscBool)(sum[SUM_FORCE] > 0 && sum[SUM_OUT] > 0)};
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -67,31 +181,76 @@ static void MarkFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force,
 
   Output Parameters:
 + cells - for each local cell: a face of it is in contact; NULL: not wanted
-- zone  - the same on all ranks
+- zone  - of all pairs, the same on all ranks; its layers are those of the pair that has the fewest
 @*/
 PetscErrorCode ContactZoneFind(Model model, PetscBool *cells, ContactZone *zone)
 {
-  const Mesh mesh   = model->mesh;
-  PetscReal  sum[4] = {0, 0, 0, 0}, of_masters[2] = {0, 0}, *force, *sizes, *measure;
+  const Mesh mesh      = model->mesh;
+  PetscReal  sum[SUMS] = {0}, fewest = 0, *sizes, *measure;
 
   PetscFunctionBeginUser;
   if (cells) PetscCall(PetscArrayzero(cells, mesh->n_cells));
-  PetscCall(PetscCalloc3(mesh->n_nodes, &force, mesh->n_cells, &sizes, mesh->n_cells, &measure));
+  PetscCall(PetscCalloc2(mesh->n_cells, &sizes, mesh->n_cells, &measure));
   MeshCellSizes(mesh, sizes, measure);
   for (int p = 0; p < ContactPairs(model->contact); p++) {
-    ContactSides sides;
-    PetscReal    most;
+    PetscReal layers;
 
-    PetscCall(NodalForces(model, p, force, &most));
-    ContactPairSides(model->contact, p, &sides);
-    MarkFaces(mesh, sides.slave->group, force, ZONE_LEAST_FORCE * most, sizes, cells, sum, &sum[2]);
-    if (sides.master)
-      MarkFaces(mesh, sides.master->group, force, ZONE_LEAST_FORCE * most, sizes, cells, sum, of_masters);
+    PetscCall(AddPair(model, p, sizes, cells, sum, &layers));
+    if (layers > 0 && (fewest == 0 || layers < fewest)) fewest = layers;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPIU_SUM, mesh->comm));
-  *zone = (ContactZone){.size  = sum[0] > 0 ? PetscExpReal(sum[1] / sum[0]) : 0,
-                        .faces = sum[2],
-                        .ends  = (PetscBool)(sum[0] > 0 && sum[3] > 0)};
-  PetscCall(PetscFree3(force, sizes, measure));
+  PetscCall(MakeZone(mesh->comm, sum, fewest, zone));
+  PetscCall(PetscFree2(sizes, measure));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactZoneOfPair - finds the zone in which the surfaces of one pair are in contact.
+
+  Collective
+
+  Input Parameters:
++ model - at its solution
+- pair  - number of the pair
+
+  Output Parameter:
+. zone - the same on all ranks
+@*/
+PetscErrorCode ContactZoneOfPair(Model model, int pair, ContactZone *zone)
+{
+  const Mesh mesh      = model->mesh;
+  PetscReal  sum[SUMS] = {0}, layers, *sizes, *measure;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(mesh->n_cells, &sizes, mesh->n_cells, &measure));
+  MeshCellSizes(mesh, sizes, measure);
+  PetscCall(AddPair(model, pair, sizes, NULL, sum, &layers));
+  PetscCall(MakeZone(mesh->comm, sum, layers, zone));
+  PetscCall(PetscFree2(sizes, measure));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactZoneLeft - gives what the end of a zone may leave of error, over its forces: it is off by half a face at most.
+
+  Not collective
+
+  Input Parameter:
+. zone - of ContactZoneFind() or ContactZoneOfPair()
+@*/
+PetscReal ContactZoneLeft(const ContactZone *zone)
+{
+  return zone->layers > 0 ? ZONE_SPHERE * PetscSqr(0.5 / zone->layers) : 0;
+}
+
+/*@
+  ContactZoneLayers - gives the layers that a zone needs to leave no more than a part of its forces.
+
+  Not collective
+
+  Input Parameter:
+. left - the part
+@*/
+PetscReal ContactZoneLayers(PetscReal left)
+{
+  return PetscCeilReal(0.5 * PetscSqrtReal(ZONE_SPHERE / left));
 }

@@ -1,6 +1,13 @@
 /* The estimated errors of a run's probes, see probeerrors.h. */
 #include "probeerrors.h"
+#include "errors/contactzone.h"
 #include <math.h>
+
+/* The end of a zone of contact is told of where it may leave more than this part of the forces: so much the run lets
+   penetration leave. */
+#define PROBEERRORS_ZONE 0.004
+/* Zones with less than this part of the forces of the most loaded one are not told of. */
+#define PROBEERRORS_LIGHT 0.01
 
 struct _n_ProbeErrors {
   Model          model;
@@ -9,6 +16,7 @@ struct _n_ProbeErrors {
   PetscReal     *value; /* of each probe */
   const char   **why;   /* why there is no estimate of it; NULL: there is one */
   QuantityError *error;
+  ContactZone   *zone;      /* of each pair */
   PetscBool      estimated; /* at a solution that is not accepted yet */
   PetscReal      history_s; /* CPU seconds of the run that gave what the load steps leave; NaN: there was none */
   PetscLogEvent  event;
@@ -40,8 +48,8 @@ PetscErrorCode ProbeErrorsCreate(Model model, Probes probes, Scene scene, ProbeE
   errors->probes    = probes;
   errors->scene     = scene;
   errors->history_s = NAN;
-  PetscCall(
-    PetscCalloc3(scene->n_probes, &errors->value, scene->n_probes, &errors->why, scene->n_probes, &errors->error));
+  PetscCall(PetscCalloc4(scene->n_probes, &errors->value, scene->n_probes, &errors->why, scene->n_probes,
+                         &errors->error, ContactPairs(model->contact), &errors->zone));
   for (int i = 0; i < scene->n_probes; i++) errors->why[i] = "the run ended before the end of its load";
   PetscCall(PetscClassIdRegister("ProbeErrors", &classid));
   PetscCall(PetscLogEventRegister("ProbeErrors", classid, &errors->event));
@@ -62,7 +70,7 @@ PetscErrorCode ProbeErrorsDestroy(ProbeErrors *errors)
   PetscFunctionBeginUser;
   if (!*errors) PetscFunctionReturn(PETSC_SUCCESS);
   for (int i = 0; i < (*errors)->scene->n_probes; i++) PetscCall(QuantityErrorReset(&(*errors)->error[i]));
-  PetscCall(PetscFree3((*errors)->value, (*errors)->why, (*errors)->error));
+  PetscCall(PetscFree4((*errors)->value, (*errors)->why, (*errors)->error, (*errors)->zone));
   PetscCall(PetscFree(*errors));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -117,6 +125,7 @@ PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
   PetscCall(ProbesEvaluate(errors->probes, errors->value)); /* first variations take their signs from here */
+  for (int p = 0; p < ContactPairs(model->contact); p++) PetscCall(ContactZoneOfPair(model, p, &errors->zone[p]));
   PetscCall(PetscCalloc1(errors->scene->n_probes, &functional));
   PetscCall(Estimate(errors, functional));
   if (wanted >= 0 && errors->why[wanted]) {
@@ -246,4 +255,37 @@ void ProbeErrorsPrint(ProbeErrors errors, FILE *stream)
   }
   if (errors && !isnan((double)errors->history_s))
     fprintf(stream, "error    what the load steps leave: by a second run, CPU %.2f s\n", (double)errors->history_s);
+}
+
+/*@
+  ProbeErrorsWarn - warns of zones of contact with so few faces that what no estimate sees may be large.
+
+  Not collective
+
+  Input Parameter:
+. errors - may be NULL
+
+  Note:
+  Nothing is said where meshes follow each other until an accuracy is reached: there the change of the answer counts.
+@*/
+void ProbeErrorsWarn(ProbeErrors errors)
+{
+  const Contact contact = errors ? errors->model->contact : NULL;
+  PetscReal     most    = 0;
+
+  if (!errors || errors->scene->accuracy.probe >= 0) return;
+  for (int p = 0; p < ContactPairs(contact); p++) most = PetscMax(most, errors->zone[p].force);
+  for (int p = 0; p < ContactPairs(contact); p++) {
+    const ContactZone *zone = &errors->zone[p];
+    const PetscReal    left = ContactZoneLeft(zone);
+
+    if (!(left > PROBEERRORS_ZONE) || zone->force < PROBEERRORS_LIGHT * most) continue;
+    fprintf(stderr,
+            "burnish: warning: contact '%s': its zone has %g face%s of '%s' from its end to its middle, so that its "
+            "end may leave up to %.2g %% of its forces, which no estimated error holds; %g faces leave %g %%: finer "
+            "elements there, or meshes of the run's own choice (-to) [B156]\n",
+            ContactPairName(contact, p), (double)zone->layers, zone->layers > 1 ? "s" : "",
+            ContactPairScene(contact, p)->slave, 100 * (double)left, (double)ContactZoneLayers(PROBEERRORS_ZONE),
+            100 * PROBEERRORS_ZONE);
+  }
 }

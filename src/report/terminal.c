@@ -600,6 +600,7 @@ PetscErrorCode TerminalEnd(Terminal terminal, const TerminalLast *last)
   PetscCall(WarnUnused());
   WarnDeep(last->deepest, last->standing);
   WarnCrossed(figures, last->met);
+  ProbeErrorsWarn(figures->errors);
   if (terminal->talks && counts->refined)
     printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts->refined,
            (long long)counts->solves, (long long)counts->steps);

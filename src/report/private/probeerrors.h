@@ -18,3 +18,4 @@ PetscErrorCode       ProbeErrorsEstimate(ProbeErrors);
 PetscErrorCode       ProbeErrorsAccept(ProbeErrors, const PetscReal *values);
 const QuantityError *ProbeErrorsGet(ProbeErrors, int probe, PetscReal *value, const char **why);
 void                 ProbeErrorsPrint(ProbeErrors, FILE *);
+void                 ProbeErrorsWarn(ProbeErrors);
