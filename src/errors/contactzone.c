@@ -12,9 +12,9 @@
 /* A sphere whose zone ends at a (1 + x) presses with a force that is less by this times x^2. */
 #define ZONE_SPHERE 1.5
 
-/* Sums over faces: of forces, of these times the logarithm of the cells' sizes, numbers of slave faces that are in
-   contact and that are not */
-enum { SUM_FORCE, SUM_LOG_SIZE, SUM_IN, SUM_OUT, SUMS };
+/* Sums over faces: of forces, of these times the logarithm of the cells' sizes, number of slave faces that are not in
+   contact */
+enum { SUM_FORCE, SUM_LOG_SIZE, SUM_OUT, SUMS };
 
 /* Gives each node the magnitude of its force from a pair, on all ranks that have it; *most: of all of them. */
 static PetscErrorCode NodalForces(Model model, int pair, PetscReal *force, PetscReal *most)
@@ -71,7 +71,6 @@ static void MarkFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force,
       sum[SUM_OUT]++;
       continue;
     }
-    sum[SUM_IN]++;
     if (cells) cells[group->face_cell[f]] = PETSC_TRUE;
     sum[SUM_FORCE] += total;
     sum[SUM_LOG_SIZE] += total * PetscLogReal(size[group->face_cell[f]]);
@@ -137,8 +136,8 @@ static PetscErrorCode CountLayers(Mesh mesh, const MeshGroup *group, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds one pair to the sums of this rank, and counts its layers. sizes: of the cells. */
-static PetscErrorCode AddPair(Model model, int pair, const PetscReal *sizes, PetscBool *cells, PetscReal sum[SUMS],
+/* Sums up one pair over all ranks, and counts its layers. sizes: of the cells. */
+static PetscErrorCode SumPair(Model model, int pair, const PetscReal *sizes, PetscBool *cells, PetscReal sum[SUMS],
                               PetscReal *layers)
 {
   const Mesh   mesh             = model->mesh;
@@ -146,6 +145,7 @@ static PetscErrorCode AddPair(Model model, int pair, const PetscReal *sizes, Pet
   ContactSides sides;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(sum, SUMS));
   PetscCall(PetscCalloc1(mesh->n_nodes, &force));
   PetscCall(NodalForces(model, pair, force, &most));
   ContactPairSides(model->contact, pair, &sides);
@@ -154,20 +154,39 @@ static PetscErrorCode AddPair(Model model, int pair, const PetscReal *sizes, Pet
   sum[SUM_FORCE] += of_masters[SUM_FORCE];
   sum[SUM_LOG_SIZE] += of_masters[SUM_LOG_SIZE];
   PetscCall(CountLayers(mesh, sides.slave->group, force, ZONE_LEAST_FORCE * most, layers));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, SUMS, MPIU_REAL, MPIU_SUM, mesh->comm));
   PetscCall(PetscFree(force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes a zone of the sums of this rank. */
-static PetscErrorCode MakeZone(MPI_Comm comm, PetscReal sum[SUMS], PetscReal layers, ContactZone *zone)
+static ContactZone MakeZone(const PetscReal sum[SUMS], PetscReal layers)
 {
+  return (ContactZone){.size   = sum[SUM_FORCE] > 0 ? PetscExpReal(sum[SUM_LOG_SIZE] / sum[SUM_FORCE]) : 0,
+                       .layers = layers,
+                       .force  = sum[SUM_FORCE],
+                       .ends   = (PetscBool)(sum[SUM_FORCE] > 0 && sum[SUM_OUT] > 0)};
+}
+
+/* Sums up the pairs from first to before end. */
+static PetscErrorCode FindZone(Model model, int first, int end, PetscBool *cells, ContactZone *zone)
+{
+  const Mesh mesh      = model->mesh;
+  PetscReal  all[SUMS] = {0}, most = 0, of_most = 0, *sizes, *measure;
+
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, SUMS, MPIU_REAL, MPIU_SUM, comm));
-  *zone = (ContactZone){.size   = sum[SUM_FORCE] > 0 ? PetscExpReal(sum[SUM_LOG_SIZE] / sum[SUM_FORCE]) : 0,
-                        .faces  = sum[SUM_IN],
-                        .layers = layers,
-                        .force  = sum[SUM_FORCE],
-                        .ends   = (PetscBool)(sum[SUM_FORCE] > 0 && sum[SUM_OUT] > 0)};
+  PetscCall(PetscCalloc2(mesh->n_cells, &sizes, mesh->n_cells, &measure));
+  MeshCellSizes(mesh, sizes, measure);
+  for (int p = first; p < end; p++) {
+    PetscReal sum[SUMS], layers = 0;
+
+    PetscCall(SumPair(model, p, sizes, cells, sum, &layers));
+    for (int s = 0; s < SUMS; s++) all[s] += sum[s];
+    if (sum[SUM_FORCE] <= most) continue;
+    most    = sum[SUM_FORCE];
+    of_most = layers;
+  }
+  *zone = MakeZone(all, of_most);
+  PetscCall(PetscFree2(sizes, measure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -181,25 +200,13 @@ static PetscErrorCode MakeZone(MPI_Comm comm, PetscReal sum[SUMS], PetscReal lay
 
   Output Parameters:
 + cells - for each local cell: a face of it is in contact; NULL: not wanted
-- zone  - of all pairs, the same on all ranks; its layers are those of the pair that has the fewest
+- zone  - of all pairs, the same on all ranks; its layers are those of the pair with the largest forces
 @*/
 PetscErrorCode ContactZoneFind(Model model, PetscBool *cells, ContactZone *zone)
 {
-  const Mesh mesh      = model->mesh;
-  PetscReal  sum[SUMS] = {0}, fewest = 0, *sizes, *measure;
-
   PetscFunctionBeginUser;
-  if (cells) PetscCall(PetscArrayzero(cells, mesh->n_cells));
-  PetscCall(PetscCalloc2(mesh->n_cells, &sizes, mesh->n_cells, &measure));
-  MeshCellSizes(mesh, sizes, measure);
-  for (int p = 0; p < ContactPairs(model->contact); p++) {
-    PetscReal layers;
-
-    PetscCall(AddPair(model, p, sizes, cells, sum, &layers));
-    if (layers > 0 && (fewest == 0 || layers < fewest)) fewest = layers;
-  }
-  PetscCall(MakeZone(mesh->comm, sum, fewest, zone));
-  PetscCall(PetscFree2(sizes, measure));
+  if (cells) PetscCall(PetscArrayzero(cells, model->mesh->n_cells));
+  PetscCall(FindZone(model, 0, ContactPairs(model->contact), cells, zone));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -217,15 +224,8 @@ PetscErrorCode ContactZoneFind(Model model, PetscBool *cells, ContactZone *zone)
 @*/
 PetscErrorCode ContactZoneOfPair(Model model, int pair, ContactZone *zone)
 {
-  const Mesh mesh      = model->mesh;
-  PetscReal  sum[SUMS] = {0}, layers, *sizes, *measure;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(mesh->n_cells, &sizes, mesh->n_cells, &measure));
-  MeshCellSizes(mesh, sizes, measure);
-  PetscCall(AddPair(model, pair, sizes, NULL, sum, &layers));
-  PetscCall(MakeZone(mesh->comm, sum, layers, zone));
-  PetscCall(PetscFree2(sizes, measure));
+  PetscCall(FindZone(model, pair, pair + 1, NULL, zone));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -13,7 +13,6 @@
 
 typedef struct {
   PetscReal size;   /* mean size of the cells behind faces in contact, weighted with the forces; 0: there are none */
-  PetscReal faces;  /* of slaves in contact */
   PetscReal layers; /* of faces, one inside the other, from the end of the zone to its middle; 0: it has no end */
   PetscReal force;  /* sum of the magnitudes of the nodal forces on faces in contact */
   PetscBool ends;   /* some face of a slave is in contact, and some is not */

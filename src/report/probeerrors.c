@@ -1,6 +1,5 @@
 /* The estimated errors of a run's probes, see probeerrors.h. */
 #include "probeerrors.h"
-#include "errors/contactzone.h"
 #include <math.h>
 
 /* The end of a zone of contact is told of where it may leave more than this part of the forces: so much the run lets
@@ -183,6 +182,20 @@ const QuantityError *ProbeErrorsGet(ProbeErrors errors, int probe, PetscReal *va
   *value = errors->value[probe];
   *why   = errors->why[probe];
   return &errors->error[probe];
+}
+
+/*@
+  ProbeErrorsZone - gives the zone of contact of a pair, of which no estimate holds the end.
+
+  Not collective
+
+  Input Parameters:
++ errors - the errors
+- pair   - number of the pair
+@*/
+const ContactZone *ProbeErrorsZone(ProbeErrors errors, int pair)
+{
+  return &errors->zone[pair];
 }
 
 /*@

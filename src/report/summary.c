@@ -238,6 +238,7 @@ static void AddErrors(cJSON *json, const RunFigures *figures)
     AddReal(probe, "value", value);
     AddReal(probe, "sum", error->sum);
     AddReal(probe, "magnitude", error->magnitude);
+    AddReal(probe, "spread", error->spread);
     AddReal(probe, "per_cent", value != 0 ? 100 * error->sum / PetscAbsReal(value) : NAN);
     parts = cJSON_AddObjectToObject(probe, "causes");
     for (int c = 0; c < ERROR_CAUSES; c++)
@@ -245,6 +246,20 @@ static void AddErrors(cJSON *json, const RunFigures *figures)
         cJSON_AddStringToObject(parts, ErrorCauses[c], "not included");
       else
         AddReal(parts, ErrorCauses[c], error->part[c]);
+  }
+}
+
+/* Adds what the ends of the zones of contact may leave of error, which is in no estimate. */
+static void AddZones(cJSON *json, const RunFigures *figures)
+{
+  cJSON *map = figures->errors && figures->n_pairs ? cJSON_AddObjectToObject(json, "error_zones") : NULL;
+
+  for (int p = 0; map && p < figures->n_pairs; p++) {
+    const ContactZone *zone = ProbeErrorsZone(figures->errors, p);
+    cJSON             *pair = cJSON_AddObjectToObject(map, figures->pairs[p].name);
+
+    AddReal(pair, "faces", zone->layers);
+    AddReal(pair, "per_cent", 100 * ContactZoneLeft(zone));
   }
 }
 
@@ -457,6 +472,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddState(json, figures->scene, figures->n_pairs ? PETSC_TRUE : PETSC_FALSE, figures->last, probes);
   AddUnits(json, figures->scene);
   AddErrors(json, figures);
+  AddZones(json, figures);
   AddEnergy(json, figures);
   AddPartition(json, mesh);
   AddContact(json, figures);

@@ -23,9 +23,6 @@
 #define MESHPLAN_ZONE_SHARE 0.25
 /* The zone becomes at most so much finer for an error that is implied. */
 #define MESHPLAN_ZONE_FINEST 0.25
-/* A sphere whose zone of contact ends at a (1 + x) presses with a force that is less by this times x^2: by
-   Mossakovskii, F is the integral of 2 E* a over the approach a^2 / R, and what is held outside pulls. */
-#define MESHPLAN_SPHERE 1.5
 /* The next mesh leaves at most this part of the error that the shares of the cells show: what they do not see may be in
    the bodies, too, and the change of the answer is to tell something. The zone has this part of its size where nothing
    is known of its error. */
@@ -183,11 +180,9 @@ MeshWish MeshPlanSplit(double wanted, double bodies, double zone)
 }
 
 /* MeshPlanResolve - gives the part of their size that elements at surfaces in contact are to have where a first mesh
-   does not resolve the zone: in that of a sphere an end that is off by half a face would leave the error that is asked
-   for. faces: in contact; to: the error over the value. */
-double MeshPlanResolve(double faces, int dim, double to)
+   does not resolve the zone: the end is then to leave no more than the error that is asked for. left: what it may leave
+   (ContactZoneLeft()); to: the error over the value. */
+double MeshPlanResolve(double left, double to)
 {
-  const double along = dim == 3 ? sqrt(faces) : faces;
-
-  return fmin(2 * along * sqrt(to / MESHPLAN_SPHERE), 1);
+  return left > to ? sqrt(to / left) : 1;
 }

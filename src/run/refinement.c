@@ -391,7 +391,7 @@ static MeshWish WishedParts(const Refinement *r)
     return (MeshWish){.bodies = fmin((double)wanted / r->plan[r->n_plan - 1].error, REFINEMENT_PART), .zone = 1};
   split = MeshPlanSplit((double)wanted, (double)bodies, (double)zone);
   if (r->n == 1 && mesh->zone.ends)
-    split.zone = fmin(split.zone, MeshPlanResolve((double)mesh->zone.faces, r->dim, (double)r->wish.to));
+    split.zone = fmin(split.zone, MeshPlanResolve((double)ContactZoneLeft(&mesh->zone), (double)r->wish.to));
   return split;
 }
 

@@ -129,13 +129,13 @@ static void test_split(void **state)
   assert_float_equal(wish.zone, 0.5, 1e-12);
 }
 
-/* A zone of one face gets as many as an error of its end in a sphere's contact asks for. */
+/* What a zone's end leaves falls with the square of the size of its faces. */
 static void test_resolve(void **state)
 {
   (void)state;
-  assert_float_equal(MeshPlanResolve(1, 2, 0.015), 0.2, 1e-12);
-  assert_float_equal(MeshPlanResolve(4, 3, 0.015), 0.4, 1e-12);
-  assert_float_equal(MeshPlanResolve(9, 2, 0.015), 1, 1e-12);
+  assert_float_equal(MeshPlanResolve(0.375, 0.015), 0.2, 1e-12);
+  assert_float_equal(MeshPlanResolve(0.09375, 0.015), 0.4, 1e-12);
+  assert_float_equal(MeshPlanResolve(0.0046, 0.015), 1, 1e-12);
 }
 
 /* The largest mesh is that whose forecast is the limit, and there is none where a small step is too much. */

@@ -5,6 +5,7 @@
    it is. */
 #pragma once
 #include <stdio.h>
+#include "errors/contactzone.h"
 #include "errors/quantityerror.h"
 #include "report/probevariation.h"
 
@@ -17,5 +18,6 @@ PetscReal            ProbeErrorsHistorySeconds(ProbeErrors);
 PetscErrorCode       ProbeErrorsEstimate(ProbeErrors);
 PetscErrorCode       ProbeErrorsAccept(ProbeErrors, const PetscReal *values);
 const QuantityError *ProbeErrorsGet(ProbeErrors, int probe, PetscReal *value, const char **why);
+const ContactZone   *ProbeErrorsZone(ProbeErrors, int pair);
 void                 ProbeErrorsPrint(ProbeErrors, FILE *);
 void                 ProbeErrorsWarn(ProbeErrors);

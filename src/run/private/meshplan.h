@@ -50,4 +50,4 @@ double      MeshPlanLargest(int n, const MeshFigures[], int dim, int order, Mesh
 double      MeshPlanUnseen(const MeshChange *, int order);
 double      MeshPlanImplied(const MeshChange *, int order);
 MeshWish    MeshPlanSplit(double wanted, double bodies, double zone);
-double      MeshPlanResolve(double faces, int dim, double to);
+double      MeshPlanResolve(double left, double to);
