@@ -84,6 +84,7 @@ for scene, mesh, true in (("ring_in_ring", "n_inner: 8, n_outer: 10", 6.43773),
     check.holds("the surface leaves more than the bodies",
                 abs(shrunk["causes"]["contact surfaces"]) > abs(shrunk["causes"]["bodies"]))
 check.near("the same on all ranks", shrunk["causes"]["contact surfaces"], -9.906608, 1e-4)
+check.near("the zone of a shrink fit has no end", summary["error_zones"]["fit"]["faces"], 0, 0)
 # With friction: the force of a press fit is known as a reaction and as a contact force. A band on a drum: the moment of
 # its friction on coarse elements; reference: extrapolated from meshes 2 and 4 times as fine.
 JOBS, BAND = SCENES.parent / "jobs", 1658.9
@@ -135,5 +136,18 @@ bed = run(args, SCENES / "lame.yaml", out="bed", overrides=[
     "probes=[{name: bed, reaction: outer, component: x}]"]).summary()
 ratio = (LAME - bed["probes"]["bed"]) / bed["error"]["bed"]["sum"]
 check.holds("reaction of springs: effectivity", 0.5 <= ratio <= 2, f"{ratio:.3f}")
+# The end of a zone of contact is in no estimate. Faces from it to its middle on meshes of a ball on a block and of a ring
+# between two plates, whose zones have two ends.
+for mesh, faces in ("near: 10", 3), ("refine: 4, near: 10", 10):
+    few = run(args, RUNS / "free/hertz_sphere.yaml", out="few", overrides=["output.error=true",
+                                                                           f"mesh.parameters={{{mesh}}}"])
+    zone = few.summary()["error_zones"]["point"]
+    check.near(f"{mesh}: faces of a zone of contact", zone["faces"], faces, 0)
+    check.near("what its end may leave", zone["per_cent"], 150 / (2 * faces)**2, 1e-9)
+    check.holds("the run says so where it is more than 0.4 %", ("[B156]" in few.text) == (faces < 10))
+    off = abs(17318.5 / few.summary()["probes"]["force"] - 1) * 100
+    check.holds("the true error is within it", off <= zone["per_cent"] + abs(few.summary()["error"]["force"]["per_cent"]),
+                f"{off:.3f}")
+check.near("a zone with two ends", rigid["error_zones"]["lid"]["faces"], 3, 0)
 check.holds("a deviation has no estimate", "smooth" in error["noise_max"].get("not_estimated", ""))
 check.finish()
