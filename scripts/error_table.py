@@ -122,7 +122,7 @@ def records(args, name):
                     "dofs": found["dofs"], "cpu_s": f"{found['cpu_s']:.2f}", "value": f"{error['value']:.9g}",
                     "estimate": f"{error['sum']:.4g}", "bodies": f"{error['causes']['bodies']:.4g}",
                     "penetration": f"{error['causes']['penetration']:.4g}", "spread": f"{error['spread']:.4g}",
-                    "zone": f"{max((zone['per_cent'] for zone in found.get('error_zones', {}).values()), default=0):.3g}",
+                    "zone": f"{max((z['per_cent'] for z in found.get('error_zones', {}).values()), default=0):.3g}",
                     "reference": f"{own['value']:.9g}",
                     "reference_error": f"{own['magnitude']:.3g}"
                 })
@@ -141,12 +141,13 @@ def apart(row):
 
 def besides(row):
     """What the run says that may be left besides: shares of elements that cancel, ends of zones of contact."""
-    spread = float(row["spread"])
-    return (spread if spread > 2 * abs(float(row["bodies"])) else 0) + float(row["zone"]) / 100 * abs(float(row["value"]))
+    spread, zone = float(row["spread"]), float(row["zone"]) / 100 * abs(float(row["value"]))
+    return zone + (spread if spread > 2 * abs(float(row["bodies"])) else 0)
 
 
 def table(rows):
-    print("| scene | order | unknowns | probe | value | true error (%) | estimate (%) | besides up to (%) | effectivity |")
+    print("| scene | order | unknowns | probe | value | true error (%) | estimate (%) | besides up to (%) "
+          "| effectivity |")
     print("| --- " * 9 + "|")
     judged = [row for row in rows if not apart(row)]
     for row in judged + [row for row in rows if apart(row)]:
@@ -160,8 +161,8 @@ def table(rows):
     low = [row for row in judged if abs(true_error(row)) > 2 * abs(float(row["estimate"]))]
     told = sum(abs(true_error(row)) <= abs(float(row["estimate"])) + besides(row) for row in low)
     print(f"\n{good} of {len(ratios)} between 0.5 and 2, the least {min(ratios, default=0):.2f}, "
-          f"the largest {max(ratios, default=0):.2f}; {len(rows) - len(judged)} apart. True errors of more than twice the "
-          f"estimate: {len(low)}, of which {told} within what the run says besides")
+          f"the largest {max(ratios, default=0):.2f}; {len(rows) - len(judged)} apart. True errors of more than twice "
+          f"the estimate: {len(low)}, of which {told} within what the run says besides")
 
 
 if __name__ == "__main__":
