@@ -18,10 +18,11 @@ static PetscReal AcceptedForce(const ContactPair *pair, PetscInt c, PetscReal t)
   return PetscMax(0, value.pressure) * area;
 }
 
-/* Remembers how the terms press where a step begins. */
+/* Remembers how the terms press where a step begins. Before any load no force is in equilibrium: what overlaps there,
+   as the faces of a coarse mesh do, presses nothing yet. */
 void FrictionTravelBegin(ContactPair *pair, PetscReal t)
 {
-  for (PetscInt c = 0; c < pair->n; c++) pair->friction->pressed[c] = AcceptedForce(pair, c, t);
+  for (PetscInt c = 0; c < pair->n; c++) pair->friction->pressed[c] = t > 0 ? AcceptedForce(pair, c, t) : 0;
 }
 
 /* The force of a pair at nodes that came into contact in the step and stick now, or at nodes that left it where that is
