@@ -200,7 +200,10 @@ static PetscErrorCode FitAt(FitSupport *fit, const OffsetFace *face, int q, FitP
                             int *rung, double (*nodes)[2])
 {
   const int dim = fit->lists->dim, n = ElementGet(face->facet->type)->nodes;
-  FitFoot   at = {.facet = face->candidate, .xi = {face->rule->xi[q][0], face->rule->xi[q][1]}, .upright = PETSC_TRUE};
+  FitFoot   at = {.facet   = face->candidate,
+                  .xi      = {face->rule->xi[q][0], face->rule->xi[q][1]},
+                  .upright = PETSC_TRUE,
+                  .fades   = PETSC_TRUE};
 
   PetscFunctionBeginUser;
   for (int a = 0; a < n; a++)
