@@ -1,6 +1,7 @@
 /* The search finds the facets near a slave point, from whatever rank, in the order of their tags, and says how far
  * lists reach. Free edges are the ends of a surface that no symmetry continues. Offsets of a circle's chords are the
- * heights of its arcs, and are damped where solutions turn them to and fro. All answers are the same on 1, 2 and 3 ranks, as they are found by hand. */
+ * heights of its arcs, and are damped where solutions turn them to and fro. All answers are the same on 1, 2 and 3
+ * ranks, as they are found by hand. */
 #include "../parts.h"
 #include "contactimpl.h"
 #include "search/freeedge.h"
@@ -226,14 +227,15 @@ static void test_free_edges(void **state)
   }
 }
 
-/* The lower block's top becomes a circle of radius 10 about (4, -9); its facets are chords. */
+/* The lower block's top becomes a circle through (4, 1), which is its highest point; its facets are chords. */
 #define RADIUS 10.
-static void ToCircle(const double X[2], double x[2])
+static double radius = RADIUS;
+static void   ToCircle(const double X[2], double x[2])
 {
   x[0] = X[0], x[1] = X[1];
   if (X[1] > 1.05) return;
-  x[0] = 4 + (RADIUS + X[1] - 1) * sin((X[0] - 4) / RADIUS);
-  x[1] = -9 + (RADIUS + X[1] - 1) * cos((X[0] - 4) / RADIUS);
+  x[0] = 4 + (radius + X[1] - 1) * sin((X[0] - 4) / radius);
+  x[1] = 1 - radius + (radius + X[1] - 1) * cos((X[0] - 4) / radius);
 }
 
 /* The height of the arc over its chord, (h^2/4 - s^2) / (2 R) to second order, along the chord's normal. The next
@@ -268,9 +270,46 @@ static void test_offsets(void **state)
   PartsDestroy(&parts);
 }
 
+/* Sum of the offsets of the facet left of the highest point of a circle of radius r. */
+static double OffsetsAtTop(double r)
+{
+  const PetscReal *offset;
+  double           sum = 0;
+
+  radius = r;
+  Create(ToCircle, "", ", smoother: diffuse, formulation: surface_to_surface, offset: held");
+  OK(ContactGather(parts.problem->contact, parts.u, 0, 0, 0));
+  offset = OffsetsGet(Pair()->master_offsets);
+  for (PetscInt f = 0; f < Pair()->master->n_faces; f++) {
+    const Facet *face = &Pair()->master->faces[f];
+    double       X[2][2], x;
+
+    for (int a = 0; a < 2; a++) PartsPlace(&parts, face->nodes[a], X[a]);
+    x = (X[0][0] + X[1][0]) / 2;
+    for (int q = 0; q < FaceRuleGet(ELEMENT_EDGE2, 0)->n && x > 4 - Size && x < 4 && X[0][1] > 0.8; q++)
+      sum += hypot(offset[(f * FACE_RULE_POINTS + q) * 2], offset[(f * FACE_RULE_POINTS + q) * 2 + 1]);
+  }
+  OK(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD));
+  PartsDestroy(&parts);
+  radius = RADIUS;
+  return sum;
+}
+
+/* Offsets of a coarse bend do not jump where points come to look away from the facet by more than 60 degrees, as the
+   fifth nodes on either side do here. */
+static void test_flank(void **state)
+{
+  const double r = 4.5 * Size / (PETSC_PI / 3), part = 1e-6, less = OffsetsAtTop(r * (1 - part)),
+               more = OffsetsAtTop(r * (1 + part));
+
+  (void)state;
+  assert_true(less > 0);
+  assert_near(more, less, 10 * part * less);
+}
+
 /* The lower block's circle bends on, to a curvature of 1 + bend times its own. */
 static double bend;
-static void Bend(const double X[2], double x[2])
+static void   Bend(const double X[2], double x[2])
 {
   x[0] = X[0], x[1] = X[1];
   if (X[1] < 1.05) x[1] -= bend * PetscSqr(X[0] - 4) / (2 * RADIUS);
@@ -364,11 +403,11 @@ static void test_damped(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_lists),    cmocka_unit_test(test_nearest),
-                                     cmocka_unit_test(test_distance), cmocka_unit_test(test_hold),
-                                     cmocka_unit_test(test_reach),    cmocka_unit_test(test_free_edges),
-                                     cmocka_unit_test(test_offsets),  cmocka_unit_test(test_extrapolated),
-                                     cmocka_unit_test(test_damped)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_lists),        cmocka_unit_test(test_nearest),
+                                     cmocka_unit_test(test_distance),     cmocka_unit_test(test_hold),
+                                     cmocka_unit_test(test_reach),        cmocka_unit_test(test_free_edges),
+                                     cmocka_unit_test(test_offsets),      cmocka_unit_test(test_flank),
+                                     cmocka_unit_test(test_extrapolated), cmocka_unit_test(test_damped)};
 
   if (PartsStart(&argc, &argv)) return 1;
   return PartsEnd(cmocka_run_group_tests(tests, NULL, NULL));
