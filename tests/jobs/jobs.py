@@ -356,7 +356,7 @@ JOBS = [
     Job("tyre_road", "tyre blown up and pressed on the road", [
         Answer("load", 18.1, 1, "limit"),
         Answer("bulge", 1, 1, "limit"),
-    ], steps=12, levels=(1, 2, 3)),
+    ], steps=12, levels=(1, 1.5, 2)),
     Job("c_ring", "metal C-ring squeezed and pressed from inside", [Answer("seat", 42443, 0.3, "limit")], steps=20, pairs=3,
         stiff=["stepping.dt_max=0.04"]),
     Job("wire_bent", "wire bent about a pin and let go", [
