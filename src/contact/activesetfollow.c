@@ -292,6 +292,7 @@ PetscErrorCode ActiveSetFollowSets(ActiveSet p, PetscInt most, PetscInt *m, Pets
                                    PetscBool *changed)
 {
   PetscFunctionBeginUser;
+  *m       = 0;
   *regular = *changed = PETSC_TRUE;
   for (PetscInt i = 0; i < most && *changed && *regular && !ActiveSetSpent(p); i++) {
     *m = ActiveSetMissing(p, which);

@@ -325,7 +325,7 @@ const SchemaKey SchemaKeys[] = {
    .help = "penalty at the start of the run"},
   {"contact.*.penalty.scale", REAL | CHOICE, .values = "auto", .range = "(0, inf)", .preset = "auto",
    .help = "factor on the penalty; for initial: auto, 1 is the stiffness of the softer body's elements below the "
-           "surface; auto: " SCENE_PENALTY_SCALE_TEXT " (" SCENE_FRICTION_SCALE_TEXT " with friction), raised by the run where penetration leaves more than 0.4 % of error; with accuracy a number is raised, too, until penetration leaves a third of what is allowed; "
+           "surface; auto: " SCENE_PENALTY_SCALE_TEXT " (" SCENE_FRICTION_SCALE_TEXT " with friction), raised by the run where penetration leaves more than 0.4 % of error in forces or displacements, or 4 % in the mean pressure; with accuracy a number is raised, too, until penetration leaves a third of what is allowed; "
            "1 with another initial value, adjust or augment"},
   {"contact.*.penalty.adjust", BOOLEAN, .preset = "false",
    .help = "true: the penalty follows the penetration; needs g_min, g_max and unit"},

@@ -72,8 +72,8 @@ static double Gap(const Case *t, int c, const double *x)
 }
 
 /* Takes the step from x = 0, with at most so many columns at a time; the largest force that is out of balance where it
-   ends. */
-static double Step(const Case *t, PetscInt most, PetscBool *settled)
+   ends. allowed: work of the contact problem. */
+static double BoundedStep(const Case *t, PetscInt most, PetscReal allowed, PetscBool *settled)
 {
   double           b[N], x[N], column[N][N], G[N * N], travel[N], worst = 0;
   PetscInt         which[N], order[N], m, n = 0;
@@ -89,6 +89,7 @@ static double Step(const Case *t, PetscInt most, PetscBool *settled)
   SolveTangent(t, b, x);
   for (int c = 0; c < N; c++) travel[c] = Gap(t, c, x);
   assert_int_equal(ActiveSetCreate(N, 1, N, t->term, travel, &pressing), 0);
+  ActiveSetBound(pressing, allowed);
   for (assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0); m;
        assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0)) {
     assert_int_equal(ActiveSetLimit(pressing, most, &m, which), 0);
@@ -116,6 +117,11 @@ static double Step(const Case *t, PetscInt most, PetscBool *settled)
     for (int k = 0; k < j; k++) assert_int_not_equal(order[j], order[k]);
   assert_int_equal(ActiveSetDestroy(&pressing), 0);
   return worst;
+}
+
+static double Step(const Case *t, PetscInt most, PetscBool *settled)
+{
+  return BoundedStep(t, most, PETSC_MAX_REAL, settled);
 }
 
 /* Pressed in the tangent: the first half. Openings are such that some of these open and some of the others close. */
@@ -150,6 +156,20 @@ static void test_ends_in_equilibrium(void **state)
       }
     }
   }
+}
+
+/* A problem that has taken its work is left, and asks for nothing more. */
+static void test_work_is_bounded(void **state)
+{
+  PetscBool settled;
+  Case      t;
+
+  (void)state;
+  Make(0.25, -0.02, &t);
+  (void)BoundedStep(&t, 1, 1, &settled);
+  assert_false(settled);
+  assert_true(BoundedStep(&t, 1, 1e6, &settled) < 1e-9);
+  assert_true(settled);
 }
 
 /* The tangent has the right ones: nothing is asked for. */
@@ -526,7 +546,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_ends_in_equilibrium),    cmocka_unit_test(test_right_set_needs_nothing),
     cmocka_unit_test(test_repeated_sets_are_left), cmocka_unit_test(test_loose_body_is_left_alone),
     cmocka_unit_test(test_friction_at_the_end),    cmocka_unit_test(test_friction_repeated),
-    cmocka_unit_test(test_sweeps_astray),
+    cmocka_unit_test(test_sweeps_astray),          cmocka_unit_test(test_work_is_bounded),
   };
   int failed;
 
