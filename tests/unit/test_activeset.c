@@ -165,10 +165,10 @@ static void test_work_is_bounded(void **state)
   Case      t;
 
   (void)state;
-  Make(0.25, -0.02, &t);
-  (void)BoundedStep(&t, 1, 1, &settled);
+  Make(0.5, 0.02, &t);
+  (void)BoundedStep(&t, N, 1, &settled);
   assert_false(settled);
-  assert_true(BoundedStep(&t, 1, 1e6, &settled) < 1e-9);
+  assert_true(BoundedStep(&t, N, 1e6, &settled) < 1e-9);
   assert_true(settled);
 }
 
