@@ -58,12 +58,14 @@ PetscErrorCode ModelCreatePenaltyError(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Begins a solve without estimates. anew: penalties may be raised, too, that stay because a raise in a step before has
-   brought too little; else they stay. */
+/* Begins a solve without estimates. anew: the load is at its end or at a state that the scene asks for. Penalties may
+   be raised there, too, that stay because a raise in a step before has brought too little, and for the error of
+   pressures, on which the way to other states does not depend. */
 void ModelForgetPenaltyError(Model model, PetscBool anew)
 {
   const int n = ContactPairs(model->contact);
 
+  model->work->weighs_pressure = anew;
   for (int k = 0; k < PENALTY_SOURCES * n; k++) {
     model->work->stiffened_at[k] = 0;
     model->work->stiffened_by[k] = anew ? 0 : model->work->accepted_stays[k];
@@ -355,18 +357,20 @@ static PetscErrorCode ModelFillErrors(Model model, PenaltySource source, Vec slo
 }
 
 /* The largest error of a pair that stiffer penalties are to lower. */
-static PetscReal WorstError(const PenaltyError *error, PenaltySource source)
+static PetscReal WorstError(Model model, int pair, PenaltySource source)
 {
-  return source == BY_SLIP
-           ? PetscMax(error->slip_displacement, error->slip_force)
-           : PetscMax(PetscMax(error->displacement, error->force), error->pressure / PENALTY_ERROR_PRESSURE);
+  const PenaltyError *error = &model->work->penalty_error[pair];
+  const PetscReal     press = model->work->weighs_pressure ? error->pressure / PENALTY_ERROR_PRESSURE : 0;
+
+  if (source == BY_SLIP) return PetscMax(error->slip_displacement, error->slip_force);
+  return PetscMax(PetscMax(error->displacement, error->force), press);
 }
 
 /* Notes whether the last raise of a pair's penalties in this solve has brought too little of what was forecast. */
 static void JudgeStiffening(Model model, PenaltySource source, int pair)
 {
   const int       k     = source * ContactPairs(model->contact) + pair;
-  const PetscReal worst = WorstError(&model->work->penalty_error[pair], source);
+  const PetscReal worst = WorstError(model, pair, source);
   PetscReal      *at = &model->work->stiffened_at[k], *by = &model->work->stiffened_by[k];
 
   if (*by > 0 && worst > *at * PetscPowReal(*by, -PENALTY_GAIN)) *by = -*by;
@@ -428,7 +432,7 @@ static PetscErrorCode StiffenSource(Model model, PenaltySource source, const Con
   PetscFunctionBeginUser;
   for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
   for (int p = 0; p < pairs; p++) {
-    const PetscReal worst = WorstError(&model->work->penalty_error[p], source);
+    const PetscReal worst = WorstError(model, p, source);
     PetscReal      *at    = &model->work->stiffened_at[source * pairs + p];
     PetscReal      *by    = &model->work->stiffened_by[source * pairs + p];
 

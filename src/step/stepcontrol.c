@@ -25,10 +25,9 @@ static PetscErrorCode StepControlNext_Fixed(Model model, PetscReal dt, PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The next dt after a step of dt and n iterations, where a longer step has failed before, or was repeated as bodies
-   flowed or contact travelled too far: dt grows again to what that was. A step may fail at a first touch or where a
-   body jumps, and what lies behind that does not ask for short steps. Steps of STEP_FEW_ITERATIONS to
-   STEP_MANY_ITERATIONS would keep the length that the failure left. */
+/* The next dt after a step of dt and n iterations, where a longer step has failed before: dt grows again to what that
+   was. A step may fail at a first touch or where a body jumps, and what lies behind that does not ask for short steps.
+   Steps of STEP_FEW_ITERATIONS to STEP_MANY_ITERATIONS would keep the length that the failure left. */
 static PetscReal Recover(PetscReal dt, PetscReal n, StepSize *size)
 {
   const PetscReal grown = dt * PetscMin(size->growth, PetscSqrtReal(STEP_MANY_ITERATIONS / n));

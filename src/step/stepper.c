@@ -730,7 +730,6 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
       if (!*advanced) {
         PetscCall(ModelRestore(model));
         report->steps_repeated++;
-        stepper->size.failed_dt = PetscMax(stepper->size.failed_dt, dt); /* the bounds hold back what follows */
         continue;
       }
       PetscCall(ModelCertify(model, &solve));

@@ -117,9 +117,10 @@ typedef struct _n_ModelWork {
 
   PenaltyError *penalty_error; /* of each pair, once the load is at its end */
   /* Of each pair for penetration, then of each for elastic slip: */
-  PetscReal *stiffened_at;   /* its worst estimate when this solve stiffened it for it last; 0: it has not */
-  PetscReal *stiffened_by;   /* the factor by which it did; negative: that brought too little, and it stays */
-  PetscReal *accepted_stays; /* the negative ones of stiffened_by in the accepted state; else 0 */
+  PetscReal *stiffened_at;    /* its worst estimate when this solve stiffened it for it last; 0: it has not */
+  PetscReal *stiffened_by;    /* the factor by which it did; negative: that brought too little, and it stays */
+  PetscReal *accepted_stays;  /* the negative ones of stiffened_by in the accepted state; else 0 */
+  PetscBool  weighs_pressure; /* the error of pressures counts in this solve, not on the way alone */
 
   /* A look-ahead from the accepted state */
   Vec       look_ahead; /* free displacements at look_ahead_t by ModelLookAhead() */

@@ -14,7 +14,7 @@ typedef struct {
   /* The control by iterations */
   PetscReal last_dt;         /* of the step before the last one; 0: none */
   PetscReal last_iterations; /* that it took */
-  PetscReal failed_dt;       /* of a step that failed or was repeated, to which steps are to grow again; 0: none */
+  PetscReal failed_dt;       /* of a step that failed, to which steps are to grow again; 0: none */
 
   /* The control by contact alone */
   PetscReal wanted;    /* nodes, or part of the slave area, that may change their status in one step */
