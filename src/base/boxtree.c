@@ -22,10 +22,11 @@ typedef struct {
 
 struct _n_Tree {
   int     dim, n;
-  double *box;    /* [2n-1][2][dim]: lower and upper corners of the nodes */
-  int    *order;  /* box numbers in the order of the leaves */
-  Range  *queue;  /* [n + 1]: heap of BoxTreeClosest(), nearest first */
-  double *facing; /* [2n-1][2][dim]: lower and upper components of the directions below each node; NULL: none */
+  double *box;      /* [2n-1][2][dim]: lower and upper corners of the nodes */
+  int    *order;    /* box numbers in the order of the leaves */
+  Range  *queue;    /* [n + 1]: heap of BoxTreeClosest(), nearest first, or what BoxTreeGather() has found */
+  int     gathered; /* length of that */
+  double *facing;   /* [2n-1][2][dim]: lower and upper components of the directions below each node; NULL: none */
   /* [n/64 + 1]: a bit for each box that BoxTreeNear() has found; all 0 outside of it */
   unsigned long long *found;
 };
@@ -481,4 +482,108 @@ void BoxTreeClosest(BoxTree tree, const double *point, const BoxTreeSide *side, 
       length = Push(tree, Right(&range), point, side, *bound, length);
     }
   }
+}
+
+/* Largest product of two numbers of which each is in an interval. */
+static double LargestProduct(double low, double high, double least, double most)
+{
+  return Larger(Larger(low * least, low * most), Larger(high * least, high * most));
+}
+
+/* May any point of a group see a box below a node? The same bounds as for a point, of all points. */
+static int GroupMaySee(BoxTree tree, int node, const BoxTreeGroup *group, const BoxTreeSide *side, double bound)
+{
+  const double *lower = tree->box + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
+  const double *facing   = tree->facing ? tree->facing + (size_t)node * 2 * tree->dim : NULL;
+  double        distance = 0, opposed = 0, height = 0, square = 0;
+
+  for (int k = 0; k < tree->dim; ++k) {
+    const double apart = Larger(0, Larger(lower[k] - group->upper[k], group->lower[k] - upper[k]));
+    const double least = lower[k] - group->upper[k], most = upper[k] - group->lower[k];
+    const double farther = Larger(fabs(least), fabs(most)), low = group->own_lower[k], high = group->own_upper[k];
+
+    distance += apart * apart;
+    square += farther * farther;
+    height += LargestProduct(low, high, least, most);
+    if (facing) opposed += LargestProduct(-high, -low, facing[k], facing[tree->dim + k]);
+  }
+  if (distance > bound * bound) return 0;
+  if (side->opposed > -INFINITY && !(opposed > side->opposed)) return 0;
+  return distance <= group->behind * group->behind ||
+         !(height < -side->shift - (side->lean == 0 ? 0 : side->lean * sqrt(square)));
+}
+
+/*@
+  BoxTreeGather - finds the boxes that any point of a group may see, for BoxTreeAny()
+
+  Not collective, plain C
+
+  Input Parameters:
++ tree  - the tree
+. group - the points
+. side  - what is the same for all of them: opposed, shift and lean; the rest is not read
+- bound - largest distance (length)
+
+  Note:
+  Returns how many there are. The tree keeps them to the next search with BoxTreeClosest().
+@*/
+int BoxTreeGather(BoxTree tree, const BoxTreeGroup *group, const BoxTreeSide *side, double bound)
+{
+  Range stack[MAX_DEPTH];
+  int   depth = 0;
+
+  tree->gathered = 0;
+  if (tree->n) stack[depth++] = (Range){0, 0, 0, tree->n};
+  while (depth) {
+    const Range range = stack[--depth];
+
+    if (!GroupMaySee(tree, range.node, group, side, bound)) continue;
+    if (range.count == 1)
+      tree->queue[tree->gathered++] = range;
+    else {
+      stack[depth++] = Right(&range);
+      stack[depth++] = Left(&range);
+    }
+  }
+  return tree->gathered;
+}
+
+/* Does BoxTreeClosest() visit this box? */
+static int PointSees(BoxTree tree, int node, const double *point, const BoxTreeSide *side, double bound)
+{
+  const double distance = SquaredDistance(tree, node, point);
+
+  if (distance > bound * bound) return 0;
+  if (side->opposed > -INFINITY && !MayOppose(tree, node, side)) return 0;
+  return distance <= side->behind * side->behind || !IsBehind(tree, node, point, side);
+}
+
+/*@
+  BoxTreeAny - says whether any box passes a test that a point sees, of those that BoxTreeGather() has found
+
+  Not collective, plain C
+
+  Input Parameters:
++ tree    - the tree
+. point   - [dim] coordinates (length)
+. side    - which boxes the point does not see
+. bound   - largest distance (length)
+. test    - is called with the context and the number of a box, and says whether it passes
+- context - for test
+
+  Note:
+  The box that passes is the first one for the next point, which often sees it too.
+@*/
+int BoxTreeAny(BoxTree tree, const double *point, const BoxTreeSide *side, double bound,
+               int (*test)(void *context, int index), void *context)
+{
+  for (int i = 0; i < tree->gathered; ++i) {
+    const Range range = tree->queue[i];
+
+    if (!PointSees(tree, range.node, point, side, bound) || !test(context, tree->order[range.first])) continue;
+    tree->queue[i] = tree->queue[0];
+    tree->queue[0] = range;
+    return 1;
+  }
+  return 0;
 }

@@ -3,8 +3,9 @@
    BoxTreeBuild() makes the tree, BoxTreeBuildFacing() one whose boxes have directions; BoxTreeDestroy() frees it.
    BoxTreeNear() gives all boxes around a point, BoxTreeMeet() all that a box meets. BoxTreeClosest() is for a search
    in which each box that was seen may make the rest superfluous, such as that for the closest facet; with
-   directions it leaves out what faces away, and what lies behind. The tree keeps what
-   BoxTreeNear() and BoxTreeClosest() work with, so that one search runs in it at a time. */
+   directions it leaves out what faces away, and what lies behind. BoxTreeAny() asks whether there is any box that
+   BoxTreeClosest() would visit, of those that BoxTreeGather() has found for a group of points. The tree keeps what
+   these work with, so that one search runs in it at a time. */
 #pragma once
 
 typedef struct _n_Tree *BoxTree;
@@ -18,6 +19,13 @@ typedef struct {
   double        lean;    /* and by this part of the distance of their farthest corner besides */
 } BoxTreeSide;
 
+/* Points that lie and look alike, for BoxTreeGather() */
+typedef struct {
+  double lower[3], upper[3];         /* corners of a box around the points (length) */
+  double own_lower[3], own_upper[3]; /* least and largest components of their sides' directions */
+  double behind;                     /* largest one of their sides (length); all else of the sides is the same */
+} BoxTreeGroup;
+
 int  BoxTreeBuild(int dim, int n, const double *lower, const double *upper, BoxTree *tree);
 int  BoxTreeBuildFacing(int dim, int n, const double *lower, const double *upper, const double *direction,
                         BoxTree *tree);
@@ -26,3 +34,6 @@ int  BoxTreeNear(BoxTree, const double *point, double radius, int max, int *foun
 int  BoxTreeMeet(BoxTree, const double *lower, const double *upper, int max, int *found);
 void BoxTreeClosest(BoxTree, const double *point, const BoxTreeSide *side, double *bound,
                     void (*visit)(void *context, int index, double *bound), void *context);
+int  BoxTreeGather(BoxTree, const BoxTreeGroup *group, const BoxTreeSide *side, double bound);
+int  BoxTreeAny(BoxTree, const double *point, const BoxTreeSide *side, double bound,
+                int (*test)(void *context, int index), void *context);

@@ -8,6 +8,9 @@
 /* And as long as no unit normal has changed by more than this. Normals count as opposed from SEARCH_OPPOSED_NOT on, so
    that two of these changes leave faces of a right angle out. */
 #define PARTNERS_TURN 0.02
+/* Points of a face are tested one by one where more facets than this are in sight of them together: a tree finds the
+   nearest ones of many sooner than a row. */
+enum { PARTNERS_TOGETHER = 128 };
 /* Where the middle nodes of a quadratic facet deviate from the one through its corners, the facet exceeds its nodes by
    at most this much of the largest deviation: sum of the absolute shape functions of these nodes. */
 #define PARTNERS_BULGE 1.6
@@ -111,12 +114,20 @@ static PetscBool LiesBehind(const PointTest *test, const Candidate *c)
                      PetscMax(-most, CandidateBoxDistance(dim, c, test->x)) > side->behind);
 }
 
+/* May a candidate be a partner? */
+static int TestFacet(void *context, int index)
+{
+  const PointTest *test = context;
+
+  return !LiesBehind(test, &test->field->candidates[index]);
+}
+
 /* Visitor of BoxTreeClosest(), which ends with the first facet that may be a partner. */
-static void TestFacet(void *context, int index, double *bound)
+static void VisitFacet(void *context, int index, double *bound)
 {
   PointTest *test = context;
 
-  if (LiesBehind(test, &test->field->candidates[index])) return;
+  if (!TestFacet(context, index)) return;
   test->found = PETSC_TRUE;
   *bound      = -1;
 }
@@ -158,55 +169,124 @@ static void FaceNormals(ContactSearch s, const PetscReal *u, PetscReal t, PetscR
   }
 }
 
-/* Has a slave point at x a facet in sight that is not behind its own body? Where slave and master have faces of one
-   body, the facet must oppose the point. */
-static PetscBool TestPoint(ContactSearch s, const SearchField *field, NeighbourLists lists, BoxTree tree,
-                           const PartnersSight *sight, PetscInt q, const PetscReal *normal, const PetscReal *x)
-{
-  const PetscReal entered = SEARCH_ENTERED * s->slaves->height[q],
-                  behind  = s->one_body ? entered : PetscMax(entered, s->slaves->size[q]);
-  const BoxTreeSide side  = {.own     = normal,
-                             .opposed = s->one_body ? SEARCH_OPPOSED_NOT - 2 * sight->turn : -INFINITY,
-                             .behind  = behind + sight->shift,
-                             .shift   = sight->shift,
-                             .lean    = sight->turn};
-  PointTest         test  = {field, lists, &side, x, PETSC_FALSE};
-  double            bound = sight->radius;
+/* Tests of slave points: what they look for, and from where. */
+typedef struct {
+  ContactSearch        s;
+  const SearchField   *field;
+  NeighbourLists       lists;
+  BoxTree              tree;
+  const PartnersSight *sight;
+  const PetscReal     *x, *normal; /* of all slave points; unit normals */
+  const PetscBool     *among;      /* those to be tested; NULL: all */
+} PointTests;
 
-  BoxTreeClosest(tree, x, &side, &bound, TestFacet, &test);
+/* What a slave point leaves out. Where slave and master have faces of one body, the facet must oppose the point. */
+static BoxTreeSide PointSide(const PointTests *tests, PetscInt q)
+{
+  const ContactSearch s       = tests->s;
+  const PetscReal     entered = SEARCH_ENTERED * s->slaves->height[q],
+                  behind      = s->one_body ? entered : PetscMax(entered, s->slaves->size[q]);
+
+  return (BoxTreeSide){.own     = &tests->normal[3 * q],
+                       .opposed = s->one_body ? SEARCH_OPPOSED_NOT - 2 * tests->sight->turn : -INFINITY,
+                       .behind  = behind + tests->sight->shift,
+                       .shift   = tests->sight->shift,
+                       .lean    = tests->sight->turn};
+}
+
+/* Has a slave point a facet in sight that is not behind its own body? gathered: BoxTreeGather() has seen to it. */
+static PetscBool TestPoint(const PointTests *tests, PetscBool gathered, PetscInt q)
+{
+  const BoxTreeSide side  = PointSide(tests, q);
+  const PetscReal  *x     = &tests->x[q * tests->lists->dim];
+  PointTest         test  = {tests->field, tests->lists, &side, x, PETSC_FALSE};
+  double            bound = tests->sight->radius;
+
+  if (gathered) return (PetscBool)BoxTreeAny(tests->tree, x, &side, bound, TestFacet, &test);
+  BoxTreeClosest(tests->tree, x, &side, &bound, VisitFacet, &test);
   return test.found;
 }
 
-/* Tests which of some slave points have a facet that opposes them in sight, and not behind their own body. The tree
-   compares boxes, so that points without a partner may pass, but no point with one is missed. */
+/* Takes in the slave points from `first` to `last` that are to be tested, and says how many. */
+static PetscInt GroupPoints(const PointTests *tests, PetscInt first, PetscInt last, BoxTreeGroup *group)
+{
+  const int dim = tests->lists->dim;
+  PetscInt  n   = 0;
+
+  group->behind = 0;
+  for (PetscInt q = first; q < last; q++) {
+    const PetscReal *x = &tests->x[q * dim], *normal = &tests->normal[3 * q];
+
+    if (tests->among && !tests->among[q]) continue;
+    for (int d = 0; d < dim; d++) {
+      group->lower[d]     = n ? PetscMin(group->lower[d], x[d]) : x[d];
+      group->upper[d]     = n ? PetscMax(group->upper[d], x[d]) : x[d];
+      group->own_lower[d] = n ? PetscMin(group->own_lower[d], normal[d]) : normal[d];
+      group->own_upper[d] = n ? PetscMax(group->own_upper[d], normal[d]) : normal[d];
+    }
+    group->behind = PetscMax(group->behind, PointSide(tests, q).behind);
+    n++;
+  }
+  return n;
+}
+
+/* Tests slave points from `first` to `last`, which lie on one face and look alike: what none of them can see is left
+   out for all at once. */
+static void TestGroup(const PointTests *tests, PetscInt first, PetscInt last, PetscBool *possible)
+{
+  BoxTreeGroup    group;
+  const PetscInt  n        = GroupPoints(tests, first, last, &group);
+  const PetscBool together = (PetscBool)(n > 1);
+  BoxTreeSide     side;
+  int             seen = 0;
+
+  if (n == 0) return;
+  side = PointSide(tests, first);
+  if (together) seen = BoxTreeGather(tests->tree, &group, &side, tests->sight->radius);
+  for (PetscInt q = first; q < last; q++)
+    if (!tests->among || tests->among[q])
+      possible[q] = TestPoint(tests, (PetscBool)(together && seen <= PARTNERS_TOGETHER), q);
+}
+
+/* Tests the slave points, those of a face together where they have faces. The tree compares boxes, so that points
+   without a partner may pass, but no point with one is missed. */
+static void TestGroups(const PointTests *tests, PetscBool *possible)
+{
+  const SlavePoints points = tests->s->slaves;
+
+  for (PetscInt f = 0; f < points->n_faces; f++) TestGroup(tests, points->first[f], points->first[f + 1], possible);
+  for (PetscInt q = 0; q < points->n && !points->n_faces; q++) TestGroup(tests, q, q + 1, possible);
+}
+
+/* Tests which of some slave points have a facet that opposes them in sight, and not behind their own body. */
 static PetscErrorCode TestPoints(ContactSearch s, const PetscReal *u, PetscReal t, const PartnersSight *sight,
                                  const PetscReal *normal, const PetscBool *among, PetscBool *possible)
 {
   const int      dim = s->mesh->dim;
   NeighbourLists lists;
   SearchField    field;
-  BoxTree        tree;
-  PetscReal      box[6], x[3];
+  PointTests     tests = {s, &field, NULL, NULL, sight, NULL, normal, among};
+  PetscReal      box[6], *x;
 
   PetscFunctionBeginUser;
   SearchBoxEmpty(dim, box);
+  PetscCall(PetscMalloc1(s->slaves->n * dim, &x));
   for (PetscInt q = 0; q < s->slaves->n; q++) {
     if (among && !among[q]) continue;
-    SlavePointsPosition(s->slaves, q, x);
-    SearchBoxAdd(box, dim, x);
+    SlavePointsPosition(s->slaves, q, &x[q * dim]);
+    SearchBoxAdd(box, dim, &x[q * dim]);
   }
   PetscCall(PetscNew(&lists));
   PetscCall(SearchFieldCreate(s, u, t, box, sight->radius, PETSC_FALSE, lists, &field));
-  PetscCall(CandidatesTree(dim, field.n_candidates, field.candidates, PETSC_TRUE, &tree));
-  for (PetscInt q = 0; q < s->slaves->n; q++) {
-    possible[q] = PETSC_FALSE;
-    if (among && !among[q]) continue;
-    SlavePointsPosition(s->slaves, q, x);
-    possible[q] = TestPoint(s, &field, lists, tree, sight, q, &normal[3 * q], x);
-  }
-  BoxTreeDestroy(&tree);
+  PetscCall(CandidatesTree(dim, field.n_candidates, field.candidates, PETSC_TRUE, &tests.tree));
+  PetscCall(PetscArrayzero(possible, s->slaves->n));
+  tests.lists = lists;
+  tests.x     = x;
+  TestGroups(&tests, possible);
+  BoxTreeDestroy(&tests.tree);
   PetscCall(SearchFieldDestroy(&field));
   PetscCall(NeighbourListsDestroy(&lists));
+  PetscCall(PetscFree(x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -463,12 +543,14 @@ PetscErrorCode SearchPartnersLearn(ContactSearch s, NeighbourLists lists, const 
 {
   const PartnersSight sight = SightAhead(s);
   Partners           *at    = &s->partners;
+  PetscBool          *among;
 
   PetscFunctionBeginUser;
   if (!SearchHasPartners(s) || !at->learns) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt q = 0; q < s->slaves->n; q++)
-    if (lists->nearest[q] < 0 && !lists->averse[q])
-      at->possible[q] = TestPoint(s, field, lists, tree, &sight, q, &at->normal[3 * q], &at->x[q * lists->dim]);
+  PetscCall(PetscMalloc1(s->slaves->n, &among));
+  for (PetscInt q = 0; q < s->slaves->n; q++) among[q] = (PetscBool)(lists->nearest[q] < 0 && !lists->averse[q]);
+  TestGroups(&(const PointTests){s, field, lists, tree, &sight, at->x, at->normal, among}, at->possible);
+  PetscCall(PetscFree(among));
   at->learns = PETSC_FALSE;
   PetscCall(NoteAny(s));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -265,6 +265,76 @@ static void TestBehind(void **state)
   }
 }
 
+typedef struct {
+  int *seen, wanted; /* boxes that BoxTreeAny() has asked for; the one that passes */
+} Any;
+
+static int PassWanted(void *context, int index)
+{
+  Any *any = context;
+
+  any->seen[index] = 1;
+  return index == any->wanted;
+}
+
+/* Each point of a group finds the same boxes as a search of its own, and one that passes wherever it is. */
+static void TestGroup(void **state)
+{
+  static double direction[MAX_BOXES * 3];
+  static int    alone[MAX_BOXES], together[MAX_BOXES];
+
+  (void)state;
+  for (int dim = 2; dim <= 3; ++dim) {
+    const int n    = 1000;
+    int       left = 0;
+    BoxTree   tree;
+
+    RandomBoxes(dim, n, 0.02);
+    for (int i = 0; i < n * dim; ++i) direction[i] = Random(-1, 1) / sqrt(dim);
+    assert_int_equal(BoxTreeBuildFacing(dim, n, lower, upper, direction, &tree), 0);
+    for (int trial = 0; trial < 100; ++trial) {
+      double       point[4][3], own[4][3];
+      BoxTreeGroup group = {{1, 1, 1}, {0, 0, 0}, {1, 1, 1}, {-1, -1, -1}, 0.1};
+      BoxTreeSide  side  = {NULL, 0.1, 0.1, 0.01, 0.02};
+
+      for (int k = 0; k < 3; ++k) {
+        point[0][k] = Random(0, 0.9);
+        own[0][k]   = Random(-0.5, 0.5);
+        for (int p = 0; p < 4; ++p) {
+          point[p][k]        = point[0][k] + Random(0, 0.1);
+          own[p][k]          = own[0][k] + Random(-0.05, 0.05);
+          group.lower[k]     = fmin(group.lower[k], point[p][k]);
+          group.upper[k]     = fmax(group.upper[k], point[p][k]);
+          group.own_lower[k] = fmin(group.own_lower[k], own[p][k]);
+          group.own_upper[k] = fmax(group.own_upper[k], own[p][k]);
+        }
+      }
+      left += n - BoxTreeGather(tree, &group, &side, 0.3);
+      for (int p = 0; p < 4; ++p) {
+        double bound = 0.3;
+        Any    any   = {together, -1};
+
+        side.own = own[p];
+        memset(together, 0, sizeof(together));
+        memset(alone, 0, sizeof(alone));
+        assert_int_equal(BoxTreeAny(tree, point[p], &side, bound, PassWanted, &any), 0);
+        for (int i = 0; i < n; ++i)
+          if (together[i]) any.wanted = i;
+        assert_int_equal(BoxTreeAny(tree, point[p], &side, bound, PassWanted, &any), any.wanted >= 0);
+        BoxTreeGather(tree, &group, &side, 0.3);
+        memset(together, 0, sizeof(together));
+        any.wanted = -1;
+        BoxTreeAny(tree, point[p], &side, bound, PassWanted, &any);
+        BoxTreeClosest(tree, point[p], &side, &bound, VisitMark, alone);
+        assert_memory_equal(alone, together, sizeof(alone));
+        BoxTreeGather(tree, &group, &side, 0.3);
+      }
+    }
+    assert_true(left > 50 * n);
+    BoxTreeDestroy(&tree);
+  }
+}
+
 static void TestEqualBoxes(void **state)
 {
   const int    n        = 1000;
@@ -307,7 +377,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestNear),       cmocka_unit_test(TestClosest),
                                      cmocka_unit_test(TestDirections), cmocka_unit_test(TestBehind),
-                                     cmocka_unit_test(TestEqualBoxes), cmocka_unit_test(TestEmpty)};
+                                     cmocka_unit_test(TestGroup),      cmocka_unit_test(TestEqualBoxes),
+                                     cmocka_unit_test(TestEmpty)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
