@@ -109,14 +109,35 @@ PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot
   return (PetscBool)(wall > OWN_BODY_TOUCHES * look->size && depth > SEARCH_ENTERED * wall);
 }
 
-/* On which side of the slave point's own face a facet lies: 1 before it, -1 behind it, 0 where its hull does not
-   tell. */
-static int OwnSide(const Nearest *look, const FacetHull *hull, PetscReal tolerance)
+/* The same as OwnSide() from the nodes of a facet that lies between them: 0 where they are on both sides. */
+static int NodesSide(const Nearest *look, const Facet *facet, PetscReal tolerance)
 {
-  PetscReal along = 0;
+  const NeighbourLists lists = look->lists;
+  const int            dim   = lists->dim;
+  PetscReal            least = PETSC_INFINITY, most = PETSC_NINFINITY;
+
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
+    const PetscInt i      = facet->nodes[a] * dim;
+    PetscReal      height = 0;
+
+    for (int d = 0; d < dim; d++)
+      height += look->outward[d] * (lists->point_X[i + d] + lists->point_u[i + d] - look->x[d]);
+    least = PetscMin(least, height);
+    most  = PetscMax(most, height);
+  }
+  return least > tolerance ? 1 : most < -tolerance ? -1 : 0;
+}
+
+/* On which side of the slave point's own face a facet lies: 1 before it, -1 behind it, 0 where neither its hull nor,
+   where it does not bulge beyond its nodes, these tell. */
+static int OwnSide(const Nearest *look, const Candidate *c, PetscReal tolerance)
+{
+  const FacetHull *hull  = &c->hull;
+  PetscReal        along = 0;
 
   for (int d = 0; d < 3; d++) along += look->outward[d] * (hull->centre[d] - look->x[d]);
-  return along > hull->radius + tolerance ? 1 : along < -hull->radius - tolerance ? -1 : 0;
+  if (PetscAbsReal(along) > hull->radius + tolerance) return along > 0 ? 1 : -1;
+  return ElementGet(c->facet.type)->order == 1 ? NodesSide(look, &c->facet, tolerance) : 0;
 }
 
 /* Is a facet farther from the slave point than what can have been entered of its body? */
@@ -148,8 +169,7 @@ static PetscBool BeyondEntered(const Nearest *look, const FacetHull *hull, Petsc
 PetscBool OwnBodyTells(const Nearest *look, const Candidate *c, PetscBool *hidden)
 {
   const PetscReal tolerance = OWN_BODY_TOUCHES * look->size;
-  const int       side      = FacetHullSide(&c->hull, look->x, tolerance),
-            own             = look->one_body ? OwnSide(look, &c->hull, tolerance) : 1;
+  const int side = FacetHullSide(&c->hull, look->x, tolerance), own = look->one_body ? OwnSide(look, c, tolerance) : 1;
 
   if (own == 0) return PETSC_FALSE;
   *hidden = PETSC_FALSE;
