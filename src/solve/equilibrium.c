@@ -297,14 +297,15 @@ static PetscErrorCode ModelRests(Model model, PetscBool *rests)
 }
 
 /* Part of the usual drift by which offsets may lag after the solve and so many updates of them, and gaps with friction.
- */
+   Solutions that are not the last ones of a step need no other than those within the load's way. */
 static PetscErrorCode ModelLag(Model model, PetscInt times, PetscReal *lag)
 {
   PetscBool rests;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelRests(model, &rests));
   *lag = ContactHasFriction(model->contact) ? EQUILIBRIUM_LAG_SLIDING : 1;
+  if (model->work->staged) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelRests(model, &rests));
   if (SceneBreaks(model->scene, model->t)) *lag = EQUILIBRIUM_LAG_AT_BREAK;
   if (model->t >= 1) *lag = EQUILIBRIUM_LAG_AT_END;
   if (rests) *lag = EQUILIBRIUM_LAG_AT_REST;
@@ -744,6 +745,29 @@ static PetscErrorCode ModelEndSolve(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether lists need not settle before penalties are as stiff as they are to be: friction may rest at t, and the
+   run may choose penalties. Each settling takes up to EQUILIBRIUM_MAX_REST_UPDATES lists, and penalties change up to
+   EQUILIBRIUM_MAX_STIFFEN times: a clamp of 2160 dofs took 41 lists at two breaks. */
+static PetscBool ModelStages(Model model, PetscReal t)
+{
+  const PetscBool asked  = (PetscBool)(t >= 1 || ModelAsked(model, t));
+  PetscBool       choice = PETSC_FALSE;
+
+  for (int p = 0; model->contact && p < ContactPairs(model->contact); p++) {
+    const SceneContact *scene = ContactPairScene(model->contact, p);
+
+    choice = (PetscBool)(choice || scene->penalty_may_stiffen || scene->stick_may_stiffen);
+  }
+  return (PetscBool)(choice && asked && ContactHasFriction(model->contact));
+}
+
+/* Ends the stages of penalties: lists are to settle at the next solution, if they need not at the one found. */
+static void ModelEndStages(Model model, ContactWindowState *window)
+{
+  if (model->work->staged) *window = WINDOW_MISSED;
+  model->work->staged = PETSC_FALSE;
+}
+
 /* Finds equilibrium at t, at once or slowly. */
 static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, SolveReport *report)
 {
@@ -751,7 +775,8 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
   PetscBool          moved;
 
   PetscFunctionBeginUser;
-  *report = (SolveReport){.result = SOLVE_CONVERGED, .failure = {.inverted = -1, .inverted_body = -1}};
+  *report             = (SolveReport){.result = SOLVE_CONVERGED, .failure = {.inverted = -1, .inverted_body = -1}};
+  model->work->staged = ModelStages(model, t);
   PetscCall(ModelSolveFirst(model, t, slowly, report));
   while (model->contact && window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
     PetscCall(ModelMoveFluids(model, report, &moved));
@@ -765,9 +790,11 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
       if (window == WINDOW_HOLDS && ModelEstimatesAt(model, t)) PetscCall(ModelCheckPenalty(model, report, &window));
       if (window == WINDOW_HOLDS && report->result == SOLVE_CONVERGED)
         PetscCall(ModelBoundDepth(model, report, &window));
+      if (window == WINDOW_HOLDS && report->result == SOLVE_CONVERGED) ModelEndStages(model, &window);
     }
     if (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
   }
+  model->work->staged = PETSC_FALSE;
   PetscCall(ModelShiftEnd(model, &report->damping));
   PetscCall(ModelEndSolve(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
