@@ -1,4 +1,6 @@
 /* The space of the soft motions that are held: how motions are added to it, and their answers to a new tangent. */
+#include "files/archive.h"
+#include "mesh/meshdofs.h"
 #include "modelimpl.h"
 
 /*@
@@ -17,6 +19,97 @@ PetscErrorCode ModelHeldDestroy(HeldMotion *held)
     PetscCall(VecDestroy(&held->w[i]));
   }
   PetscCall(VecDestroy(&held->last));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether motions remain what they are once they have been found. In space a body has many, and those of the next
+   tangent are others: held along these it would be free along the ones before, and go on along them from list to list.
+   In the plane there is one, which is followed. */
+static PetscBool Remain(Model model)
+{
+  return (PetscBool)(model->mesh->dim == 3);
+}
+
+/*@
+  ModelHeldBegin - begins a load step with the motions that were held in the accepted state.
+
+  Not collective
+
+  Input Parameter:
+. model - the model
+@*/
+void ModelHeldBegin(Model model)
+{
+  HeldMotion *held = &model->work->hold;
+
+  held->wanted   = held->accepted;
+  held->n        = 0;
+  held->known    = Remain(model) ? held->accepted : 0;
+  held->ready    = PETSC_FALSE;
+  held->released = PETSC_FALSE;
+  held->moves    = PETSC_FALSE;
+  held->times    = 0;
+  held->rested   = PETSC_TRUE;
+}
+
+/*@
+  ModelHeldBeginSolve - begins a solve of Newton's method with the motions that are held.
+
+  Not collective
+
+  Input Parameter:
+. model - the model
+@*/
+void ModelHeldBeginSolve(Model model)
+{
+  HeldMotion *held = &model->work->hold;
+
+  held->anew   = (PetscBool)!(Remain(model) && held->known);
+  held->futile = PETSC_FALSE;
+}
+
+/* Makes room for motion i. */
+static PetscErrorCode MakeRoom(HeldMotion *held, int i, Vec like)
+{
+  PetscFunctionBeginUser;
+  if (held->b[i]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(like, &held->b[i]));
+  PetscCall(VecDuplicate(like, &held->w[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelHeldArchive - saves or loads the motions that were held in the accepted state.
+
+  Collective
+
+  Input Parameters:
++ model   - between two steps
+. archive - decides whether they are saved or loaded
+- nodes   - rows of the mesh's nodes
+@*/
+PetscErrorCode ModelHeldArchive(Model model, Archive archive, const Hdf5Table *nodes)
+{
+  HeldMotion *held     = &model->work->hold;
+  PetscInt    accepted = held->accepted;
+  PetscReal  *b;
+
+  PetscFunctionBeginUser;
+  PetscCall(ArchiveIntegers(archive, "model/held_motions", 1, &accepted));
+  PetscCheck(accepted >= 0 && accepted <= HELD_MOST, model->mesh->comm, PETSC_ERR_FILE_UNEXPECTED,
+             "%" PetscInt_FMT " held motions", accepted);
+  held->accepted = (int)accepted;
+  PetscCall(PetscCalloc1(model->mesh->n_nodes * model->mesh->dim, &b));
+  for (int i = 0; Remain(model) && i < held->accepted; i++) {
+    char name[32];
+
+    PetscCall(PetscSNPrintf(name, sizeof(name), "model/held_motion_%d", i));
+    PetscCall(MakeRoom(held, i, model->x));
+    if (!ArchiveLoads(archive)) PetscCall(MeshGlobalToLocal(model->mesh, held->b[i], b));
+    PetscCall(ArchiveRows(archive, name, nodes, model->mesh->dim, b));
+    if (ArchiveLoads(archive)) PetscCall(MeshCollectFree(model->mesh, b, held->b[i]));
+  }
+  PetscCall(PetscFree(b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -53,10 +146,7 @@ PetscErrorCode ModelHeldAdd(Model model, Vec start, PetscReal *stiffness, PetscR
   Vec         v;
 
   PetscFunctionBeginUser;
-  if (!held->b[i]) {
-    PetscCall(VecDuplicate(start, &held->b[i]));
-    PetscCall(VecDuplicate(start, &held->w[i]));
-  }
+  PetscCall(MakeRoom(held, i, start));
   PetscCall(VecDuplicate(start, &v));
   PetscCall(ModelSoftMotion(model, start, v, stiffness, part));
   PetscCall(ModelDropPressures(model, v, held->b[i]));

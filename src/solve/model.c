@@ -287,7 +287,7 @@ PetscErrorCode ModelAccept(Model model)
   work->settled = work->searched = PETSC_FALSE;
   if (stepped) work->accepted_start = work->start;
   if (stepped) work->accepted_held = work->held;
-  work->hold.accepted = (PetscBool)(work->hold.wanted > 0);
+  work->hold.accepted = work->hold.wanted;
   if (work->extrapolation) PetscCall(ExtrapolationAdd(work->extrapolation, model->u, model->t));
   if (work->extrapolation && SceneBreaks(model->scene, model->t)) PetscCall(ExtrapolationForget(work->extrapolation));
   work->looked_ahead = PETSC_FALSE;
@@ -401,17 +401,17 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscFunctionBeginUser;
   if (SceneSupportsChange(model->scene)) PetscCall(ModelArchivePhase(model, archive));
   work = model->work;
-  held = work->accepted_held + 2 * work->hold.accepted;
   PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_global, mesh->n_nodes, mesh->node_id, &nodes));
   PetscCall(ArchiveRows(archive, "model/displacement", &nodes, mesh->dim, work->accepted_u));
   if (work->extrapolation) PetscCall(ExtrapolationArchive(work->extrapolation, archive, &nodes, work->accepted_u));
+  PetscCall(ModelHeldArchive(model, archive, &nodes));
   PetscCall(Hdf5TableDestroy(&nodes));
   PetscCall(ArchiveReals(archive, "model/t", 1, &work->accepted_t));
   PetscCall(ArchiveReals(archive, "model/rate", 1, &work->rate));
   PetscCall(ArchiveReals(archive, "model/start", 1, &work->accepted_start));
+  held = work->accepted_held;
   PetscCall(ArchiveIntegers(archive, "model/held", 1, &held));
-  work->accepted_held = (PetscBool)(held & 1);
-  work->hold.accepted = (PetscBool)(held >> 1);
+  work->accepted_held = (PetscBool)held;
   PetscCall(ArchiveReals(archive, "model/force_scale", 1, &model->problem->force_so_far));
   if (ArchiveLoads(archive)) {
     PetscCall(PetscArraycpy(model->u, work->accepted_u, mesh->n_nodes * mesh->dim));

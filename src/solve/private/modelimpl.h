@@ -74,7 +74,7 @@ enum { HELD_MOST = 24 };
 /* Soft motions that are held, see ModelHoldMotion() */
 typedef struct {
   int       wanted;                /* how many are to be held; 0: none */
-  PetscBool accepted;              /* some were in the accepted state */
+  int       accepted;              /* how many were held in the accepted state; in space b are these first */
   int       n;                     /* how many have their answers to the present tangent */
   int       known;                 /* how many b are motions of this load step */
   PetscBool released;              /* in this load step they take too much force */
@@ -200,6 +200,9 @@ PetscErrorCode ModelShiftSolve(Model, const PetscReal *u, Vec x, Vec b, Vec y);
 PetscErrorCode ModelShiftStep(Model, Vec x, Vec F, Vec y);
 /* heldspace.c */
 PetscErrorCode ModelHeldDestroy(HeldMotion *);
+void           ModelHeldBegin(Model);
+void           ModelHeldBeginSolve(Model);
+PetscErrorCode ModelHeldArchive(Model, Archive, const Hdf5Table *nodes);
 PetscErrorCode ModelHeldAdd(Model, Vec start, PetscReal *stiffness, PetscReal *part);
 PetscErrorCode ModelHeldRefresh(Model, Vec y);
 PetscErrorCode ModelHeldOut(Model, Vec);
