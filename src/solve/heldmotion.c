@@ -6,9 +6,10 @@
 /* What holds motions may be what friction of this coefficient at the surfaces in contact would hold. The least that is
    measured between lubricated solids is about as much; seals have 0.01 to 1. */
 #define HELD_FRICTION 1e-3
-/* In space a move changes which lumps of the mesh hold the sections and where single cells stand at an edge, and the
-   next force is no smaller: what is held moves on only where it takes as much as dry rubber has at least. */
-#define HELD_FRICTION_SPACE 0.1
+/* In space a move changes which lumps of the mesh hold the sections and where single cells stand at an edge, and
+   Newton's method may find no way from there. Once a load step has failed that moved motions on, they stay unless they
+   take as much as dry rubber has at least. */
+#define HELD_FRICTION_FIRM 0.1
 /* What takes more than that moves on, at first so far that it turns cells by this part of MODEL_FARTHEST. The next move
    may be as much longer if the force keeps its sign, and is as much shorter if it has changed. */
 #define HELD_FIRST 0.25
@@ -322,7 +323,7 @@ PetscErrorCode ModelJudgeHeld(Model model, PetscBool *holds)
   *holds = PETSC_TRUE;
   if (model->work->soft) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelHeldFriction(model, &held->friction));
-  *holds = (PetscBool)(held->friction <= (model->mesh->dim == 3 ? HELD_FRICTION_SPACE : HELD_FRICTION));
+  *holds = (PetscBool)(held->friction <= (held->firm ? HELD_FRICTION_FIRM : HELD_FRICTION));
   PetscCall(PetscInfo(model->snes, "%d soft motions are held as by a coefficient of friction of %g%s\n", held->known,
                       (double)held->friction, *holds ? "" : ", too much"));
   if (!*holds) {

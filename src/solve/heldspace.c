@@ -53,6 +53,21 @@ void ModelHeldBegin(Model model)
 }
 
 /*@
+  ModelHeldFail - notes that a load step is taken back. Where it has moved held motions on, they are held more firmly.
+
+  Not collective
+
+  Input Parameter:
+. model - the model
+@*/
+void ModelHeldFail(Model model)
+{
+  HeldMotion *held = &model->work->hold;
+
+  held->firm = (PetscBool)(held->firm || (Remain(model) && held->times > 0));
+}
+
+/*@
   ModelHeldBeginSolve - begins a solve of Newton's method with the motions that are held.
 
   Not collective
@@ -64,7 +79,7 @@ void ModelHeldBeginSolve(Model model)
 {
   HeldMotion *held = &model->work->hold;
 
-  held->anew   = (PetscBool)!(Remain(model) && held->known);
+  held->anew   = (PetscBool) !(Remain(model) && held->known);
   held->futile = PETSC_FALSE;
 }
 
@@ -91,7 +106,7 @@ static PetscErrorCode MakeRoom(HeldMotion *held, int i, Vec like)
 PetscErrorCode ModelHeldArchive(Model model, Archive archive, const Hdf5Table *nodes)
 {
   HeldMotion *held     = &model->work->hold;
-  PetscInt    accepted = held->accepted;
+  PetscInt    accepted = held->accepted, firm = held->firm;
   PetscReal  *b;
 
   PetscFunctionBeginUser;
@@ -99,6 +114,8 @@ PetscErrorCode ModelHeldArchive(Model model, Archive archive, const Hdf5Table *n
   PetscCheck(accepted >= 0 && accepted <= HELD_MOST, model->mesh->comm, PETSC_ERR_FILE_UNEXPECTED,
              "%" PetscInt_FMT " held motions", accepted);
   held->accepted = (int)accepted;
+  PetscCall(ArchiveIntegers(archive, "model/held_firmly", 1, &firm));
+  held->firm = (PetscBool)firm;
   PetscCall(PetscCalloc1(model->mesh->n_nodes * model->mesh->dim, &b));
   for (int i = 0; Remain(model) && i < held->accepted; i++) {
     char name[32];

@@ -335,6 +335,7 @@ PetscErrorCode ModelRestore(Model model)
   PetscCall(PetscArraycpy(model->u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(work->accepted_x, model->x));
   PetscCall(LinearSolverRenew(work->solver)); /* a step that starts from a look-ahead would not do so itself */
+  ModelHeldFail(model);
   model->t = work->accepted_t;
   ToolsAccept(model->mesh, model->u, model->t);
   PetscCall(ElasticityRestore(model->problem->elasticity));

@@ -5,7 +5,7 @@ from harness import Check, arguments, run, run_in_parts, SCENES
 
 SCENE = SCENES.parent.parent / "runs/rubber/o_ring_3d_pressure.yaml"
 PRESSURE = 4  # MPa
-MOST = 0.1  # the coefficient of friction up to which motions are held in space
+MOST = 1e-3  # the coefficient of friction up to which motions are held
 
 args = arguments()
 check = Check()
@@ -16,11 +16,12 @@ held = summary["stabilisation"]
 check.holds("it ends", summary["status"] == "done", f"{summary['status']} at {summary['t']}")
 check.holds("steps", summary["steps"] <= 12 and summary["steps_failed"] <= 2,
             f"{summary['steps']}, {summary['steps_failed']} failed")
-check.holds("iterations", summary["newton_iterations"] <= 170, f"{summary['newton_iterations']}")
+check.holds("iterations", summary["newton_iterations"] <= 350, f"{summary['newton_iterations']}")
 check.holds("several motions were held", held["held_soft_motions"] > 1, f"{held['held_soft_motions']}")
-check.holds("held as by a small friction", 0 < held["held_soft_friction"] <= MOST, f"{held['held_soft_friction']}")
+check.holds("held as by next to no friction", 0 < held["held_soft_friction"] <= MOST, f"{held['held_soft_friction']}")
 parts = run_in_parts(args, SCENE, "parts", overrides).summary()
 check.holds("restarted: steps", parts["steps"] == summary["steps"], f"{parts['steps']} {summary['steps']}")
+# friction up to MOST leaves the ring more than one place to stand; which one depends on more than the checkpoint keeps
 check.near("restarted: force", parts["probes"]["force"], summary["probes"]["force"],
-           1e-6 * abs(summary["probes"]["force"]))
+           5e-3 * abs(summary["probes"]["force"]))
 check.finish()

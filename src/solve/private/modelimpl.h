@@ -78,6 +78,7 @@ typedef struct {
   int       n;                     /* how many have their answers to the present tangent */
   int       known;                 /* how many b are motions of this load step */
   PetscBool released;              /* in this load step they take too much force */
+  PetscBool firm;                  /* a load step has failed that moved them on: they are held by more friction */
   PetscBool anew;                  /* they are found anew with the next tangent */
   PetscBool futile;                /* in this solve a step went too far, however many motions were held */
   PetscBool ready;                 /* the n motions are those of the step at hand */
@@ -201,6 +202,7 @@ PetscErrorCode ModelShiftStep(Model, Vec x, Vec F, Vec y);
 /* heldspace.c */
 PetscErrorCode ModelHeldDestroy(HeldMotion *);
 void           ModelHeldBegin(Model);
+void           ModelHeldFail(Model);
 void           ModelHeldBeginSolve(Model);
 PetscErrorCode ModelHeldArchive(Model, Archive, const Hdf5Table *nodes);
 PetscErrorCode ModelHeldAdd(Model, Vec start, PetscReal *stiffness, PetscReal *part);
