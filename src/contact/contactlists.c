@@ -852,9 +852,26 @@ PetscErrorCode ContactTakeOffsetsPart(Contact contact, PetscReal part, PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Saves or loads the offsets of a pair that stay, and takes them again. Gathering lists has forgotten them. */
+static PetscErrorCode PairArchiveStaying(ContactPair *pair, int p, Archive archive, const PetscReal *u, PetscReal t)
+{
+  const Offsets      offsets[] = {pair->slave_offsets, pair->master_offsets};
+  static const char *names[]   = {"slave", "master"};
+  char               name[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) {
+    if (!offsets[k]) continue;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "contact/%d/%s_offsets_staying", p, names[k]));
+    PetscCall(OffsetsArchiveStaying(offsets[k], archive, name));
+    if (ArchiveLoads(archive)) PetscCall(OffsetsTake(offsets[k], u, t));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactListsArchive - saves or loads the lists that are ready for the next step, by the motion that they were made
-  for.
+  for and the offsets that stayed.
 
   Collective
 
@@ -881,6 +898,7 @@ PetscErrorCode ContactListsArchive(Contact contact, Archive archive, const Petsc
   }
   PetscCall(ArchiveReals(archive, "contact/next_motion", contact->n_pairs, motion));
   if (ArchiveLoads(archive)) PetscCall(ContactGather(contact, u, t, t, 0));
+  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairArchiveStaying(&contact->pairs[p], p, archive, u, t));
   for (int p = 0; p < contact->n_pairs && ArchiveLoads(archive); p++)
     if (motion[p] >= 0) PetscCall(PairSearch(&contact->pairs[p], u, t, motion[p]));
   PetscCall(PetscFree(motion));

@@ -845,6 +845,19 @@ static PetscErrorCode ArchiveValues(Offsets o, Archive archive, const char *path
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Rows of the faces of the surface. */
+static PetscErrorCode FaceTable(Offsets o, Hdf5Table *faces)
+{
+  PetscInt *tag;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(o->surface->n_faces, &tag));
+  for (PetscInt f = 0; f < o->surface->n_faces; f++) tag[f] = o->surface->faces[f].tag;
+  PetscCall(Hdf5TableCreateByKey(o->search->mesh->comm, o->surface->n_faces, tag, faces));
+  PetscCall(PetscFree(tag));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Before values are loaded no face has any. */
 static PetscErrorCode Forget(Offsets o)
 {
@@ -874,16 +887,12 @@ PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
 {
   PetscReal   time[] = {o->t_now, o->t_before}, *values[] = {o->now, o->before};
   const char *names[] = {"now", "before"};
-  PetscInt   *tag;
   char        path[PETSC_MAX_PATH_LEN];
   Hdf5Table   faces;
 
   PetscFunctionBeginUser;
   if (!Follow(o)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(o->surface->n_faces, &tag));
-  for (PetscInt f = 0; f < o->surface->n_faces; f++) tag[f] = o->surface->faces[f].tag;
-  PetscCall(Hdf5TableCreateByKey(o->search->mesh->comm, o->surface->n_faces, tag, &faces));
-  PetscCall(PetscFree(tag));
+  PetscCall(FaceTable(o, &faces));
   if (ArchiveLoads(archive)) PetscCall(Forget(o));
   for (int k = 0; k < 2; k++) {
     PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", name, names[k]));
@@ -893,6 +902,48 @@ PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
   PetscCall(ArchiveReals(archive, path, 2, time));
   o->t_now    = time[0];
   o->t_before = time[1];
+  PetscCall(Hdf5TableDestroy(&faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  OffsetsArchiveStaying - writes to or reads from an archive the offsets that stay where they are to the end of a step.
+
+  Collective
+
+  Input Parameters:
++ archive - the archive
+- name    - where the values stand in the archive
+
+  Input/Output Parameter:
+. o - the offsets, between two steps
+
+  Note:
+  The lists that are ready for the next step were made with them. OffsetsExtrapolate() forgets them, OffsetsTake() takes
+  them.
+@*/
+PetscErrorCode OffsetsArchiveStaying(Offsets o, Archive archive, const char *name)
+{
+  const PetscInt block = FaceBlock(o);
+  PetscReal     *rows;
+  PetscBool      any = PETSC_FALSE;
+  Hdf5Table      faces;
+
+  PetscFunctionBeginUser;
+  if (!Follow(o)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt f = 0; f < o->surface->n_faces; f++) any = (PetscBool)(any || o->stays[f]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_BOOL, MPI_LOR, o->search->mesh->comm));
+  if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, name, &any));
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FaceTable(o, &faces));
+  PetscCall(PetscMalloc1(o->n, &rows));
+  for (PetscInt i = 0; i < o->n; i++) rows[i] = o->stays[i / block] ? o->held[i] : NAN;
+  PetscCall(ArchiveRows(archive, name, &faces, (int)block, rows));
+  for (PetscInt f = 0; f < o->surface->n_faces && ArchiveLoads(archive); f++) {
+    o->stays[f] = (PetscBool)!PetscIsNanReal(rows[f * block]);
+    if (o->stays[f]) PetscCall(PetscArraycpy(&o->held[f * block], &rows[f * block], block));
+  }
+  PetscCall(PetscFree(rows));
   PetscCall(Hdf5TableDestroy(&faces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -35,6 +35,7 @@ PetscErrorCode   OffsetsTake(Offsets, const PetscReal *u, PetscReal t);
 PetscErrorCode   OffsetsDamp(Offsets, PetscBool *changed);
 void             OffsetsTakePart(Offsets, PetscReal part);
 PetscErrorCode   OffsetsArchive(Offsets, Archive, const char *name);
+PetscErrorCode   OffsetsArchiveStaying(Offsets, Archive, const char *name);
 const PetscReal *OffsetsGet(Offsets);
 const PetscBool *OffsetsTouched(Offsets);
 const FaceMaps  *OffsetsMaps(Offsets);

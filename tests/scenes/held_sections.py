@@ -1,6 +1,7 @@
 """A coarse rubber ring in space that is squeezed by 30 % and then pressed on by a fluid. Its sections roll on their
 own, so that one motion that is held is not enough: with a fluid of 4 MPa the run then takes steps of 0.0005 from 1.1
-MPa on, and is at 1.2 MPa after 20 steps. Motions that are held remain from step to step, also in a restart."""
+MPa on, and is at 1.2 MPa after 20 steps. Motions that are held remain from step to step, also in a restart, and so do
+offsets that lists turned to and fro."""
 from harness import Check, arguments, run, run_in_parts, SCENES
 
 SCENE = SCENES.parent.parent / "runs/rubber/o_ring_3d_pressure.yaml"
@@ -21,7 +22,6 @@ check.holds("several motions were held", held["held_soft_motions"] > 1, f"{held[
 check.holds("held as by next to no friction", 0 < held["held_soft_friction"] <= MOST, f"{held['held_soft_friction']}")
 parts = run_in_parts(args, SCENE, "parts", overrides).summary()
 check.holds("restarted: steps", parts["steps"] == summary["steps"], f"{parts['steps']} {summary['steps']}")
-# friction up to MOST leaves the ring more than one place to stand; which one depends on more than the checkpoint keeps
 check.near("restarted: force", parts["probes"]["force"], summary["probes"]["force"],
-           5e-3 * abs(summary["probes"]["force"]))
+           1e-9 * abs(summary["probes"]["force"]))
 check.finish()
