@@ -16,9 +16,12 @@ For i In {0 : #ring[] - 1}
   ends[] += {out[0]};
   volumes[] += {out[1]};
   If (triangles)
-    skin[] += {out[{2 : 5}]};
-  ElseIf (i < 4) // the second side of the surface is the arc of the skin
+    skin[] += {out[{2 : #out[] - 1}]};
+  ElseIf (i < 4) // the second side of the surface is the arc of the skin, with gap one has two of them
     skin[] += {out[3]};
+    If (fine && i == 3)
+      skin[] += {out[4]};
+    EndIf
   EndIf
 EndFor
 groove[] = {};
