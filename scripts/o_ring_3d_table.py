@@ -48,7 +48,8 @@ def print_table(records):
     print("| squeeze | element, along a quarter of the cord, around, at the gap | stopped after | at | "
           "steps / failed / iterations | motions held |\n|" + " --- |" * 6)
     for row in records:
-        print(f"| {row['squeeze']} | {row['element']}, {row['n']}, {row['arc']}, {row['gap']} | {row['limit_s']} s | "
+        ended = f"{row['limit_s']} s" if row["status"] == "stopped" else row["status"]
+        print(f"| {row['squeeze']} | {row['element']}, {row['n']}, {row['arc']}, {row['gap']} | {ended} | "
               f"{row['reached']} MPa | {row['steps']}/{row['failed']}/{row['iterations']} | {row['motions']} |")
 
 
