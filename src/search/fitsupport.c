@@ -290,7 +290,7 @@ static inline PetscInt TakePoints(const int dim, FitSupport *fit, const FitFoot 
     for (int d = 0; d < dim; d++) x[i * dim + d] = (X[p * dim + d] - at->X[d]) + (u[p * dim + d] - at->u[d]);
     weight[i] = v[p];
   }
-  for (PetscInt i = 0; i < n && at->fades; i++) weight[i] *= FlankShare(fit->geometry[points[i]].normal, e3);
+  for (PetscInt i = 0; i < n && fit->s->fit->fades; i++) weight[i] *= FlankShare(fit->geometry[points[i]].normal, e3);
   for (PetscInt i = 0; i < n; i++) {
     inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
     taper[i] = weight[i] * PetscMax(SEARCH_FIT_TIE, 1 - rho2[i] / SEARCH_FIT_MARGIN);

@@ -71,6 +71,17 @@ static PetscErrorCode MakeValues(PetscInt n, PetscReal **values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Does any pair of the scene have friction? Its path keeps what offsets jump by, and lists would be made anew again and
+   again. Without friction a jump costs little, and fits keep the points that they have: a coarse ring in space that a
+   fluid rolls needs them. */
+static PetscBool HasFriction(Scene scene)
+{
+  PetscBool has = PETSC_FALSE;
+
+  for (int c = 0; c < scene->n_contacts; c++) has = (PetscBool)(has || scene->contacts[c].friction);
+  return has;
+}
+
 /*@
   OffsetsCreate - makes the offsets of a surface, which are 0 until they are taken.
 
@@ -108,7 +119,8 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
                             .degree        = 4,
                             .support       = mesh->dim == 2 ? 4.5 : 3.5,
                             .exponent      = mesh->dim == 2 ? 6 : 3,
-                            .feature_angle = feature_angle};
+                            .feature_angle = feature_angle,
+                            .fades         = HasFriction(scene)};
   o->n      = surface->n_faces * FACE_RULE_POINTS * mesh->dim;
   o->t_last = NAN;
   PetscCall(MakeValues(o->n, &o->used));
@@ -200,10 +212,7 @@ static PetscErrorCode FitAt(FitSupport *fit, const OffsetFace *face, int q, FitP
                             int *rung, double (*nodes)[2])
 {
   const int dim = fit->lists->dim, n = ElementGet(face->facet->type)->nodes;
-  FitFoot   at = {.facet   = face->candidate,
-                  .xi      = {face->rule->xi[q][0], face->rule->xi[q][1]},
-                  .upright = PETSC_TRUE,
-                  .fades   = PETSC_TRUE};
+  FitFoot   at = {.facet = face->candidate, .xi = {face->rule->xi[q][0], face->rule->xi[q][1]}, .upright = PETSC_TRUE};
 
   PetscFunctionBeginUser;
   for (int a = 0; a < n; a++)

@@ -33,6 +33,7 @@ typedef struct {
   FitDerivativeKind derivatives;
   PetscBool         global_frame;  /* one reference plane for all slave points */
   PetscReal         feature_angle; /* radians; fits end at edges that are sharper */
+  PetscBool         fades;         /* points fade towards another flank, see FlankShare() */
 } FitSettings;
 
 int            FitDegreeCode(const FitSettings *, int degree);

@@ -277,7 +277,7 @@ static double OffsetsAtTop(double r)
   double           sum = 0;
 
   radius = r;
-  Create(ToCircle, "", ", smoother: diffuse, formulation: surface_to_surface, offset: held");
+  Create(ToCircle, "", ", smoother: diffuse, formulation: surface_to_surface, offset: held, friction: {mu: 0.1}");
   OK(ContactGather(parts.problem->contact, parts.u, 0, 0, 0));
   offset = OffsetsGet(Pair()->master_offsets);
   for (PetscInt f = 0; f < Pair()->master->n_faces; f++) {

@@ -126,7 +126,6 @@ typedef struct {
   PetscReal foot[3], outward[3]; /* centre of the support (length), and outward direction */
   PetscBool upright;             /* the frame's normal is `outward`, not that of the points' plane */
   PetscBool past;                /* the foot is past a free edge of the surface */
-  PetscBool fades;               /* points fade towards another flank, see FlankShare() */
 } FitFoot;
 
 /* The data for making the fits of a pair's slave points. */
