@@ -415,6 +415,16 @@ static int IsBehind(BoxTree tree, int node, const double *point, const BoxTreeSi
   return most < -side->shift - side->lean * sqrt(square);
 }
 
+/* May a point see a node's box at this squared distance? side: NULL: it sees all boxes within the bound. */
+static int PointSees(BoxTree tree, int node, double distance, const double *point, const BoxTreeSide *side,
+                     double bound)
+{
+  if (distance > bound * bound) return 0;
+  if (!side) return 1;
+  if (side->opposed > -INFINITY && !MayOppose(tree, node, side)) return 0;
+  return distance <= side->behind * side->behind || !IsBehind(tree, node, point, side);
+}
+
 /* Adds a subtree to the queue and returns the new length. One that is beyond the bound, or that the side of the point
    leaves out, is not added. */
 static int Push(BoxTree tree, Range range, const double *point, const BoxTreeSide *side, double bound, int length)
@@ -423,9 +433,7 @@ static int Push(BoxTree tree, Range range, const double *point, const BoxTreeSid
   int    i     = length;
 
   range.distance = SquaredDistance(tree, range.node, point);
-  if (range.distance > bound * bound) return length;
-  if (side && side->opposed > -INFINITY && !MayOppose(tree, range.node, side)) return length;
-  if (side && range.distance > side->behind * side->behind && IsBehind(tree, range.node, point, side)) return length;
+  if (!PointSees(tree, range.node, range.distance, point, side, bound)) return length;
   for (; i > 0 && Nearer(tree, &range, &queue[(i - 1) / 2]); i = (i - 1) / 2) queue[i] = queue[(i - 1) / 2];
   queue[i] = range;
   return length + 1;
@@ -548,16 +556,6 @@ int BoxTreeGather(BoxTree tree, const BoxTreeGroup *group, const BoxTreeSide *si
   return tree->gathered;
 }
 
-/* Does BoxTreeClosest() visit this box? */
-static int PointSees(BoxTree tree, int node, const double *point, const BoxTreeSide *side, double bound)
-{
-  const double distance = SquaredDistance(tree, node, point);
-
-  if (distance > bound * bound) return 0;
-  if (side->opposed > -INFINITY && !MayOppose(tree, node, side)) return 0;
-  return distance <= side->behind * side->behind || !IsBehind(tree, node, point, side);
-}
-
 /*@
   BoxTreeAny - says whether any box passes a test that a point sees, of those that BoxTreeGather() has found
 
@@ -578,9 +576,11 @@ int BoxTreeAny(BoxTree tree, const double *point, const BoxTreeSide *side, doubl
                int (*test)(void *context, int index), void *context)
 {
   for (int i = 0; i < tree->gathered; ++i) {
-    const Range range = tree->queue[i];
+    const Range  range    = tree->queue[i];
+    const double distance = SquaredDistance(tree, range.node, point);
 
-    if (!PointSees(tree, range.node, point, side, bound) || !test(context, tree->order[range.first])) continue;
+    if (!PointSees(tree, range.node, distance, point, side, bound)) continue;
+    if (!test(context, tree->order[range.first])) continue;
     tree->queue[i] = tree->queue[0];
     tree->queue[0] = range;
     return 1;

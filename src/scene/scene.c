@@ -141,12 +141,12 @@ static PetscErrorCode SceneReadBounds(Scene scene)
 {
   Document       *document = SceneDocument(scene);
   const PetscBool free     = (PetscBool)(scene->stepping.control != STEP_FIXED);
-  PetscBool       flows = PETSC_FALSE, rubs = PETSC_FALSE;
+  const PetscBool rubs     = SceneHasFriction(scene);
+  PetscBool       flows    = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   for (int b = 0; b < scene->n_bodies; b++)
     flows = (PetscBool)(flows || (!scene->bodies[b].rigid && scene->bodies[b].material.law == MATERIAL_VON_MISES));
-  for (int i = 0; i < scene->n_contacts; i++) rubs = (PetscBool)(rubs || scene->contacts[i].friction);
   if (flows && (SchemaHas(document, "stepping.plastic_lag") || free))
     scene->stepping.plastic_lag = SchemaReal(document, "stepping.plastic_lag");
   if (rubs && (SchemaHas(document, "stepping.contact_travel") || free))

@@ -326,6 +326,7 @@ void           SceneBodySkin(const SceneBody *, char *name, size_t size);
 PetscBool      SceneIsPlastic(Scene);
 PetscBool      SceneHasRoutine(Scene);
 PetscBool      SceneHasFluid(Scene);
+PetscBool      SceneHasFriction(Scene);
 PetscBool      SceneDependsOnPath(Scene);
 PetscBool      SceneContactHasMaster(const SceneContact *, const char *surface);
 PetscBool      SceneBreaks(Scene, PetscReal t);

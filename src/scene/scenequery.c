@@ -48,6 +48,21 @@ PetscBool SceneHasFluid(Scene scene)
 }
 
 /*@
+  SceneHasFriction - tells whether some pair has friction.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. scene - the scene
+@*/
+PetscBool SceneHasFriction(Scene scene)
+{
+  for (int c = 0; c < scene->n_contacts; c++)
+    if (scene->contacts[c].friction) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/*@
   SceneDependsOnPath - tells whether the answer depends on the way to it, or on what stays from one solve to the next.
 
   Not collective, the same on all ranks
@@ -57,10 +72,10 @@ PetscBool SceneHasFluid(Scene scene)
 @*/
 PetscBool SceneDependsOnPath(Scene scene)
 {
-  PetscBool depends = (PetscBool)(SceneIsPlastic(scene) || SceneHasRoutine(scene) || SceneSupportsChange(scene));
+  PetscBool depends = (PetscBool)(SceneIsPlastic(scene) || SceneHasRoutine(scene) || SceneHasFriction(scene) ||
+                                  SceneSupportsChange(scene));
 
-  for (int c = 0; c < scene->n_contacts; c++)
-    depends = (PetscBool)(depends || scene->contacts[c].friction || scene->contacts[c].augment);
+  for (int c = 0; c < scene->n_contacts; c++) depends = (PetscBool)(depends || scene->contacts[c].augment);
   for (int b = 0; b < scene->n_bodies; b++) /* a locked length comes from an earlier force */
     depends = (PetscBool)(depends || (scene->bodies[b].bolt && scene->bodies[b].locked < 1));
   return depends;

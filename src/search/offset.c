@@ -71,17 +71,6 @@ static PetscErrorCode MakeValues(PetscInt n, PetscReal **values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Does any pair of the scene have friction? Its path keeps what offsets jump by, and lists would be made anew again and
-   again. Without friction a jump costs little, and fits keep the points that they have: a coarse ring in space that a
-   fluid rolls needs them. */
-static PetscBool HasFriction(Scene scene)
-{
-  PetscBool has = PETSC_FALSE;
-
-  for (int c = 0; c < scene->n_contacts; c++) has = (PetscBool)(has || scene->contacts[c].friction);
-  return has;
-}
-
 /*@
   OffsetsCreate - makes the offsets of a surface, which are 0 until they are taken.
 
@@ -114,13 +103,15 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
   o->kind    = kind == OFFSETS_LIVE && surface->rigid ? OFFSETS_HELD : kind;
   o->once    = (PetscBool)(surface->rigid || scene->kinematics == KINEMATICS_SMALL);
   o->t_now = o->t_before = -1;
-  /* These are the defaults of nodal fits: the smoothest ones whose guards hold on jittered meshes. */
+  /* These are the defaults of nodal fits: the smoothest ones whose guards hold on jittered meshes. The path of friction
+     keeps what offsets jump by, and lists would be made anew again and again. Without friction a jump costs little, and
+     fits keep the points that they have: a coarse ring in space that a fluid rolls needs them. */
   o->fit    = (FitSettings){.fitted        = PETSC_TRUE,
                             .degree        = 4,
                             .support       = mesh->dim == 2 ? 4.5 : 3.5,
                             .exponent      = mesh->dim == 2 ? 6 : 3,
                             .feature_angle = feature_angle,
-                            .fades         = HasFriction(scene)};
+                            .fades         = SceneHasFriction(scene)};
   o->n      = surface->n_faces * FACE_RULE_POINTS * mesh->dim;
   o->t_last = NAN;
   PetscCall(MakeValues(o->n, &o->used));

@@ -183,6 +183,12 @@ static PetscBool ModelAsked(Model model, PetscReal t)
   return asked;
 }
 
+/* Says whether the state at t is an answer, not one on the way: the load ends there, or ModelAsked(). */
+static PetscBool ModelIsShown(Model model, PetscReal t)
+{
+  return (PetscBool)(t >= 1 || ModelAsked(model, t));
+}
+
 /* Starts a load step from the accepted state to t: restores its contact state and makes lists for the expected motion.
    That motion is the imposed one, or the one that the rate of the last step predicts if that is larger. */
 static PetscErrorCode ModelDepart(Model model, PetscReal t)
@@ -206,7 +212,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->cycle[0]           = '\0';
   work->energy             = 0;
   ModelHeldBegin(model);
-  ModelForgetPenaltyError(model, (PetscBool)(t >= 1 || ModelAsked(model, t)));
+  ModelForgetPenaltyError(model, ModelIsShown(model, t));
   PetscCall(ModelStepFromSolved(model, work->accepted_u));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
@@ -279,7 +285,7 @@ static PetscErrorCode ModelRests(Model model, PetscBool *rests)
   const PetscBool friction = ContactHasFriction(model->contact);
 
   PetscFunctionBeginUser;
-  *rests = (PetscBool)(friction && (model->t >= 1 || ModelAsked(model, model->t)));
+  *rests = (PetscBool)(friction && ModelIsShown(model, model->t));
   for (int p = 0; *rests && model->t >= 1 && p < ContactPairs(model->contact); p++) {
     ContactFriction state;
 
@@ -318,7 +324,7 @@ static PetscBool ModelLags(Model model)
    O-ring in space (30 %, then 4 MPa of fluid) stops at 3.3 MPa, and is done without it. */
 static PetscBool ModelPasses(Model model, PetscInt times)
 {
-  return (PetscBool)(times > 0 && !model->work->hold.wanted && model->t < 1 && !ModelAsked(model, model->t));
+  return (PetscBool)(times > 0 && !model->work->hold.wanted && !ModelIsShown(model, model->t));
 }
 
 /* Says whether solutions are found loosely at first, because lists will most likely change at the first one: offsets
@@ -499,22 +505,25 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether the run may choose penalties of a pair: those of pressures, or those of what sticks, too. */
+static PetscBool ModelChooses(Model model, PetscBool sticks)
+{
+  for (int p = 0; p < ContactPairs(model->contact); p++) {
+    const SceneContact *scene = ContactPairScene(model->contact, p);
+
+    if (sticks ? scene->stick_may_stiffen : scene->penalty_may_stiffen) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 /* Says whether the error that penetration leaves is to be estimated at t: at the end of the load, for the report; where
    the load changes its rate or the scene asks for a step, if the run may choose a penalty; and in every step if it may
    choose both of a pair with friction. What such a pair has slipped with soft penalties stays, and later solutions
    depend on it. */
 static PetscBool ModelEstimatesAt(Model model, PetscReal t)
 {
-  PetscBool choice = PETSC_FALSE, path = PETSC_FALSE;
-
-  if (t >= 1) return PETSC_TRUE;
-  for (int p = 0; p < ContactPairs(model->contact); p++) {
-    const SceneContact *scene = ContactPairScene(model->contact, p);
-
-    choice = (PetscBool)(choice || scene->penalty_may_stiffen);
-    path   = (PetscBool)(path || scene->stick_may_stiffen);
-  }
-  return (PetscBool)(path || (choice && ModelAsked(model, t)));
+  return (PetscBool)(t >= 1 || ModelChooses(model, PETSC_TRUE) ||
+                     (ModelChooses(model, PETSC_FALSE) && ModelAsked(model, t)));
 }
 
 /* Goes back to the solution x with the penalties before, as no solution was found with those that are factor[] times as
@@ -743,15 +752,7 @@ static PetscErrorCode ModelEndSolve(Model model, SolveReport *report)
    EQUILIBRIUM_MAX_STIFFEN times: a clamp of 2160 dofs took 41 lists at two breaks. */
 static PetscBool ModelStages(Model model, PetscReal t)
 {
-  const PetscBool asked  = (PetscBool)(t >= 1 || ModelAsked(model, t));
-  PetscBool       choice = PETSC_FALSE;
-
-  for (int p = 0; model->contact && p < ContactPairs(model->contact); p++) {
-    const SceneContact *scene = ContactPairScene(model->contact, p);
-
-    choice = (PetscBool)(choice || scene->penalty_may_stiffen || scene->stick_may_stiffen);
-  }
-  return (PetscBool)(choice && asked && ContactHasFriction(model->contact));
+  return (PetscBool)(ModelIsShown(model, t) && ContactHasFriction(model->contact) && ModelChooses(model, PETSC_FALSE));
 }
 
 /* Ends the stages of penalties: lists are to settle at the next solution, if they need not at the one found. */
