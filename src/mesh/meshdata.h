@@ -32,7 +32,7 @@ typedef struct {
    the group has a minus sign. */
 typedef struct {
   char        *name;
-  PetscInt     n_nodes, n_faces;
+  PetscInt     n_nodes, n_faces, n_given; /* n_given: faces in the file, some of which may be divided */
   PetscReal   *coords; /* n_nodes*dim, relative to mesh->centre */
   PetscInt    *node_tag;
   ElementType *face_type;

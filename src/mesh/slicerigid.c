@@ -3,6 +3,7 @@
 #include "mesh/meshgroup.h"
 #include "base/integerset.h"
 #include "base/refusal.h"
+#include "tooldivision.h"
 
 /* Returns the sign with which group g contains the block, 0 if it does not contain it. */
 static int BlockSign(const GmshBlock *block, int g)
@@ -157,6 +158,21 @@ static PetscErrorCode CreateNodes(const SliceMesh *slice, Mesh mesh, MeshRigid *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Tags of nodes and faces that the file does not have: the next ones of both. */
+static PetscErrorCode NextTags(const SliceMesh *slice, PetscInt tags[2])
+{
+  const GmshMesh *gmsh    = &slice->gmsh;
+  PetscInt        last[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < gmsh->n_nodes; i++) last[0] = PetscMax(last[0], gmsh->node_tag[i]);
+  for (int b = 0; b < gmsh->n_blocks; b++)
+    for (PetscInt i = 0; i < gmsh->blocks[b].n; i++) last[1] = PetscMax(last[1], gmsh->blocks[b].tag[i]);
+  PetscCallMPI(MPI_Allreduce(last, tags, 2, MPIU_INT, MPI_MAX, slice->comm));
+  for (int k = 0; k < 2; k++) tags[k]++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SliceRigidCreate - creates the scene's meshed rigid tools, whole on every rank.
 
@@ -169,14 +185,15 @@ static PetscErrorCode CreateNodes(const SliceMesh *slice, Mesh mesh, MeshRigid *
 
   Note:
   Refuses a tool whose surface group is not in the mesh. A minus sign in front of an entity in the group reverses the
-  normals of its faces.
+  normals of its faces. Long faces beside short ones are divided, see tooldivision.h.
 @*/
 PetscErrorCode SliceRigidCreate(Scene scene, const SliceMesh *slice, Mesh mesh)
 {
-  PetscInt n, *records;
+  PetscInt n, *records, tags[2];
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(scene->n_bodies, &mesh->rigid));
+  PetscCall(NextTags(slice, tags));
   for (int b = 0; b < scene->n_bodies; b++) {
     const int g = MeshFindGroup(mesh, mesh->dim - 1, scene->bodies[b].name);
 
@@ -192,6 +209,8 @@ PetscErrorCode SliceRigidCreate(Scene scene, const SliceMesh *slice, Mesh mesh)
     PetscCall(CreateFaces(n, records, rigid));
     PetscCall(PetscFree(records));
     PetscCall(CreateNodes(slice, mesh, rigid));
+    rigid->n_given = rigid->n_faces;
+    PetscCall(ToolDivide(mesh->dim, rigid, &tags[0], &tags[1]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

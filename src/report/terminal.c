@@ -152,6 +152,20 @@ static void PrintChosen(Terminal terminal)
   }
 }
 
+/* Tells which rigid tools have faces that were divided. */
+static void PrintDivided(Terminal terminal)
+{
+  const Mesh mesh = terminal->model->mesh;
+
+  for (int r = 0; r < mesh->n_rigid; r++) {
+    const MeshRigid *tool = &mesh->rigid[r];
+
+    if (tool->n_faces > tool->n_given)
+      printf("chosen   faces of rigid tool '%s': %lld in the place of %lld; long ones beside short ones are divided\n",
+             tool->name, (long long)tool->n_faces, (long long)tool->n_given);
+  }
+}
+
 static PetscErrorCode PrintHead(Terminal terminal, PetscInt restarts, PetscInt last_step, const OptionRecord *options)
 {
   char     effects[EFFECTS_SIZE];
@@ -169,6 +183,7 @@ static PetscErrorCode PrintHead(Terminal terminal, PetscInt restarts, PetscInt l
   if (terminal->talks) printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none");
   if (!terminal->quiet) PetscCall(PrecheckPlasticity(terminal->model, stdout));
   if (terminal->talks) PrintChosen(terminal);
+  if (terminal->talks) PrintDivided(terminal);
   if (!terminal->quiet) PetscCall(PrecheckMotions(terminal->model, stdout));
   if (terminal->talks) {
     printf("\n%5s %9s %9s %10s %10s %5s %5s %8s %12s %8s %8s\n", "step", "t", "dt", "iterations", "in contact", "in",
