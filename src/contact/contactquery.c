@@ -516,8 +516,25 @@ typedef struct {
   PetscReal most_neighbours, amplified, residual, facets, apart;
 } FitTally;
 
-/* Says whether all facets in the list of slave point q lie in one plane, or on one straight line. The point was just
-   evaluated with the facets, and its positions are still in the work space. */
+/* Whether a facet turns from the normal by no more than edges may at which fits do not end. */
+static PetscBool IsOfSurface(const ContactPair *pair, const Facet *facet, const PetscReal normal[3])
+{
+  const int dim = pair->lists->dim, corners = ElementGet(facet->type)->corners;
+  PetscReal t[2][3] = {{0}, {0, 0, 1}}, n[3];
+
+  for (int k = 0; k < dim - 1; k++) {
+    const PetscReal *from = &pair->work->x[facet->nodes[corners == 4 ? k : 0] * dim];
+    const PetscReal *to   = &pair->work->x[facet->nodes[corners == 4 ? k + 2 : k + 1] * dim];
+
+    for (int d = 0; d < dim; d++) t[k][d] = to[d] - from[d];
+  }
+  Cross(t[0], t[1], n);
+  return (PetscBool)(PetscAbsReal(Dot(n, normal)) >= PetscCosReal(pair->fit.feature_angle) * PetscSqrtReal(Dot(n, n)));
+}
+
+/* Says whether all facets in the list of slave point q that may be one surface with the closest one lie in one plane,
+   or on one straight line. The point was just evaluated with the facets, and its positions are still in the work
+   space. */
 static PetscBool ListIsFlat(const ContactPair *pair, PetscInt q)
 {
   NeighbourLists        lists  = pair->lists;
@@ -526,6 +543,7 @@ static PetscBool ListIsFlat(const ContactPair *pair, PetscInt q)
   for (PetscInt i = lists->facet_ptr[q]; i < lists->facet_ptr[q + 1]; i++) {
     const Facet *facet = &lists->facet[i];
 
+    if (!IsOfSurface(pair, facet, result->normal)) continue;
     for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
       const PetscReal *x   = &pair->work->x[facet->nodes[a] * lists->dim];
       PetscReal        off = result->gap;
