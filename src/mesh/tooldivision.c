@@ -5,11 +5,18 @@
 /* Edges may be so many times as long as they should be, and lengths may grow by this part of the way along the surface.
    A fit sees some 2.5 faces to each side: it must not reach from the middle of a wall into its fillet. With 3 in the
    place of 2 the force of a punch with a flat and fillets was 0.9 % off, with 0.1; undivided it was 12 %. With 0.2 in
-   the place of 0.1 the corner of a die had bumps of a fifth of its radius, which a tube could not pass. */
+   the place of 0.1 the wall of a die had bumps of a thirtieth of its fillet, at which a tube could not be certified. */
 #define TOOL_LONG   2
 #define TOOL_GROWTH 0.1
 /* A strip of one face between the ends of a surface is halved so often: four faces carry fits of the fourth degree. */
 #define TOOL_STRIP_HALVED 2
+/* An edge this much shorter than the longest one of the tool is no edge: corners of a face that are one point. */
+#define TOOL_NO_LENGTH 1e-9
+/* A tool that has come to so many faces, and to so many times those of its mesh, is not divided on: long needles of
+   triangles, as CAD programs make them, would become thousands each. */
+#define TOOL_FACES 20000
+#define TOOL_TIMES 20
+
 /* Whether some face of the edge belongs to a curved surface. */
 static PetscBool Curved(const ToolEdges *edges, PetscInt e)
 {
@@ -25,7 +32,7 @@ typedef PetscReal EndLengths[2];
    way from shorter edges, along lines of edges. */
 static PetscErrorCode WantedLengths(const MeshRigid *tool, const ToolEdges *edges, EndLengths *wanted)
 {
-  PetscReal *length;
+  PetscReal *length, longest = 0;
   PetscInt(*next)[2];
   PetscBool changed = PETSC_TRUE;
 
@@ -33,8 +40,11 @@ static PetscErrorCode WantedLengths(const MeshRigid *tool, const ToolEdges *edge
   PetscCall(PetscMalloc2(edges->n, &length, edges->n, &next));
   for (PetscInt e = 0; e < edges->n; e++) {
     length[e] = ToolEdgeLength(edges->dim, tool, &edges->edge[e]);
+    longest   = PetscMax(longest, length[e]);
+  }
+  for (PetscInt e = 0; e < edges->n; e++) {
     for (int k = 0; k < 2; k++) {
-      wanted[e][k] = length[e];
+      wanted[e][k] = length[e] > TOOL_NO_LENGTH * longest ? length[e] : PETSC_MAX_REAL;
       next[e][k]   = Curved(edges, e) ? ToolEdgeNext(edges, tool, e, edges->edge[e].corner[k]) : -1;
     }
   }
@@ -47,7 +57,7 @@ static PetscErrorCode WantedLengths(const MeshRigid *tool, const ToolEdges *edge
         const PetscInt  f = next[e][k];
         const PetscReal bound =
           PetscMin(wanted[e][1 - k] + TOOL_GROWTH * length[e],
-                   f < 0 ? length[e] : PetscMin(wanted[f][0], wanted[f][1]) + TOOL_GROWTH * length[f]);
+                   f < 0 ? PETSC_MAX_REAL : PetscMin(wanted[f][0], wanted[f][1]) + TOOL_GROWTH * length[f]);
 
         if (wanted[e][k] <= bound) continue;
         wanted[e][k] = bound;
@@ -225,15 +235,16 @@ static PetscErrorCode Halve(Division *division, PetscBool *any)
 @*/
 PetscErrorCode ToolDivide(int dim, MeshRigid *tool, PetscInt *node_tag, PetscInt *face_tag)
 {
-  Division  division = {.dim = dim, .tool = tool, .node_tag = node_tag, .face_tag = face_tag};
-  PetscBool any      = PETSC_TRUE;
+  const PetscInt most     = PetscMax(TOOL_FACES, TOOL_TIMES * tool->n_faces);
+  Division       division = {.dim = dim, .tool = tool, .node_tag = node_tag, .face_tag = face_tag};
+  PetscBool      any      = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   PetscCall(ToolEdgesCreate(dim, tool, &division.edges));
   for (; division.halved < TOOL_STRIP_HALVED && any; division.halved++) PetscCall(Halve(&division, &any));
   PetscCall(PetscMalloc1(division.edges.n, &division.wanted));
   PetscCall(WantedLengths(tool, &division.edges, division.wanted));
-  for (any = PETSC_TRUE; any;) PetscCall(Halve(&division, &any));
+  for (any = PETSC_TRUE; any && tool->n_faces < most;) PetscCall(Halve(&division, &any));
   PetscCall(PetscFree(division.wanted));
   PetscCall(ToolEdgesDestroy(&division.edges));
   PetscFunctionReturn(PETSC_SUCCESS);
