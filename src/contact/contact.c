@@ -117,6 +117,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   for (int p = 0; p < c->n_pairs; p++) PetscCall(ContactPairDestroy(&c->pairs[p]));
   PetscCall(PetscFree(c->pairs));
   PetscCall(PetscFree(c->piece));
+  PetscCall(PetscFree(c->u_gathered));
   PetscCall(ContactWorkDestroy(&c->work));
   PetscCall(BlockMatrixDestroy(&c->blocks));
   PetscCall(ContactVectorsFree(&c->border));

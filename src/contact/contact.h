@@ -149,6 +149,7 @@ PetscErrorCode ContactTangentRestore(Contact);
 PetscErrorCode ContactArchive(Contact, Archive, const PetscReal *u, PetscReal t);
 PetscErrorCode ContactFollow(Contact, Contact leader, PetscBool *same);
 /* Lists */
+PetscReal      ContactMotionAtHand(Contact, PetscReal least, PetscReal motion);
 PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion);
 PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);

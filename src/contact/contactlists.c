@@ -111,6 +111,15 @@ static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes back what slave points know of their last projection with the lists in force. */
+static void PairForgetProjection(ContactPair *pair)
+{
+  pair->fresh     = PETSC_TRUE;
+  pair->projected = PETSC_FALSE;
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) pair->seed[q] = -1;
+  for (PetscInt q = 0; pair->friction && q < pair->lists->n_slaves; q++) pair->friction->facet[q] = -1;
+}
+
 /* Says whether there are lists that were made for these positions and for at least this motion: the next ones, or
    those in force. The answer is the same on all ranks. */
 static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion,
@@ -127,6 +136,21 @@ static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, Pets
   all = !moved && !changed && (pair->next || pair->stays || pair->fresh);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, pair->mesh->comm));
   *serve = all ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether the lists in force, with which a step from the present positions began, serve another one from there,
+   and moves them back. A step that failed need not search again. The answer is the same on all ranks. */
+static PetscErrorCode PairBeginsAgain(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion,
+                                      PetscBool *again)
+{
+  PetscFunctionBeginUser;
+  *again = (PetscBool)(pair->begun && motion <= pair->motion * (1 + CONTACT_SAME_MOTION));
+  if (!*again) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(NeighbourListsGiveBack(pair->search, &pair->next));
+  pair->stays = PETSC_FALSE;
+  PetscCall(NeighbourListsUpdate(pair->search, pair->lists, u, t, NULL));
+  PairForgetProjection(pair);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -231,17 +255,16 @@ static PetscErrorCode PairTakeNext(ContactPair *pair)
   PetscFunctionBeginUser;
   pair->motion = pair->next_motion;
   pair->fresh  = PETSC_TRUE;
+  pair->begun  = PETSC_FALSE;
   if (pair->stays) {
     pair->stays = PETSC_FALSE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(NeighbourListsGiveBack(pair->search, &pair->lists));
-  pair->lists     = pair->next;
-  pair->next      = NULL;
-  pair->projected = PETSC_FALSE;
+  pair->lists = pair->next;
+  pair->next  = NULL;
   PetscCall(PetscArraycpy(pair->factor, pair->next_factor, pair->lists->n_slaves));
-  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) pair->seed[q] = -1;
-  for (PetscInt q = 0; pair->friction && q < pair->lists->n_slaves; q++) pair->friction->facet[q] = -1;
+  PairForgetProjection(pair);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -371,6 +394,25 @@ static PetscErrorCode PairTellWork(const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Notes where lists are gathered. *again: the last ones were gathered there too; the same on all ranks. */
+static PetscErrorCode NoteGathered(Contact contact, const PetscReal *u, PetscReal t, PetscBool *again)
+{
+  const PetscInt n    = contact->mesh->n_nodes * contact->mesh->dim;
+  PetscBool      same = (PetscBool)(contact->u_gathered && contact->t_gathered == t);
+  int            all;
+
+  PetscFunctionBeginUser;
+  if (same) PetscCall(PetscArraycmp(contact->u_gathered, u, n, &same));
+  all = same;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
+  *again = all ? PETSC_TRUE : PETSC_FALSE;
+  if (*again) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!contact->u_gathered) PetscCall(PetscMalloc1(n + 1, &contact->u_gathered));
+  PetscCall(PetscArraycpy(contact->u_gathered, u, n));
+  contact->t_gathered = t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactGather - makes new lists, with new offsets and area factors, for all pairs.
 
@@ -385,27 +427,32 @@ static PetscErrorCode PairTellWork(const ContactPair *pair)
 
   Note:
   Lists that ContactListsHold() made at the same place for as much motion are taken as they are, and so are those in
-  force.
+  force, also where a step that began with them has failed.
 @*/
 PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion)
 {
+  PetscBool again;
+
   PetscFunctionBeginUser;
+  PetscCall(NoteGathered(contact, u, t, &again));
   contact->u_begun = u;
   contact->t_begun = t;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = motion;
-    PetscBool    changed, serve;
+    PetscBool    changed, serve = PETSC_FALSE;
 
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(PetscLogEventBegin(contact->event_offset, 0, 0, 0, 0));
     PetscCall(PairTakeOffsets(pair, u, t, needed, PETSC_TRUE));
     if (pair->slave_offsets) PetscCall(PetscLogEventEnd(contact->event_offset, 0, 0, 0, 0));
     PetscCall(PairFree(pair, &changed));
-    PetscCall(PairListsServe(pair, u, t, needed, changed, &serve));
+    if (again && !changed) PetscCall(PairBeginsAgain(pair, u, t, needed, &serve));
+    if (!serve) PetscCall(PairListsServe(pair, u, t, needed, changed, &serve));
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
     if (pair->next || pair->stays) PetscCall(PairTakeNext(pair));
+    pair->begun = PETSC_TRUE;
     PetscCall(PairTellWork(pair));
     PetscCall(PairExtrapolateOffsets(pair, u, t, t_next));
     if (pair->friction) PetscCall(ContactPairProject(contact, pair, u, t));
@@ -415,6 +462,35 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactMotionAtHand - returns the motion (length) for which ContactGather() is to make lists at the accepted state:
+that of the lists that ContactListsHold() made there, where it is enough.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+. least   - relative motion that lists must be good for (length)
+- motion  - relative motion that new lists are to be good for, at least as much (length)
+
+  Note:
+  The answer is the same on all ranks. A step that is longer than the one before needs lists for more motion than those
+  that are ready have been made for. As long as these are good for what is expected, new ones would only add to what is
+  kept in hand.
+@*/
+PetscReal ContactMotionAtHand(Contact contact, PetscReal least, PetscReal motion)
+{
+  PetscReal made = motion;
+
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    if (!pair->next && !pair->stays) return motion;
+    made = PetscMin(made, pair->next_motion);
+  }
+  return made < least ? motion : made;
 }
 
 /* Key of the point at a place in the list of slave point q. */

@@ -190,11 +190,13 @@ static PetscBool ModelIsShown(Model model, PetscReal t)
 }
 
 /* Starts a load step from the accepted state to t: restores its contact state and makes lists for the expected motion.
-   That motion is the imposed one, or the one that the rate of the last step predicts if that is larger. */
+   That motion is the imposed one, or the one that the rate of the last step predicts if that is larger. Lists that are
+   ready serve if they are good for it; new ones have PROBLEM_MOTION_SAFETY in hand. */
 static PetscErrorCode ModelDepart(Model model, PetscReal t)
 {
-  ModelWork *work = model->work;
-  PetscReal  motion;
+  ModelWork      *work      = model->work;
+  const PetscReal predicted = work->rate * (t - work->accepted_t);
+  PetscReal       motion;
 
   PetscFunctionBeginUser;
   PetscCall(ElasticityRestore(model->problem->elasticity));
@@ -216,7 +218,8 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscCall(ModelStepFromSolved(model, work->accepted_u));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
-  motion = PetscMax(motion, PROBLEM_MOTION_SAFETY * work->rate * (t - work->accepted_t));
+  motion = ContactMotionAtHand(model->contact, PetscMax(motion, predicted),
+                               PetscMax(motion, PROBLEM_MOTION_SAFETY * predicted));
   PetscCall(ProblemGatherLists(model->problem, work->accepted_u, work->accepted_t, t, motion));
   if (model->problem->bodies && !work->adrift)
     PetscCall(FreeBodiesTie(model->problem->bodies, work->accepted_u, work->accepted_t, t, PETSC_TRUE, work->settled,

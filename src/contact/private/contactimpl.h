@@ -122,6 +122,7 @@ typedef struct {
   PetscBool         *turned_back;
   PetscBool          undamped;  /* none of these has been set since the step began */
   PetscBool          fresh;     /* the lists in force were made where they are, with the offsets in force */
+  PetscBool          begun;     /* the lists in force are those with which the step began */
   PetscBool          projected; /* the slave points were projected with these lists at their last update */
   int               *seed;      /* of each slave point: facet of the last projection */
   PetscReal         *point_gap, *point_normal, *point_force; /* of each slave point, at the last projection */
@@ -168,6 +169,8 @@ struct _n_Contact {
   PetscInt        *piece;   /* connected piece of each local node, while pairs of listed surfaces are made; else NULL */
   const PetscReal *u_begun; /* local displacements at which the load step began, of the model */
   PetscReal        t_begun; /* its load parameter */
+  PetscReal       *u_gathered; /* local displacements of the last ContactGather() (length); NULL: there was none */
+  PetscReal        t_gathered; /* its load parameter */
   ContactWork      work;
   BlockMatrix      blocks;     /* the last tangent */
   ContactVectors   border;     /* the first variations of its terms */
