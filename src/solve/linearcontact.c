@@ -16,6 +16,9 @@
 #define LINEAR_CONTACT_CHEAP 3e7
 /* All columns Z together have at most this many numbers on all ranks, which is 0.4 GB. */
 #define LINEAR_CONTACT_VALUES 5e7
+/* So many columns are computed at a time. What they are computed from then takes little memory beside them. It is a
+   multiple of what the factor solves for at a time. */
+#define LINEAR_CONTACT_BATCH 512
 /* Where bodies were moved into contact and more terms change, this share of the terms that are left is tried at first,
    and of the rest again and again. They touch in a point, and the first step presses everything around it. */
 #define LINEAR_CONTACT_SHARE 2
@@ -107,37 +110,58 @@ static PetscErrorCode LinearContactAddColumns(Model model, LinearContact *s, Pet
   Vec        z;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1((s->rank ? 1 : m) * s->all, &G));
+  PetscCall(PetscMalloc1((s->rank ? 1 : PetscMin(m, LINEAR_CONTACT_BATCH)) * s->all, &G));
   for (PetscInt j = 0; j < m; j++) {
+    const PetscInt k = j % LINEAR_CONTACT_BATCH;
+
     PetscCall(MatDenseGetColumnVecRead(Z, j, &z));
     PetscCall(LocalChange(model, z, 1, NULL, s->du));
     PetscCall(MatDenseRestoreColumnVecRead(Z, j, &z));
-    PetscCall(ContactStepChange(s->contact, s->du, model->t, model->t, &G[s->rank ? 0 : j * s->all]));
+    PetscCall(ContactStepChange(s->contact, s->du, model->t, model->t, &G[s->rank ? 0 : k * s->all]));
+    if (!s->rank && (j + 1 == m || k + 1 == LINEAR_CONTACT_BATCH))
+      PetscCall(ActiveSetAddColumns(s->active, k + 1, &which[j - k], G));
   }
-  if (!s->rank) PetscCall(ActiveSetAddColumns(s->active, m, which, G));
   PetscCall(PetscFree(G));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves for the free displacements under 1 on each component which[m]. *able: that could be done. */
+/* Solves for the free displacements under 1 on each component which[m], the columns of a new Z. *able: that could be
+   done. */
+static PetscErrorCode LinearContactColumns(Model model, const LinearContact *s, PetscInt m, const PetscInt *which,
+                                           Mat *Z, PetscBool *able)
+{
+  PetscInt rows;
+  Mat      B, part;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(model->x, &rows));
+  PetscCall(MatCreateDense(model->mesh->comm, rows, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, Z));
+  for (PetscInt first = 0, n; first < m && *able; first += n) {
+    n = PetscMin(LINEAR_CONTACT_BATCH, m - first);
+    PetscCall(ContactStepForces(s->contact, rows, n, &which[first], &B));
+    PetscCall(MatDenseGetSubMatrix(*Z, PETSC_DECIDE, PETSC_DECIDE, first, first + n, &part));
+    TimingBegin(TIMING_SOLVE);
+    PetscCall(LinearSolverColumns(model->work->solver, B, part, able));
+    TimingEnd(TIMING_SOLVE);
+    PetscCall(MatDenseRestoreSubMatrix(*Z, &part));
+    PetscCall(MatDestroy(&B));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the columns of the components which[m]. *able: that could be done. */
 static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m, const PetscInt *which,
                                        PetscBool *able)
 {
-  PetscInt rows, n;
-  Mat      B, Z;
+  PetscInt n;
+  Mat      Z;
 
   PetscFunctionBeginUser;
   PetscCall(VecGetSize(model->x, &n));
   *able = (PetscBool)(s->rounds < LINEAR_CONTACT_ROUNDS && s->m + m <= s->most &&
                       (PetscReal)(s->m + m) * n <= LINEAR_CONTACT_VALUES);
   if (!*able) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetLocalSize(model->x, &rows));
-  PetscCall(ContactStepForces(s->contact, rows, m, which, &B));
-  PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &Z));
-  TimingBegin(TIMING_SOLVE);
-  PetscCall(LinearSolverColumns(model->work->solver, B, Z, able));
-  TimingEnd(TIMING_SOLVE);
-  PetscCall(MatDestroy(&B));
+  PetscCall(LinearContactColumns(model, s, m, which, &Z, able));
   s->Z[s->rounds++] = Z;
   s->m += m;
   if (*able) PetscCall(ModelHoldInColumns(model, Z));
