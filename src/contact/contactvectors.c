@@ -147,8 +147,8 @@ static PetscErrorCode FillTerm(Contact contact, const ContactPair *pair, PetscIn
 /* Adds a vector with the values of a term that shares its points with its neighbours, each node once. */
 static PetscErrorCode AddShared(ContactVectors *border, const ContactPair *pair, PetscInt c, PetscReal scale)
 {
-  const int       dim  = pair->mesh->dim;
-  const PetscInt *dof  = pair->lists->dof, first = pair->term_ptr[c];
+  const int       dim = pair->mesh->dim;
+  const PetscInt *dof = pair->lists->dof, first = pair->term_ptr[c];
   ContactWork    *work = pair->work;
   PetscReal      *v;
   PetscInt        n;

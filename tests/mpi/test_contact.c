@@ -1,5 +1,6 @@
 /* Gaps, forces, energy and tangent of contact have the values found by hand, on flat, inclined and curved masters, node
- * to surface and surface to surface; so have penalties that follow their window, multipliers and initial overlaps. */
+ * to surface and surface to surface; so have penalties that follow their window, multipliers and initial overlaps.
+ * Lists serve as long as they are good. */
 #include "../parts.h"
 #include "contactimpl.h"
 
@@ -513,13 +514,71 @@ static void test_stiffer(void **state)
   }
 }
 
+/* A step that starts where a failed one did takes the lists with which that one began, if they are good for its motion.
+   From another place or for more motion there are new ones. */
+static void test_again(void **state)
+{
+  const PetscReal    way = 0.3;
+  const ContactPair *pair;
+  NeighbourLists     lists;
+  double             energy;
+
+  (void)state;
+  PartsCreate(2, Blocks, NULL, SceneText("finite", PenaltyText("")), &parts);
+  pair = &parts.problem->contact->pairs[0];
+  Lower(-0.01, 0.02);
+  OK(ContactGather(parts.problem->contact, parts.u, 0, 0, way));
+  lists  = pair->lists;
+  energy = Residual(&parts, parts.u, NULL);
+  assert_true(energy > 0);
+  Lower(-0.05, 0.01);
+  assert_true(Residual(&parts, parts.u, NULL) > energy);
+  Lower(-0.01, 0.02);
+  OK(ContactGather(parts.problem->contact, parts.u, 0, 0, way / 2));
+  assert_ptr_equal(pair->lists, lists);
+  assert_null(pair->next);
+  assert_true(pair->motion == way);
+  assert_true(Residual(&parts, parts.u, NULL) == energy);
+  OK(ContactGather(parts.problem->contact, parts.u, 0, 0, 2 * way));
+  assert_true(pair->motion == 2 * way);
+  assert_true(Residual(&parts, parts.u, NULL) == energy);
+  Lower(-0.05, 0.01);
+  OK(ContactGather(parts.problem->contact, parts.u, 0, 0, way));
+  assert_true(pair->motion == way);
+  PartsDestroy(&parts);
+}
+
+/* Lists that are ready serve for the motion that they were made for, and no more. */
+static void test_at_hand(void **state)
+{
+  const PetscReal least = 0.3, made = 0.4, motion = 0.6;
+  Contact         contact;
+  PetscBool       hold;
+
+  (void)state;
+  PartsCreate(2, Blocks, NULL, SceneText("finite", PenaltyText("")), &parts);
+  contact = parts.problem->contact;
+  Lower(-0.01, 0.02);
+  (void)Evaluate();
+  assert_true(ContactMotionAtHand(contact, least, motion) == motion);
+  OK(ContactListsHold(contact, parts.u, 0, 0, made, 1, PETSC_FALSE, &hold));
+  assert_true(hold);
+  assert_true(ContactMotionAtHand(contact, least, motion) == made);
+  assert_true(ContactMotionAtHand(contact, 0.5, motion) == motion);
+  OK(ContactGather(contact, parts.u, 0, 0, made));
+  assert_true(contact->pairs[0].motion == made);
+  assert_true(ContactMotionAtHand(contact, least, motion) == motion);
+  PartsDestroy(&parts);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_flat),   cmocka_unit_test(test_depth),   cmocka_unit_test(test_inclined),
     cmocka_unit_test(test_curved), cmocka_unit_test(test_tangent), cmocka_unit_test(test_uniform),
     cmocka_unit_test(test_window), cmocka_unit_test(test_clamp),   cmocka_unit_test(test_augment),
-    cmocka_unit_test(test_soften), cmocka_unit_test(test_overlap), cmocka_unit_test(test_stiffer)};
+    cmocka_unit_test(test_soften), cmocka_unit_test(test_overlap), cmocka_unit_test(test_stiffer),
+    cmocka_unit_test(test_again),  cmocka_unit_test(test_at_hand)};
 
   if (PartsStart(&argc, &argv)) return 1;
   return PartsEnd(cmocka_run_group_tests(tests, NULL, NULL));
