@@ -466,7 +466,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
 
 /*@
   ContactMotionAtHand - returns the motion (length) for which ContactGather() is to make lists at the accepted state:
-that of the lists that ContactListsHold() made there, where it is enough.
+  that of the lists that ContactListsHold() made there, where it is enough.
 
   Not collective
 
