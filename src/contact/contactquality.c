@@ -317,7 +317,7 @@ PetscReal ContactNodeGap(Contact contact, PetscInt node)
 }
 
 /* Refuses a pair in which no master face looks towards any slave node: a surface turned inside out, or the wrong one.
- */
+   Surfaces of a list need not look at each other: they are all paired, whether they can meet or not. */
 static PetscErrorCode PairCheckFacing(Contact contact, const ContactPair *pair)
 {
   Mesh       mesh = contact->mesh;
@@ -391,7 +391,7 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
     } mine = {0, 0}, least;
     char complaint[512];
 
-    if (pair->master && !pair->one_body) PetscCall(PairCheckFacing(contact, pair));
+    if (pair->master && !pair->scene->listed) PetscCall(PairCheckFacing(contact, pair));
     PetscCall(PairCheckAddedOverlap(contact, pair));
     PetscCall(ContactRefuseImmersed(contact, p));
     for (PetscInt c = 0; c < pair->n; c++) {
