@@ -1,6 +1,9 @@
-/* Pairs with a slave and a master beside lists of surfaces: where both have two surfaces, the pair treats them. */
+/* Pairs with a slave and a master beside lists of surfaces: where both have two surfaces, the pair treats them. Lists
+   that cannot be treated are refused. */
 #include "contactimpl.h"
+#include "base/complaint.h"
 #include "base/refusal.h"
+#include "base/vectors.h"
 #include "search/facemarks.h"
 
 /* Refuses two lists that have faces of two surfaces in common, because their forces would add up. */
@@ -18,6 +21,73 @@ static PetscErrorCode RefuseCommonFaces(Contact contact, const ContactPair *a, c
                           "%s: contact '%s' and '%s' list faces of the same two surfaces: their forces would add up; "
                           "allowed: one list for them, or exclude in one",
                           SceneWhere(contact->scene, a->scene->path, "surfaces"), a->scene->name, b->scene->name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds to way[3*n_nodes] the ways from the nodes of a surface to the centres of the faces around them. */
+static PetscErrorCode NodeWays(ContactSurface surface, PetscReal *way)
+{
+  const Mesh mesh = surface->mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(way, 3 * mesh->n_nodes));
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    const Facet *face = &surface->faces[f];
+    const int    n    = ElementGet(face->type)->nodes;
+
+    for (int d = 0; d < mesh->dim; d++) {
+      PetscReal centre = 0;
+
+      for (int a = 0; a < n; a++) centre += mesh->coords[face->nodes[a] * mesh->dim + d] / n;
+      for (int a = 0; a < n; a++) way[3 * face->nodes[a] + d] += centre - mesh->coords[face->nodes[a] * mesh->dim + d];
+    }
+  }
+  PetscCall(MeshSumNodes(mesh, 3, way));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses two masters of one list that are sides of a sharp convex edge of one body, each of them without the other.
+   What has gone around the edge is behind the plane of the first and would be pressed back by it. */
+static PetscErrorCode RefuseSidesOfEdge(Contact contact, const ContactPair *a, const ContactPair *b)
+{
+  const Mesh      mesh   = contact->mesh;
+  const PetscReal cosine = PetscCosReal(a->fit.feature_angle);
+  PetscReal      *area, *normal, *other, *way;
+  Complaint       complaint = {""};
+
+  PetscFunctionBeginUser;
+  PetscCall(
+    PetscMalloc4(mesh->n_nodes, &area, 3 * mesh->n_nodes, &normal, 3 * mesh->n_nodes, &other, 3 * mesh->n_nodes, &way));
+  PetscCall(SurfaceNodeNormals(a->master, NULL, area, normal));
+  PetscCall(SurfaceNodeNormals(b->master, NULL, area, other));
+  PetscCall(NodeWays(b->master, way));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
+    const PetscReal *n = &normal[3 * i], *o = &other[3 * i], *w = &way[3 * i];
+    const PetscReal  length = PetscSqrtReal(Dot(n, n) * Dot(o, o));
+
+    if (length > 0 && Dot(n, o) < cosine * length && Dot(n, w) < 0)
+      Complain(&complaint,
+               "%s: contact '%s' lists '%s' and '%s', which meet at a sharp edge at node %" PetscInt_FMT
+               ": past it each of them would press back what is in front of the other; allowed: one surface of the "
+               "mesh that has both, or surfaces: all",
+               SceneWhere(contact->scene, a->scene->path, "surfaces"), a->scene->name, b->scene->master,
+               a->scene->master, mesh->node_tag[i]);
+  }
+  PetscCall(PetscFree4(area, normal, other, way));
+  PetscCall(ComplaintRefuse(mesh->comm, &complaint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses what a listed pair cannot be beside another one before it. */
+static PetscErrorCode RefuseBeside(Contact contact, const ContactPair *pair, const ContactPair *other)
+{
+  PetscFunctionBeginUser;
+  if (!other->scene->listed || !other->master) PetscFunctionReturn(PETSC_SUCCESS);
+  if (strcmp(other->scene->path, pair->scene->path) != 0) {
+    PetscCall(RefuseCommonFaces(contact, pair, other));
+  } else if (!strcmp(other->scene->slave, pair->scene->slave) && !pair->master->rigid && !other->master->rigid) {
+    PetscCall(RefuseSidesOfEdge(contact, pair, other));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -77,7 +147,7 @@ static PetscErrorCode OverridePair(Contact contact, ContactPair *listed)
 }
 
 /* Has pairs with a slave and a master take the place of lists that have faces of both. Refuses two lists with the same
-   faces. Collective */
+   faces, and lists with sides of a sharp edge. Collective */
 PetscErrorCode ContactOverride(Contact contact)
 {
   PetscFunctionBeginUser;
@@ -86,12 +156,7 @@ PetscErrorCode ContactOverride(Contact contact)
 
     if (!pair->scene->listed || !pair->master) continue;
     PetscCall(OverridePair(contact, pair));
-    for (int q = 0; q < p; q++) {
-      const ContactPair *other = &contact->pairs[q];
-
-      if (other->scene->listed && other->master && strcmp(other->scene->path, pair->scene->path) != 0)
-        PetscCall(RefuseCommonFaces(contact, pair, other));
-    }
+    for (int q = 0; q < p; q++) PetscCall(RefuseBeside(contact, pair, &contact->pairs[q]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

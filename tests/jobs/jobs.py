@@ -397,5 +397,7 @@ JOBS = [
         Answer("seat", -282.2, 0.04, "limit"),
         Answer("centre", -5.8175, 0.01, "limit"),
     ], steps=12, picture=["--mirror", "x"]),
+    # Bodies that lie flush on each other, and no pairs named
+    Job("keystone", "stone flush between two walls, no pairs named", [Answer("thrust", 86.212, 0.01, "limit")], steps=12),
     Job("tube_in_box", "rubber tube blown up in a box", [Answer("corner", 4.1137, 0.06, "limit")], steps=12),
 ]

@@ -4,6 +4,7 @@ from harness import Check, arguments, run, SCENES
 
 FRAME, TUBE = SCENES / "c_strip.yaml", SCENES / "mirrored_tube.yaml"
 RINGS, PIPE = SCENES.parent.parent / "runs/ring_in_ring.yaml", SCENES.parent.parent / "runs/pipe_pinch.yaml"
+KEYSTONE = SCENES.parent / "jobs/keystone.yaml"
 SHRINK, BUMPER = SCENES.parent / "jobs/shrink_fit.yaml", SCENES / "jounce_bumper.yaml"
 SIDES = 4e-3  # of a force of friction: between a list and one role of slave and master, whose points differ
 BEAMS, BLOCK, BLADE = SCENES / "crossed_beams.yaml", SCENES / "patch.yaml", SCENES / "knife.yaml"
@@ -300,6 +301,26 @@ def parts():
             check.holds(f"overlap of {overlap} between two {name} is refused", text in finished.text)
 
 
+def keystone():
+    """A stone between two walls whose faces are flush with it: flanks alone and all sides, on the mesh of the job and on
+    coarser ones, where half of the walls' points are past the ends of the flanks. No surface of the list of four faces
+    looks at all others."""
+    for order, size in ((1, 1), (1, 0.5), (2, 1), (2, 0.5)):
+        thrusts = []
+        for name, surfaces in (("all", "all"), ("flanks", "[flanks, left_face, right_face]"),
+                               ("four", "[left_flank, right_flank, left_face, right_face]")):
+            summary = run(args, KEYSTONE, out=f"keystone_{name}_{order}_{size}", overrides=[
+                f"contact=[{{name: joint, surfaces: {surfaces}}}]", f"mesh.order={order}",
+                f"mesh.parameters.refine={size}"]).summary()
+            thrusts.append(summary["probes"]["thrust"])
+            check.near(f"keystone, {name}, order {order}, size {size}: weight", summary["probes"]["weight"] / 46.07695, 1,
+                       1e-4)
+            check.holds(f"keystone, {name}, order {order}, size {size}: steps and iterations",
+                        summary["steps_failed"] == 0 and summary["newton_iterations"] <= 25)
+        check.near(f"keystone, order {order}, size {size}: thrust", min(thrusts) / max(thrusts), 1, 5 * ROLES)
+        check.near(f"keystone, order {order}, size {size}: thrust of a stiff stone", thrusts[0] / 85.98, 1, 5e-3)
+
+
 def refused(what, text, contact):
     finished = run(args, RINGS, "-check", out="refused", ranks=1, must=1, overrides=[f"contact=[{contact}]", "probes=[]"])
     check.holds(f"refused: {what}", text in finished.text, finished.text.strip().splitlines()[0])
@@ -321,6 +342,10 @@ def refusals():
             "{name: a, surfaces: [nowhere]}")
     refused("two lists of one surface", "their forces would add up",
             "{name: a, surfaces: [inner_contact]}, {name: b, surfaces: [inner_contact]}")
+    sides = run(args, KEYSTONE, "-check", out="sides", ranks=1, must=1,
+                overrides=["contact=[{name: a, surfaces: [flanks, bottom, left_face, right_face]}]", "probes=[]"])
+    check.holds("refused: sides of a sharp edge", "which meet at a sharp edge" in sides.text,
+                sides.text.strip().splitlines()[0])
     tool = "master: {plane: {point: [0, 31], normal: [0, -1]}}"
     again = "master: {plane: {point: [4, 31], normal: [0, -2]}}"
     refused("one tool in a list and by slave and master", "meet the same rigid tool: their forces would add up",
@@ -332,7 +357,7 @@ def refusals():
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, refined, mirror, walls, ranks, refusals, override, friction, overlap, bumper, edges, knife, live, still, parts or "
+args = arguments(("case", "frame, refined, mirror, walls, keystone, ranks, refusals, override, friction, overlap, bumper, edges, knife, live, still, parts or "
                               "tools"))
 check = Check()
 if args.case == "frame":
@@ -343,7 +368,7 @@ elif args.case == "mirror":
     mirror("node_to_surface")
     mirror("surface_to_surface")
 else:
-    {"walls": walls, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
+    {"walls": walls, "keystone": keystone, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
      "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "live": live, "parts": parts, "refined": refined, "still": still,
      "tools": tools}[args.case]()
 check.finish()
