@@ -7,9 +7,9 @@
 
 /* Gaps below this part of a face size are round-off of coordinates and projections. */
 #define QUALITY_ROUND_OFF 1e-9
-/* An added overlap is evaluated at the ends of this many intervals of the load parameter before the run, so that a
-   value that is not finite is mostly found then. */
-enum { OVERLAP_SAMPLES = 16 };
+/* Expressions of overlap and friction are evaluated at the ends of this many intervals of the load parameter before the
+   run, so that a value that is not finite is mostly found then. */
+enum { QUALITY_SAMPLES = 16 };
 
 /* Finds the node whose value is the largest of all ranks; of nodes that differ by round-off it is the one of lowest
    tag. value[c] is of each term, NaN where it has none; a face stands for its first node. Tag -1: no term has any. */
@@ -340,26 +340,46 @@ static PetscErrorCode PairCheckFacing(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Refuses an added overlap that is not finite at a node of the slave, between t = 0 and t = 1. */
-static PetscErrorCode PairCheckAddedOverlap(Contact contact, const ContactPair *pair)
+/* Added overlap (length) or coefficient of friction at a slave node. */
+typedef PetscReal (*ValueAtNode)(const ContactPair *, PetscInt c, PetscReal t);
+
+/* The expression itself: where it is below 0 it counts as 0, and so would what is no number. */
+static PetscReal CoefficientAtNode(const ContactPair *pair, PetscInt c, PetscReal t)
+{
+  PetscReal X[3];
+
+  MeshNodePlace(pair->mesh, pair->node[c], X);
+  return ExpressionValue(pair->scene->mu_expression, X, t);
+}
+
+/* Refuses an expression that is not finite at a node of the slave, between t = 0 and t = 1. */
+static PetscErrorCode PairCheckFinite(Contact contact, const ContactPair *pair, const char *key, ValueAtNode value)
 {
   Complaint complaint = {""};
 
   PetscFunctionBeginUser;
-  if (!pair->scene->overlap_expression) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt c = 0; c < pair->n_nodes; c++) {
-    for (int k = 0; k <= OVERLAP_SAMPLES; k++) {
-      const PetscReal t = (PetscReal)k / OVERLAP_SAMPLES;
+    for (int k = 0; k <= QUALITY_SAMPLES; k++) {
+      const PetscReal t = (PetscReal)k / QUALITY_SAMPLES;
 
-      if (PetscIsInfOrNanReal(ContactTermAddedOverlap(pair, c, t)))
+      if (PetscIsInfOrNanReal(value(pair, c, t)))
         Complain(&complaint,
                  "%s: the expression has no finite value at node %" PetscInt_FMT
                  " at t = %g; allowed: an expression that is finite on the slave",
-                 SceneWhere(contact->scene, pair->scene->path, "initial_overlap.add"),
-                 contact->mesh->node_tag[pair->node[c]], (double)t);
+                 SceneWhere(contact->scene, pair->scene->path, key), contact->mesh->node_tag[pair->node[c]], (double)t);
     }
   }
   PetscCall(ComplaintRefuse(contact->mesh->comm, &complaint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses values of a pair that are not finite. */
+static PetscErrorCode PairCheckValues(Contact contact, const ContactPair *pair)
+{
+  PetscFunctionBeginUser;
+  if (pair->scene->overlap_expression)
+    PetscCall(PairCheckFinite(contact, pair, "initial_overlap.add", ContactTermAddedOverlap));
+  if (pair->scene->mu_expression) PetscCall(PairCheckFinite(contact, pair, "friction.mu", CoefficientAtNode));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -373,8 +393,8 @@ static PetscErrorCode PairCheckAddedOverlap(Contact contact, const ContactPair *
 
   Note:
   With initial_overlap: refuse, it refuses the deepest overlap of each pair that is more than the surfaces' own
-  shapes explain, sagitta of facets and error of fits; the message names pair, node and depth. With add it also refuses
-  an overlap that is not finite. With ramp and ignore it keeps the overlaps as g_0.
+  shapes explain, sagitta of facets and error of fits; the message names pair, node and depth. It also refuses added
+  overlaps and coefficients of friction that are not finite. With ramp and ignore it keeps the overlaps as g_0.
 @*/
 PetscErrorCode ContactTakeOverlap(Contact contact)
 {
@@ -392,7 +412,7 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
     char complaint[512];
 
     if (pair->master && !pair->scene->listed) PetscCall(PairCheckFacing(contact, pair));
-    PetscCall(PairCheckAddedOverlap(contact, pair));
+    PetscCall(PairCheckValues(contact, pair));
     PetscCall(ContactRefuseImmersed(contact, p));
     for (PetscInt c = 0; c < pair->n; c++) {
       if (pair->scene->initial_overlap == OVERLAP_RAMP || pair->scene->initial_overlap == OVERLAP_IGNORE)

@@ -127,6 +127,13 @@ def refused(args, check):
                        overrides=[*SMALL, "supports=[{surface: x_min, ux: 0}]", f"loads=[{{{load}}}]"])
         message = next((line for line in finished.text.splitlines() if line.startswith("burnish: ")), "")
         check.holds(f"refused: {name}", finished.status == 1 and expect in message, message)
+    for name, key, value in (("overlap", "initial_overlap.add", "1e-3/(x - x)"), ("friction", "friction.mu", "sqrt(-1 - x^2)"),
+                             ("friction_later", "friction.mu", "t < 0.5 ? 0.2 : 1/0")):
+        finished = run(args, SCENES / "../../runs/ring_in_ring.yaml", "-check", out=f"refused_{name}", must=1,
+                       overrides=["mesh.parameters={interference: 0}", f'contact.0.{key.split(".")[0]}={{{key.split(".")[1]}: '
+                                  f'"{value}"}}'])
+        check.holds(f"refused: {name}", f"contact.0.{key}: the expression has no finite value" in finished.text,
+                    finished.text.strip().splitlines()[-1])
 
 
 def corners(args, check):
