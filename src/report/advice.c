@@ -138,10 +138,11 @@ static double MasterStandsIn(const RunFigures *figures, const PairFigures *pair,
 
   (void)figures;
   if (master->over_h <= ADVICE_STANDS || master->depth <= ADVICE_STANDS_OVER * pair->quality.max_penetration) return 0;
-  snprintf(text, ADVICE_TEXT,
-           "%s: nodes of '%s' stand up to %.2g of a face deep between the slave's, displacements may be off by %.2g, and "
-           "an edge presses there square to its sides, not to the slave",
-           pair->name, pair->scene->master, (double)master->over_h, (double)master->depth);
+  snprintf(
+    text, ADVICE_TEXT,
+    "%s: nodes of '%s' stand up to %.2g of a face deep between the slave's, displacements may be off by %.2g, and "
+    "an edge presses there square to its sides, not to the slave",
+    pair->name, pair->scene->master, (double)master->over_h, (double)master->depth);
   return 1;
 }
 

@@ -465,7 +465,7 @@ static void test_sides(void **state)
   c.pair.quality.hanging = 0;
   c.pair.master          = (NodeDepth){.nodes = 1, .depth = 0.3, .over_h = 0.3};
   c.body                 = (SceneBody){.path = "bodies.0", .name = "foot", .rigid = 1};
-  Expect(&c, "between the slave's: a finer mesh at 'floor'"); /* a tool is no slave */
+  Expect(&c, "not to the slave: a finer mesh at 'floor'"); /* a tool is no slave */
 }
 
 static void test_kernels(void **state)
