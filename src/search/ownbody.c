@@ -9,10 +9,9 @@
    the body between them would have to turn inside out. A smooth surface of the coarsest meshes turns by less. */
 #define OWN_BODY_SHARP 0.71
 
-/* A point past the end of another body's facet is beside it, neither before it nor behind it, where it is off the plane
-   by no more than this part of its distance, 6 degrees. Flat sides that lie on each other stand in one plane, and
-   round-off or small strains decide on which side of it. If some facets of a flank counted as hidden and those behind
-   them did not, the foot would be at an edge inside the flank, and the gap their distance, of either sign. */
+/* A point past the end of another body's facet is beside it where it is off the facet's plane by no more than this part
+   of its distance, 6 degrees. Where flat sides lie flush on each other, round-off or strains of some per cent decide on
+   which side of that plane it is. */
 #define OWN_BODY_BESIDE 0.1
 
 /* Foot of a place on a facet whose nodes are at X[nodes][dim], all relative to the same origin. */
@@ -26,16 +25,6 @@ static void FootAt(int dim, Facet facet, const PetscReal *X, const PetscReal *pl
     facet.nodes[a] = a;
   }
   FacetProject(dim, &facet, x, foot);
-}
-
-/* Is a slave point beside the facet of another body on which it has its foot? */
-static PetscBool IsBeside(const Nearest *look, const Candidate *c, const Foot *foot)
-{
-  PetscReal along = 0;
-
-  if (look->one_body) return PETSC_FALSE;
-  for (int d = 0; d < look->lists->dim; d++) along += c->normal[d] * foot->normal[d];
-  return (PetscBool)(PetscAbsReal(along) < OWN_BODY_BESIDE);
 }
 
 /* Is a facet of the same body as the slave point? Pieces of the mesh that share no nodes are bodies of their own,
@@ -118,7 +107,7 @@ PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot
   const PetscReal depth = -foot->gap;
   PetscReal       wall;
 
-  if (!look->listed || depth <= 0 || IsBeside(look, c, foot)) return PETSC_FALSE;
+  if (!look->listed || depth <= 0) return PETSC_FALSE;
   if (depth > SEARCH_ENTERED * look->height) return PETSC_TRUE;
   if (!OnOwnPiece(look, c)) return PETSC_FALSE;
   wall = ReferenceDepth(look, c);
@@ -166,15 +155,6 @@ static PetscBool BeyondEntered(const Nearest *look, const FacetHull *hull, Petsc
   return (PetscBool)(square > PetscSqr(reach));
 }
 
-/* A bound of the distance of the slave point to any place of a facet. */
-static PetscReal FarthestOf(const Nearest *look, const FacetHull *hull)
-{
-  PetscReal square = 0;
-
-  for (int d = 0; d < 3; d++) square += PetscSqr(hull->centre[d] - look->x[d]);
-  return PetscSqrtReal(square) + hull->radius;
-}
-
 /*@
   OwnBodyTells - says whether the hull of a candidate tells that the slave point's own body hides it, or that it does
   not, so that the foot on it need not be known.
@@ -194,9 +174,7 @@ static PetscReal FarthestOf(const Nearest *look, const FacetHull *hull)
 PetscBool OwnBodyTells(const Nearest *look, const Candidate *c, PetscBool *hidden)
 {
   const PetscReal tolerance = OWN_BODY_TOUCHES * look->size;
-  const PetscReal beside    = look->one_body ? 0 : OWN_BODY_BESIDE * FarthestOf(look, &c->hull);
-  const int       side      = FacetHullSide(&c->hull, look->x, tolerance + beside);
-  const int       own       = look->one_body ? OwnSide(look, c, tolerance) : 1;
+  const int side = FacetHullSide(&c->hull, look->x, tolerance), own = look->one_body ? OwnSide(look, c, tolerance) : 1;
 
   if (own == 0) return PETSC_FALSE;
   *hidden = PETSC_FALSE;
@@ -223,6 +201,15 @@ PetscReal OwnBodyBehind(const Nearest *look)
   return look->one_body ? entered : PetscMax(entered, look->size);
 }
 
+/* Is a slave point beside a facet of another body, on whose edge it has its foot? */
+static PetscBool IsBeside(const Nearest *look, const Candidate *c, const Foot *foot)
+{
+  PetscReal along = 0;
+
+  for (int d = 0; d < look->lists->dim; d++) along += c->normal[d] * foot->normal[d];
+  return (PetscBool)(PetscAbsReal(along) < OWN_BODY_BESIDE);
+}
+
 /*@
   OwnBodyTurnsFrom - says whether a foot lies on the wrong side of the slave point's own face: behind it with a gap, or
   in front of it with a penetration.
@@ -237,13 +224,15 @@ PetscReal OwnBodyBehind(const Nearest *look)
   Notes:
   Always PETSC_FALSE where the scene names slave and master. A point that is past the end of another body's facet, in
   its plane, has its foot at the end. As the two faces are not quite parallel, that is before the point's face or behind
-  it, by no more than the angle between them. Within a face of the slave that says nothing, nor does it where that angle
-  is less than what counts as beside. Farther away such a point has no partner.
+  it, by no more than the angle between them. Within a face of the slave that says nothing, nor does it where the point
+  is beside the facet. Farther away a point that is beside has no partner there: if facets of one flank were partners or
+  not as round-off says, the foot could be inside the flank, and the gap its distance along it, of either sign.
 @*/
 PetscBool OwnBodyTurnsFrom(const Nearest *look, const Candidate *c, const Foot *foot)
 {
   const PetscReal *own   = &look->lists->slave_normal[3 * look->q];
   PetscReal        along = 0, cosine = 0, square = 0;
+  PetscBool        beside;
 
   if (!look->listed) return PETSC_FALSE;
   for (int d = 0; d < look->lists->dim; d++) {
@@ -252,6 +241,8 @@ PetscBool OwnBodyTurnsFrom(const Nearest *look, const Candidate *c, const Foot *
     square += PetscSqr(own[d]);
   }
   if (look->one_body) return (PetscBool)(along >= 0);
-  if (PetscAbsReal(foot->gap) > look->size) return (PetscBool)(along >= -OWN_BODY_BESIDE * PetscSqrtReal(square));
-  return (PetscBool)(along >= PetscSqrtReal(PetscMax(PetscSqr(OWN_BODY_BESIDE) * square, square - PetscSqr(cosine))));
+  beside = IsBeside(look, c, foot);
+  if (PetscAbsReal(foot->gap) > look->size) return (PetscBool)(beside || along >= 0);
+  square *= beside ? 1 + PetscSqr(OWN_BODY_BESIDE) : 1;
+  return (PetscBool)(along >= PetscSqrtReal(PetscMax(0, square - PetscSqr(cosine))));
 }
