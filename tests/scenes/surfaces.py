@@ -4,7 +4,7 @@ from harness import Check, arguments, run, SCENES
 
 FRAME, TUBE = SCENES / "c_strip.yaml", SCENES / "mirrored_tube.yaml"
 RINGS, PIPE = SCENES.parent.parent / "runs/ring_in_ring.yaml", SCENES.parent.parent / "runs/pipe_pinch.yaml"
-KEYSTONE = SCENES.parent / "jobs/keystone.yaml"
+CHAMFERED, KEYSTONE = SCENES / "chamfered_block.yaml", SCENES.parent / "jobs/keystone.yaml"
 SHRINK, BUMPER = SCENES.parent / "jobs/shrink_fit.yaml", SCENES / "jounce_bumper.yaml"
 SIDES = 4e-3  # of a force of friction: between a list and one role of slave and master, whose points differ
 BEAMS, BLOCK, BLADE = SCENES / "crossed_beams.yaml", SCENES / "patch.yaml", SCENES / "knife.yaml"
@@ -321,6 +321,15 @@ def keystone():
         check.near(f"keystone, order {order}, size {size}: thrust of a stiff stone", thrusts[0] / 85.98, 1, 5e-3)
 
 
+def chamfer():
+    """A block on a floor, with corners of feature_angle: fits end there, and do not round the corners off."""
+    for order in (1, 2):
+        down = [run(args, CHAMFERED, out=f"chamfer_{name}_{order}", overrides=[f"contact=[{{name: any, {contact}}}]",
+                                                                              f"mesh.order={order}"]).summary()["probes"]["down"]
+                for name, contact in (("all", "surfaces: all"), ("pair", "slave: bottom, master: floor_top"))]
+        check.near(f"chamfer, order {order}: the block goes down as with a named pair", down[0] / down[1], 1, 1e-2)
+
+
 def refused(what, text, contact):
     finished = run(args, RINGS, "-check", out="refused", ranks=1, must=1, overrides=[f"contact=[{contact}]", "probes=[]"])
     check.holds(f"refused: {what}", text in finished.text, finished.text.strip().splitlines()[0])
@@ -357,7 +366,7 @@ def refusals():
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, refined, mirror, walls, keystone, ranks, refusals, override, friction, overlap, bumper, edges, knife, live, still, parts or "
+args = arguments(("case", "frame, refined, mirror, walls, keystone, chamfer, ranks, refusals, override, friction, overlap, bumper, edges, knife, live, still, parts or "
                               "tools"))
 check = Check()
 if args.case == "frame":
@@ -368,7 +377,7 @@ elif args.case == "mirror":
     mirror("node_to_surface")
     mirror("surface_to_surface")
 else:
-    {"walls": walls, "keystone": keystone, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
+    {"walls": walls, "keystone": keystone, "chamfer": chamfer, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
      "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "live": live, "parts": parts, "refined": refined, "still": still,
      "tools": tools}[args.case]()
 check.finish()
