@@ -15,8 +15,8 @@
 #define CONTACT_GLOBAL_COSINE 0.5
 
 /* In a list of surfaces an edge whose faces differ by feature_angle but for this part of it is sharp: skins of bodies
-   have chamfers of 45 degrees, the default, which round-off must not round off. Named surfaces keep the angle itself: with
-   this part of it a D-ring in a groove would leak at 6.3 MPa in the place of 7.8. */
+   have chamfers of 45 degrees, the default, which round-off must not round off. Named surfaces keep the angle itself:
+   with this part of it a D-ring in a groove would leak at 6.3 MPa in the place of 7.8. */
 #define CONTACT_SHARP_FROM (1 - 1e-4)
 
 /* In surface to surface, a slave whose faces are at least this many times coarser than the master's takes a finer
