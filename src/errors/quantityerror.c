@@ -4,7 +4,7 @@
 #include <math.h>
 
 const char *const ErrorCauses[] = {
-  [ERROR_BODIES] = "bodies",     [ERROR_GEOMETRY] = "contact surfaces", [ERROR_PENETRATION] = "penetration",
+  [ERROR_BODIES] = "bodies",     [ERROR_GEOMETRY] = "contact surfaces", [ERROR_ENDS] = "ends of zones", [ERROR_PENETRATION] = "penetration",
   [ERROR_SLIP] = "elastic slip", [ERROR_STEPS] = "load steps",          [ERROR_SOLVER] = "solver"};
 
 /*@
@@ -47,8 +47,9 @@ void QuantityErrorSetSteps(QuantityError *error, PetscReal steps)
   Total(error);
 }
 
-/* Joins the parts of one quantity. shape: that of the masters. */
-static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint, PetscReal shape, QuantityError *error)
+/* Joins the parts of one quantity. shape: that of the masters; end: that of the ends of zones of contact. */
+static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint, PetscReal shape, PetscReal end,
+                           QuantityError *error)
 {
   BodyErrorSums sums;
 
@@ -66,6 +67,7 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
   error->spread             = sums.spread;
   if (!sums.holds) error->why = "enhanced elements (bodies.*.formulation) turn too much within themselves";
   error->part[ERROR_GEOMETRY]    = shape;
+  error->part[ERROR_ENDS]        = end;
   error->part[ERROR_PENETRATION] = adjoint->penetration;
   error->part[ERROR_SLIP]        = adjoint->slip;
   error->part[ERROR_STEPS]       = ModelDependsOnPath(model) ? NAN : 0;
@@ -95,20 +97,21 @@ PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional funct
   const PetscInt dofs = model->mesh->n_nodes * model->mesh->dim;
   BodyError      bodies;
   Adjoint       *adjoint;
-  PetscReal     *shape;
+  PetscReal     *shape, *end;
 
   PetscFunctionBeginUser;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc2(n, &adjoint, n, &shape));
+  PetscCall(PetscMalloc3(n, &adjoint, n, &shape, n, &end));
   for (int i = 0; i < n; i++) PetscCall(PetscCalloc1(dofs, &adjoint[i].y));
   PetscCall(ModelAdjoint(model, n, functional, adjoint));
   PetscCall(ModelShapeErrors(model, n, functional, adjoint, shape));
+  PetscCall(ModelZoneEnds(model, n, functional, adjoint, end));
   PetscCall(
     BodyErrorCreate(model->mesh, model->problem->elasticity, model->scene->kinematics, model->problem->trial, &bodies));
-  for (int i = 0; i < n; i++) PetscCall(Join(model, bodies, &adjoint[i], shape[i], &error[i]));
+  for (int i = 0; i < n; i++) PetscCall(Join(model, bodies, &adjoint[i], shape[i], end[i], &error[i]));
   PetscCall(BodyErrorDestroy(&bodies));
   for (int i = 0; i < n; i++) PetscCall(PetscFree(adjoint[i].y));
-  PetscCall(PetscFree2(adjoint, shape));
+  PetscCall(PetscFree3(adjoint, shape, end));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

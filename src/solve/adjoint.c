@@ -170,6 +170,50 @@ PetscErrorCode ModelShapeErrors(Model model, int n, const Functional functional[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds what the end of one pair's zone leaves to the error of a functional. */
+static PetscErrorCode AddZoneEnd(Model model, int p, const Functional *functional, const Adjoint *adjoint,
+                                 PetscReal *error)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *y, part;
+  PetscBool      known;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &y));
+  for (PetscInt i = 0; i < n; i++)
+    y[i] = adjoint->y[i] + (functional->pressed && functional->pairs[p] ? functional->pressed[i] : 0);
+  PetscCall(ContactPairZoneEnd(model->contact, p, y, &part, &known));
+  *error = known ? *error + part : NAN;
+  PetscCall(PetscFree(y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelZoneEnds - computes what zones of contact leave of error that end within faces.
+
+  Collective
+
+  Input Parameters:
++ model      - after ModelAdjoint()
+. n          - number of functionals
+. functional - of ModelAdjoint()
+- adjoint    - likewise; those that are not known are left out
+
+  Output Parameter:
+. error - of each functional: true less computed value; NaN where it is not known of a pair
+@*/
+PetscErrorCode ModelZoneEnds(Model model, int n, const Functional functional[], const Adjoint adjoint[],
+                             PetscReal error[])
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < n; i++) {
+    error[i] = 0;
+    for (int p = 0; p < ContactPairs(model->contact) && adjoint[i].known; p++)
+      PetscCall(AddZoneEnd(model, p, &functional[i], &adjoint[i], &error[i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelRespond - computes how the solution of a step follows a change of the residual.
 

@@ -1,0 +1,460 @@
+/* What pressures leave of error that do not end where the zone of contact does.
+
+   In surface to surface contact a pressure is a sum of hat functions, and the means of the gaps over these are what
+   contact closes. Within faces surfaces overlap and part. A quantity J with the adjoint solution y changes by that by
+
+     -int (z - z_h) g + (p - p_h) dg,
+
+   where g is the gap less the one at which contact begins, dg its change along y, p the pressure and z its rate along
+   y; p_h and z_h are those of the terms. That is what is left of the residual of pressures and gaps that are true,
+   weighted with the adjoint solution (Becker and Rannacher, Acta Numerica 10, 2001). Where the pressure is smooth,
+   hats are near to it. Where the zone ends within a face, they are not: p and z there are those that end as pressures
+   do where smooth surfaces part, with the forces and moments of p_h and z_h (kernels/endpressure.h). A patch is the
+   faces around a corner of the slave. It counts where one of its faces bears nothing, and where as many terms press on
+   it as its pressure has unknowns. Within a face the corners share as the linear shape functions do. */
+#include "contactimpl.h"
+#include "kernels/endpressure.h"
+
+/* Each slave point stands for so many places in each direction of its face: the square root at the end of a zone is not
+   smooth. */
+enum { PLACES = 6, PLACES_MOST = PLACES * PLACES };
+/* Of a patch: force and moments of the pressures, of their rates, the number of terms that press */
+enum { SUM_MOMENT, SUM_RATE = SUM_MOMENT + 4, SUM_TERMS = SUM_RATE + 4, SUMS };
+/* Its pressure: the square at the corner and its slopes, those of its rate; whether there is one */
+enum { END_SQUARE, END_RATE = END_SQUARE + 4, END_IS = END_RATE + 4, END_WIDTH };
+
+typedef struct {
+  const ContactPair *pair;
+  PetscInt          *face;  /* of each slave point */
+  int               *bears; /* each face bears a force, of any rank's terms */
+  PetscReal         *along; /* changes of the gaps of the slave points along y */
+  PetscReal         *rate;  /* of the pressure of each term along y */
+  PetscReal         *end;   /* of each node of the slave points [END_WIDTH] */
+  PetscReal         *at;    /* of each slave point: PointAt() */
+} ZoneEnd;
+
+static int Corners(const ZoneEnd *z, PetscInt f)
+{
+  return ElementGet(z->pair->slaves->faces[f].type)->corners;
+}
+
+/* Finds the changes of the gaps of all points along a motion of the contact nodes, and the rates of the pressures. */
+static PetscErrorCode FindRates(ZoneEnd *z, const PetscReal *motion)
+{
+  const ContactPair       *pair = z->pair;
+  const int                dim  = pair->mesh->dim;
+  const ContactVariations *v    = pair->variations;
+
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
+    if (PetscIsNanReal(pair->point_gap[q])) continue;
+    PetscCall(ContactVariationsNeed(pair, q));
+    for (PetscInt i = v->first[q]; i < v->end[q]; i++)
+      for (int d = 0; d < dim; d++) z->along[q] += v->N[i * dim + d] * motion[v->number[i] * dim + d];
+  }
+  for (PetscInt c = 0; c < pair->n; c++) {
+    LawValue  value;
+    PetscReal area, sum = 0;
+
+    ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
+    for (PetscInt k = pair->term_ptr[c]; value.stiffness > 0 && k < pair->term_ptr[c + 1]; k++)
+      sum += pair->term_weight[k] * pair->factor[pair->term_point[k]] * z->along[pair->term_point[k]];
+    if (value.stiffness > 0) z->rate[c] = -value.stiffness * sum / area;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the faces that bear a force. */
+static PetscErrorCode FindBearing(ZoneEnd *z)
+{
+  const ContactPair *pair   = z->pair;
+  const SlavePoints  slaves = pair->slaves;
+  int               *home;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(slaves->surface->n_faces, &home));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    LawValue  value;
+    PetscReal area;
+
+    ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
+    for (PetscInt k = pair->term_ptr[c]; value.pressure > 0 && k < pair->term_ptr[c + 1]; k++)
+      if (pair->term_weight[k] > 0) z->bears[z->face[pair->term_point[k]]] = 1;
+  }
+  PetscCall(PetscSFReduceBegin(slaves->face_sf, MPI_INT, z->bears, home, MPI_MAX));
+  PetscCall(PetscSFReduceEnd(slaves->face_sf, MPI_INT, z->bears, home, MPI_MAX));
+  PetscCall(PetscSFBcastBegin(slaves->face_sf, MPI_INT, home, z->bears, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(slaves->face_sf, MPI_INT, home, z->bears, MPI_REPLACE));
+  PetscCall(PetscFree(home));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds a point's share of a term to the sums of the corners of its face. last: the last term that each has counted. */
+static void AddPoint(const ZoneEnd *z, PetscInt c, PetscInt q, PetscReal force, PetscReal rate, PetscInt *last,
+                     PetscReal *sums)
+{
+  const SlavePoints slaves = z->pair->slaves;
+  const Facet      *facet  = &slaves->faces[z->face[q]];
+  const int         dim    = z->pair->mesh->dim;
+
+  for (int k = 0; k < Corners(z, z->face[q]); k++) {
+    const PetscInt node = facet->nodes[k];
+    PetscReal     *sum  = &sums[node * SUMS];
+
+    sum[SUM_MOMENT] += force;
+    sum[SUM_RATE] += rate;
+    for (int d = 0; d < dim; d++) {
+      const PetscReal x = z->pair->lists->slave_X[q * dim + d] - slaves->nodes[node].X[d];
+
+      sum[SUM_MOMENT + 1 + d] += force * x;
+      sum[SUM_RATE + 1 + d] += rate * x;
+    }
+    if (last[node] != c) sum[SUM_TERMS]++;
+    last[node] = c;
+  }
+}
+
+/* Sums up the patches, over all ranks at the owners of their corners. at_owner: [local nodes][SUMS]. */
+static PetscErrorCode SumPatches(const ZoneEnd *z, PetscReal *at_owner)
+{
+  const ContactPair *pair   = z->pair;
+  const SlavePoints  slaves = pair->slaves;
+  PetscReal         *sums;
+  PetscInt          *last;
+  MPI_Datatype       block;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(slaves->n_nodes * SUMS, &sums));
+  PetscCall(PetscMalloc1(slaves->n_nodes, &last));
+  for (PetscInt i = 0; i < slaves->n_nodes; i++) last[i] = -1;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    LawValue  value;
+    PetscReal area;
+
+    ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
+    for (PetscInt k = pair->term_ptr[c]; value.pressure > 0 && k < pair->term_ptr[c + 1]; k++) {
+      const PetscReal weight = pair->term_weight[k] * pair->factor[pair->term_point[k]];
+
+      if (weight > 0)
+        AddPoint(z, c, pair->term_point[k], weight * value.pressure, weight * z->rate[c], last, sums);
+    }
+  }
+  PetscCallMPI(MPI_Type_contiguous(SUMS, MPIU_REAL, &block));
+  PetscCallMPI(MPI_Type_commit(&block));
+  PetscCall(PetscSFReduceBegin(slaves->sf, block, sums, at_owner, MPI_SUM));
+  PetscCall(PetscSFReduceEnd(slaves->sf, block, sums, at_owner, MPI_SUM));
+  PetscCallMPI(MPI_Type_free(&block));
+  PetscCall(PetscFree(last));
+  PetscCall(PetscFree(sums));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The directions of a face from its first corner: along its first edge, in space another one normal to that, and the
+   face's normal, of its size. */
+static void FaceFrame(const ZoneEnd *z, PetscInt f, PetscReal along[2][3], PetscReal normal[3])
+{
+  const SlavePoints slaves = z->pair->slaves;
+  const Facet      *facet  = &slaves->faces[f];
+  const int         dim = z->pair->mesh->dim, corners = Corners(z, f);
+  PetscReal         edge[2][3] = {{0}}, length = 0;
+
+  for (int d = 0; d < dim; d++) {
+    edge[0][d] = slaves->nodes[facet->nodes[1]].X[d] - slaves->nodes[facet->nodes[0]].X[d];
+    edge[1][d] = slaves->nodes[facet->nodes[corners - 1]].X[d] - slaves->nodes[facet->nodes[0]].X[d];
+    length += PetscSqr(edge[0][d]);
+  }
+  if (dim == 2) edge[1][0] = edge[1][1] = 0;
+  if (dim == 2) edge[1][2] = 1;
+  length = PetscSqrtReal(length);
+  for (int d = 0; d < 3; d++) {
+    const int i = (d + 1) % 3, j = (d + 2) % 3;
+
+    normal[d]   = edge[0][i] * edge[1][j] - edge[0][j] * edge[1][i];
+    along[0][d] = edge[0][d] / length;
+  }
+  length = PetscSqrtReal(PetscSqr(normal[0]) + PetscSqr(normal[1]) + PetscSqr(normal[2]));
+  for (int d = 0; d < 3; d++) {
+    const int i = (d + 1) % 3, j = (d + 2) % 3;
+
+    along[1][d] = (normal[i] * along[0][j] - normal[j] * along[0][i]) / length;
+  }
+}
+
+/* Lists the places for which a point stands, in space in a square with its share of the face. Returns their number. */
+static int PointPlaces(const ZoneEnd *z, PetscInt q, PetscReal along[2][3], PetscReal place[PLACES_MOST][3])
+{
+  const SlavePoints slaves = z->pair->slaves;
+  const PetscInt    f      = z->face[q];
+  const int         dim = z->pair->mesh->dim, rows = dim == 3 ? PLACES : 1;
+  PetscReal         all = 0, size;
+
+  for (PetscInt k = slaves->first[f]; k < slaves->first[f + 1]; k++) all += slaves->weight[k];
+  size = slaves->size[q] * PetscPowReal(slaves->weight[q] / all, 1. / (dim - 1));
+  for (int i = 0; i < rows; i++) {
+    for (int j = 0; j < PLACES; j++) {
+      const PetscReal at[2] = {((j + 0.5) / PLACES - 0.5) * size, dim == 3 ? ((i + 0.5) / PLACES - 0.5) * size : 0};
+
+      for (int d = 0; d < dim; d++)
+        place[i * PLACES + j][d] =
+          z->pair->lists->slave_X[q * dim + d] + at[0] * along[0][d] + at[1] * along[1][d];
+    }
+  }
+  return rows * PLACES;
+}
+
+/* Two unit vectors normal to n and to each other; in the plane the first one lies in it. */
+static void Tangents(int dim, const PetscReal n[3], PetscReal t[2][3])
+{
+  int       least = 2;
+  PetscReal length;
+
+  for (int d = 0; d < 2 && dim == 3; d++)
+    if (PetscAbsReal(n[d]) < PetscAbsReal(n[least])) least = d;
+  for (int k = 0; k < 2; k++) {
+    const PetscReal e[3] = {least == 0, least == 1, least == 2}, *from = k ? t[0] : e;
+
+    length = 0;
+    for (int d = 0; d < 3; d++) {
+      t[k][d] = n[(d + 1) % 3] * from[(d + 2) % 3] - n[(d + 2) % 3] * from[(d + 1) % 3];
+      length += PetscSqr(t[k][d]);
+    }
+    length = PetscSqrtReal(length);
+    for (int d = 0; d < 3; d++) t[k][d] /= length;
+  }
+}
+
+/* Fits the pressure of one patch. face: its faces. */
+static PetscErrorCode FitPatch(const ZoneEnd *z, PetscInt node, PetscInt n_faces, const PetscInt face[],
+                               const PetscReal *sum, PetscReal *end)
+{
+  const SlavePoints slaves = z->pair->slaves;
+  const int         dim    = z->pair->mesh->dim;
+  PetscReal         normal[3] = {0, 0, 0}, size = 0, t[2][3], moment[2][ENDPRESSURE_TERMS] = {{0}}, *term, *weight;
+  int               points = 0, room = 0;
+  EndPressure       fit;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n_faces; i++) {
+    PetscReal along[2][3], of_face[3];
+
+    FaceFrame(z, face[i], along, of_face);
+    for (int d = 0; d < 3; d++) normal[d] += of_face[d];
+    room += (int)(slaves->first[face[i] + 1] - slaves->first[face[i]]) * PLACES_MOST;
+    size = PetscMax(size, slaves->size[slaves->first[face[i]]]);
+  }
+  Tangents(dim, normal, t);
+  PetscCall(PetscMalloc2(room * dim, &term, room, &weight));
+  for (PetscInt i = 0; i < n_faces; i++) {
+    PetscReal along[2][3], of_face[3], place[PLACES_MOST][3];
+
+    FaceFrame(z, face[i], along, of_face);
+    for (PetscInt q = slaves->first[face[i]]; q < slaves->first[face[i] + 1]; q++) {
+      const int places = PointPlaces(z, q, along, place);
+
+      for (int k = 0; k < places; k++, points++) {
+        weight[points]     = slaves->weight[q] * z->pair->scene->share * z->pair->factor[q] / places;
+        term[points * dim] = 1;
+        for (int a = 0; a < dim - 1; a++) {
+          term[points * dim + 1 + a] = 0;
+          for (int d = 0; d < dim; d++)
+            term[points * dim + 1 + a] += (place[k][d] - slaves->nodes[node].X[d]) * t[a][d] / size;
+        }
+      }
+    }
+  }
+  for (int k = 0; k < 2; k++) {
+    const PetscReal *of = &sum[k ? SUM_RATE : SUM_MOMENT];
+
+    moment[k][0] = of[0];
+    for (int a = 0; a < dim - 1; a++)
+      for (int d = 0; d < dim; d++) moment[k][1 + a] += of[1 + d] * t[a][d] / size;
+  }
+  end[END_IS] = EndPressureFit(dim, points, term, weight, moment[0], moment[1], &fit);
+  if (end[END_IS] > 0) {
+    end[END_SQUARE] = fit.square[0];
+    end[END_RATE]   = fit.rate[0];
+    for (int d = 0; d < dim; d++)
+      for (int a = 0; a < dim - 1; a++) {
+        end[END_SQUARE + 1 + d] += fit.square[1 + a] * t[a][d] / size;
+        end[END_RATE + 1 + d] += fit.rate[1 + a] * t[a][d] / size;
+      }
+  }
+  PetscCall(PetscFree2(term, weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Lists the faces around the corners of this rank: those of node i are list[ptr[i]] to list[ptr[i + 1] - 1]. */
+static PetscErrorCode ListFaces(const ZoneEnd *z, PetscInt **ptr, PetscInt **list)
+{
+  const SlavePoints slaves = z->pair->slaves;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(slaves->n_nodes + 2, ptr));
+  for (PetscInt f = 0; f < slaves->n_faces; f++)
+    for (int k = 0; k < Corners(z, f); k++) (*ptr)[slaves->faces[f].nodes[k] + 2]++;
+  for (PetscInt i = 0; i <= slaves->n_nodes; i++) (*ptr)[i + 1] += (*ptr)[i];
+  PetscCall(PetscMalloc1((*ptr)[slaves->n_nodes + 1], list));
+  for (PetscInt f = 0; f < slaves->n_faces; f++)
+    for (int k = 0; k < Corners(z, f); k++) (*list)[(*ptr)[slaves->faces[f].nodes[k] + 1]++] = f;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fits the patches at the end of the zone, each where its corner is owned, and tells all ranks. */
+static PetscErrorCode FitPatches(ZoneEnd *z)
+{
+  const SlavePoints slaves = z->pair->slaves;
+  const Mesh        mesh   = z->pair->mesh;
+  PetscInt         *ptr, *list;
+  PetscReal        *sums, *ends;
+  MPI_Datatype      block;
+  PetscMPIInt       rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  PetscCall(PetscCalloc2(mesh->n_nodes * SUMS, &sums, mesh->n_nodes * END_WIDTH, &ends));
+  PetscCall(SumPatches(z, sums));
+  PetscCall(ListFaces(z, &ptr, &list));
+  for (PetscInt i = 0; i < slaves->n_nodes; i++) {
+    const NodeKey   *node = &slaves->nodes[i];
+    const PetscReal *sum  = &sums[node->local * SUMS];
+    PetscBool        ends_here = PETSC_FALSE;
+
+    if (node->owner != rank || !(sum[SUM_TERMS] >= mesh->dim)) continue;
+    for (PetscInt k = ptr[i]; k < ptr[i + 1]; k++) ends_here = (PetscBool)(ends_here || !z->bears[list[k]]);
+    if (ends_here)
+      PetscCall(FitPatch(z, i, ptr[i + 1] - ptr[i], &list[ptr[i]], sum, &ends[node->local * END_WIDTH]));
+  }
+  PetscCallMPI(MPI_Type_contiguous(END_WIDTH, MPIU_REAL, &block));
+  PetscCallMPI(MPI_Type_commit(&block));
+  PetscCall(PetscSFBcastBegin(slaves->sf, block, ends, z->end, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(slaves->sf, block, ends, z->end, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_free(&block));
+  PetscCall(PetscFree(ptr));
+  PetscCall(PetscFree(list));
+  PetscCall(PetscFree2(sums, ends));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The pressure of a patch and its rate, the means over the places of a point. */
+static void PatchAt(const ZoneEnd *z, PetscInt node, int places, PetscReal place[PLACES_MOST][3], PetscReal *p,
+                    PetscReal *rate)
+{
+  const PetscReal *end = &z->end[node * END_WIDTH], *X = z->pair->slaves->nodes[node].X;
+
+  *p = *rate = 0;
+  for (int k = 0; k < places; k++) {
+    PetscReal square = end[END_SQUARE], square_rate = end[END_RATE], p_at, rate_at;
+
+    for (int d = 0; d < z->pair->mesh->dim; d++) {
+      square += end[END_SQUARE + 1 + d] * (place[k][d] - X[d]);
+      square_rate += end[END_RATE + 1 + d] * (place[k][d] - X[d]);
+    }
+    EndPressureAt(square, square_rate, &p_at, &rate_at);
+    *p += p_at / places;
+    *rate += rate_at / places;
+  }
+}
+
+/* Adds up what the corners of a point's face with a pressure of their own say at the point: their shares, the pressure
+   and its rate times these. */
+static void PointAt(const ZoneEnd *z, PetscInt q, PetscReal *share, PetscReal *p, PetscReal *rate)
+{
+  const SlavePoints slaves = z->pair->slaves;
+  const PetscInt    f      = z->face[q];
+  const Facet      *facet  = &slaves->faces[f];
+  const FaceRule   *rule   = FaceRuleOf(facet->type, slaves->finer, slaves->ends[f]);
+  PetscReal         along[2][3], normal[3], place[PLACES_MOST][3], N[FACE_MAX_NODES];
+  int               places = 0;
+
+  *share = *p = *rate = 0;
+  ElementShape(ElementCornerType(z->pair->mesh->dim - 1, Corners(z, f)), rule->xi[q - slaves->first[f]], N, NULL, NULL);
+  for (int k = 0; k < Corners(z, f); k++) {
+    PetscReal p_at, rate_at;
+
+    if (!(z->end[facet->nodes[k] * END_WIDTH + END_IS] > 0)) continue;
+    if (!places) {
+      FaceFrame(z, f, along, normal);
+      places = PointPlaces(z, q, along, place);
+    }
+    PatchAt(z, facet->nodes[k], places, place, &p_at, &rate_at);
+    *share += N[k];
+    *p += N[k] * p_at;
+    *rate += N[k] * rate_at;
+  }
+}
+
+/* Sums up the error over this rank's terms. */
+static void SumError(const ZoneEnd *z, PetscReal *error)
+{
+  const ContactPair *pair = z->pair;
+  PetscReal         *at;
+
+  at = z->at;
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) PointAt(z, q, &at[3 * q], &at[3 * q + 1], &at[3 * q + 2]);
+  *error = 0;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    const PetscReal begins = ContactTermOnsetGap(pair, c, pair->t);
+    LawValue        value;
+    PetscReal       area;
+
+    ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
+    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+      const PetscInt  q      = pair->term_point[k];
+      const PetscReal weight = pair->term_weight[k] * pair->factor[q], share = at[3 * q];
+
+      if (PetscIsNanReal(pair->point_gap[q]) || share == 0) continue;
+      *error -= weight * ((at[3 * q + 2] - share * z->rate[c]) * (pair->point_gap[q] - begins) +
+                          (at[3 * q + 1] - share * value.pressure) * z->along[q]);
+    }
+  }
+}
+
+static PetscErrorCode Create(const ContactPair *pair, ZoneEnd *z)
+{
+  const SlavePoints slaves = pair->slaves;
+
+  PetscFunctionBeginUser;
+  *z = (ZoneEnd){.pair = pair};
+  PetscCall(PetscCalloc6(slaves->n, &z->face, slaves->n_faces, &z->bears, slaves->n, &z->along, 3 * slaves->n, &z->at,
+                         pair->n, &z->rate, slaves->n_nodes * END_WIDTH, &z->end));
+  for (PetscInt f = 0; f < slaves->n_faces; f++)
+    for (PetscInt q = slaves->first[f]; q < slaves->first[f + 1]; q++) z->face[q] = f;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairZoneEnd - estimates what the end of a pair's zone of contact leaves of error in a quantity.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact, in the state of its last ContactResidual() with forces
+. p       - number of the pair
+- y       - adjoint solution of the quantity, with what it sees of the pair directly, y[n_nodes*dim], ghosts included
+
+  Output Parameters:
++ error - true less computed value, the same on all ranks
+- known - PETSC_FALSE: not known in node to surface contact, which sees no gaps between nodes
+@*/
+PetscErrorCode ContactPairZoneEnd(Contact contact, int p, const PetscReal *y, PetscReal *error, PetscBool *known)
+{
+  ContactPair *pair = &contact->pairs[p];
+  PetscReal   *motion;
+  ZoneEnd      z;
+
+  PetscFunctionBeginUser;
+  *error = 0;
+  *known = pair->formulation.surface;
+  if (!*known) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Create(pair, &z));
+  PetscCall(PetscCalloc1(pair->lists->n_nodes * pair->mesh->dim, &motion));
+  PetscCall(ContactPairMove(contact, pair, y, pair->t, pair->t, motion));
+  PetscCall(FindRates(&z, motion));
+  PetscCall(FindBearing(&z));
+  PetscCall(FitPatches(&z));
+  SumError(&z, error);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, error, 1, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
+  PetscCall(PetscFree(motion));
+  PetscCall(PetscFree6(z.face, z.bears, z.along, z.at, z.rate, z.end));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

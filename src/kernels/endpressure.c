@@ -1,0 +1,145 @@
+/* Pressures near the end of a contact zone, see endpressure.h. */
+#include "kernels/endpressure.h"
+#include "kernels/recovery.h"
+#include <math.h>
+
+/* The moments are met to this part of the force. */
+static const double met = 1e-10;
+/* A step counts that raises the function by this part of what its slope promises (Armijo). */
+static const double enough = 1e-4;
+/* Steps, and halvings of one: moments at the very edge of the region have no pressure that is found in fewer. */
+enum { MOST_STEPS = 60, MOST_HALVINGS = 40, MATRIX = ENDPRESSURE_TERMS * (ENDPRESSURE_TERMS + 1) / 2 };
+
+/* A region, with weights over their sum, and the moments that are wanted, over the force */
+typedef struct {
+  int           terms, points;
+  const double *term, *weight;
+  double        area, moment[ENDPRESSURE_TERMS];
+} Region;
+
+static double Square(const Region *r, const double *a, int point)
+{
+  double q = 0;
+
+  for (int i = 0; i < r->terms; i++) q += a[i] * r->term[point * r->terms + i];
+  return q;
+}
+
+/* The concave function whose largest value is sought, a . moment - int 2/3 (a . terms)^(3/2); its slope and minus its
+   second derivatives where they are wanted. */
+static double Value(const Region *r, const double *a, double *slope, double *matrix)
+{
+  double value = 0;
+
+  for (int i = 0; i < r->terms; i++) value += a[i] * r->moment[i];
+  for (int i = 0; i < r->terms && slope; i++) slope[i] = r->moment[i];
+  for (int i = 0; i < MATRIX && matrix; i++) matrix[i] = 0;
+  for (int k = 0; k < r->points; k++) {
+    const double *term = &r->term[k * r->terms], q = Square(r, a, k), weight = r->weight[k] / r->area;
+    const double  p = q > 0 ? sqrt(q) : 0;
+    double        scaled[ENDPRESSURE_TERMS];
+
+    if (!(p > 0)) continue;
+    value -= weight * 2. / 3 * q * p;
+    for (int i = 0; i < r->terms && slope; i++) slope[i] -= weight * p * term[i];
+    for (int i = 0; i < r->terms && matrix; i++) scaled[i] = sqrt(weight / (2 * p)) * term[i];
+    if (matrix) RecoveryAdd(r->terms, scaled, matrix);
+  }
+  return value;
+}
+
+/* Goes from a along a direction as far as the function rises. Returns 0 where it does not. */
+static int Step(const Region *r, const double *slope, const double *direction, double *a)
+{
+  const double before  = Value(r, a, 0, 0);
+  double       promise = 0, length = 1;
+
+  for (int i = 0; i < r->terms; i++) promise += slope[i] * direction[i];
+  for (int halving = 0; halving < MOST_HALVINGS; halving++, length /= 2) {
+    double there[ENDPRESSURE_TERMS];
+
+    for (int i = 0; i < r->terms; i++) there[i] = a[i] + length * direction[i];
+    if (!(Value(r, there, 0, 0) >= before + enough * length * promise)) continue;
+    for (int i = 0; i < r->terms; i++) a[i] = there[i];
+    return 1;
+  }
+  return 0;
+}
+
+/* Newton's method from a constant pressure. matrix: its factor at the end. */
+static int Maximise(const Region *r, double *a, double *matrix)
+{
+  for (int step = 0; step < MOST_STEPS; step++) {
+    double slope[ENDPRESSURE_TERMS], direction[ENDPRESSURE_TERMS], variance, most = 0;
+
+    Value(r, a, slope, matrix);
+    for (int i = 0; i < r->terms; i++) {
+      direction[i] = slope[i];
+      most         = fmax(most, fabs(slope[i]));
+    }
+    if (RecoveryFactor(r->terms - 1, 1, matrix, &variance) < 1) return 0;
+    if (most <= met) return 1;
+    RecoverySolve(r->terms, matrix, 1, direction);
+    if (!Step(r, slope, direction, a)) return 0;
+  }
+  return 0;
+}
+
+/*@
+  EndPressureFit - finds the pressure that has a force and moments, and its rate.
+
+  Not collective
+
+  Input Parameters:
++ terms       - 2 or 3: 1 and the coordinates
+. points      - number of points of the region
+. term        - at the points [points][terms]
+. weight      - areas of the points
+. moment      - of the pressures: the integrals of the pressure times the terms
+- moment_rate - their rates
+
+  Output Parameter:
+. fit - the pressure
+
+  Note:
+  Returns 0 where there is no such pressure.
+@*/
+int EndPressureFit(int terms, int points, const double *term, const double *weight, const double *moment,
+                   const double *moment_rate, EndPressure *fit)
+{
+  Region r = {.terms = terms, .points = points, .term = term, .weight = weight};
+  double a[ENDPRESSURE_TERMS] = {1, 0, 0}, matrix[MATRIX], mean;
+
+  *fit = (EndPressure){.square = {0}};
+  for (int k = 0; k < points; k++) r.area += weight[k];
+  if (!(moment[0] > 0) || !(r.area > 0)) return 0;
+  mean = moment[0] / r.area;
+  for (int i = 0; i < terms; i++) r.moment[i] = moment[i] / moment[0];
+  if (!Maximise(&r, a, matrix)) return 0;
+  for (int i = 0; i < terms; i++) {
+    fit->square[i] = mean * mean * a[i];
+    fit->rate[i]   = moment_rate[i] / r.area;
+  }
+  RecoverySolve(terms, matrix, 1, fit->rate);
+  for (int i = 0; i < terms; i++) fit->rate[i] *= mean;
+  return 1;
+}
+
+/*@
+  EndPressureAt - gives the pressure at a place, and its rate.
+
+  Not collective
+
+  Input Parameters:
++ square      - of the pressure as EndPressureFit() has it, of either sign
+- square_rate - the rate of it
+
+  Output Parameters:
++ pressure - 0 beyond the end
+- rate     - likewise
+@*/
+void EndPressureAt(double square, double square_rate, double *pressure, double *rate)
+{
+  *pressure = square > 0 ? sqrt(square) : 0;
+  *rate     = square > 0 ? square_rate / (2 * *pressure) : 0;
+}
