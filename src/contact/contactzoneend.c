@@ -10,16 +10,16 @@
    weighted with the adjoint solution (Becker and Rannacher, Acta Numerica 10, 2001). Where the pressure is smooth,
    hats are near to it. Where the zone ends within a face, they are not: p and z there are those that end as pressures
    do where smooth surfaces part, with the forces and moments of p_h and z_h (kernels/endpressure.h). A patch is the
-   faces around a corner of the slave. It counts where one of its faces bears nothing, and where as many terms press on
-   it as its pressure has unknowns. Within a face the corners share as the linear shape functions do. */
+   faces around a corner of the slave. It counts where one of its faces bears nothing, and where a term presses that
+   lies in it: of those that reach beyond it no patch has the moments. Within a face the corners share as the linear shape functions do. */
 #include "contactimpl.h"
 #include "kernels/endpressure.h"
 
 /* Each slave point stands for so many places in each direction of its face: the square root at the end of a zone is not
    smooth. */
 enum { PLACES = 6, PLACES_MOST = PLACES * PLACES };
-/* Of a patch: force and moments of the pressures, of their rates, the number of terms that press */
-enum { SUM_MOMENT, SUM_RATE = SUM_MOMENT + 4, SUM_TERMS = SUM_RATE + 4, SUMS };
+/* Of a patch: force and moments of the pressures, of their rates, the number of pressing terms that lie in it */
+enum { SUM_MOMENT, SUM_RATE = SUM_MOMENT + 4, SUM_WHOLE = SUM_RATE + 4, SUMS };
 /* Its pressure: the square at the corner and its slopes, those of its rate; whether there is one */
 enum { END_SQUARE, END_RATE = END_SQUARE + 4, END_IS = END_RATE + 4, END_WIDTH };
 
@@ -89,9 +89,8 @@ static PetscErrorCode FindBearing(ZoneEnd *z)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a point's share of a term to the sums of the corners of its face. last: the last term that each has counted. */
-static void AddPoint(const ZoneEnd *z, PetscInt c, PetscInt q, PetscReal force, PetscReal rate, PetscInt *last,
-                     PetscReal *sums)
+/* Adds a point's share of a term to the sums of the corners of its face. count: points of the term in each patch. */
+static void AddPoint(const ZoneEnd *z, PetscInt q, PetscReal force, PetscReal rate, PetscInt *count, PetscReal *sums)
 {
   const SlavePoints slaves = z->pair->slaves;
   const Facet      *facet  = &slaves->faces[z->face[q]];
@@ -101,6 +100,7 @@ static void AddPoint(const ZoneEnd *z, PetscInt c, PetscInt q, PetscReal force, 
     const PetscInt node = facet->nodes[k];
     PetscReal     *sum  = &sums[node * SUMS];
 
+    count[node]++;
     sum[SUM_MOMENT] += force;
     sum[SUM_RATE] += rate;
     for (int d = 0; d < dim; d++) {
@@ -109,8 +109,29 @@ static void AddPoint(const ZoneEnd *z, PetscInt c, PetscInt q, PetscReal force, 
       sum[SUM_MOMENT + 1 + d] += force * x;
       sum[SUM_RATE + 1 + d] += rate * x;
     }
-    if (last[node] != c) sum[SUM_TERMS]++;
-    last[node] = c;
+  }
+}
+
+/* Adds a term that presses. count: zeros, and again afterwards. */
+static void AddTerm(const ZoneEnd *z, PetscInt c, PetscReal pressure, PetscInt *count, PetscReal *sums)
+{
+  const ContactPair *pair   = z->pair;
+  const PetscInt     points = pair->term_ptr[c + 1] - pair->term_ptr[c], *point = &pair->term_point[pair->term_ptr[c]];
+
+  for (PetscInt k = 0; k < points; k++) {
+    const PetscReal weight = pair->term_weight[pair->term_ptr[c] + k] * pair->factor[point[k]];
+
+    AddPoint(z, point[k], weight * pressure, weight * z->rate[c], count, sums);
+  }
+  for (PetscInt k = 0; k < points; k++) {
+    const Facet *facet = &pair->slaves->faces[z->face[point[k]]];
+
+    for (int a = 0; a < Corners(z, z->face[point[k]]); a++) {
+      const PetscInt node = facet->nodes[a];
+
+      if (count[node] == points) sums[node * SUMS + SUM_WHOLE]++;
+      count[node] = 0;
+    }
   }
 }
 
@@ -120,32 +141,24 @@ static PetscErrorCode SumPatches(const ZoneEnd *z, PetscReal *at_owner)
   const ContactPair *pair   = z->pair;
   const SlavePoints  slaves = pair->slaves;
   PetscReal         *sums;
-  PetscInt          *last;
+  PetscInt          *count;
   MPI_Datatype       block;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(slaves->n_nodes * SUMS, &sums));
-  PetscCall(PetscMalloc1(slaves->n_nodes, &last));
-  for (PetscInt i = 0; i < slaves->n_nodes; i++) last[i] = -1;
+  PetscCall(PetscCalloc2(slaves->n_nodes * SUMS, &sums, slaves->n_nodes, &count));
   for (PetscInt c = 0; c < pair->n; c++) {
     LawValue  value;
     PetscReal area;
 
     ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
-    for (PetscInt k = pair->term_ptr[c]; value.pressure > 0 && k < pair->term_ptr[c + 1]; k++) {
-      const PetscReal weight = pair->term_weight[k] * pair->factor[pair->term_point[k]];
-
-      if (weight > 0)
-        AddPoint(z, c, pair->term_point[k], weight * value.pressure, weight * z->rate[c], last, sums);
-    }
+    if (value.pressure > 0) AddTerm(z, c, value.pressure, count, sums);
   }
   PetscCallMPI(MPI_Type_contiguous(SUMS, MPIU_REAL, &block));
   PetscCallMPI(MPI_Type_commit(&block));
   PetscCall(PetscSFReduceBegin(slaves->sf, block, sums, at_owner, MPI_SUM));
   PetscCall(PetscSFReduceEnd(slaves->sf, block, sums, at_owner, MPI_SUM));
   PetscCallMPI(MPI_Type_free(&block));
-  PetscCall(PetscFree(last));
-  PetscCall(PetscFree(sums));
+  PetscCall(PetscFree2(sums, count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -319,7 +332,7 @@ static PetscErrorCode FitPatches(ZoneEnd *z)
     const PetscReal *sum  = &sums[node->local * SUMS];
     PetscBool        ends_here = PETSC_FALSE;
 
-    if (node->owner != rank || !(sum[SUM_TERMS] >= mesh->dim)) continue;
+    if (node->owner != rank || !(sum[SUM_WHOLE] > 0)) continue;
     for (PetscInt k = ptr[i]; k < ptr[i + 1]; k++) ends_here = (PetscBool)(ends_here || !z->bears[list[k]]);
     if (ends_here)
       PetscCall(FitPatch(z, i, ptr[i + 1] - ptr[i], &list[ptr[i]], sum, &ends[node->local * END_WIDTH]));
