@@ -107,7 +107,7 @@ static int Maximise(const Region *r, double *a, double *matrix)
 int EndPressureFit(int terms, int points, const double *term, const double *weight, const double *moment,
                    const double *moment_rate, EndPressure *fit)
 {
-  Region r = {.terms = terms, .points = points, .term = term, .weight = weight};
+  Region r                    = {.terms = terms, .points = points, .term = term, .weight = weight};
   double a[ENDPRESSURE_TERMS] = {1, 0, 0}, matrix[MATRIX], mean;
 
   *fit = (EndPressure){.square = {0}};
