@@ -10,24 +10,23 @@
    weighted with the adjoint solution (Becker and Rannacher, Acta Numerica 10, 2001). Where the pressure is smooth,
    hats are near to it. Where the zone ends within a face, they are not: p and z there are those that end as pressures
    do where smooth surfaces part, with the forces and moments of p_h and z_h (kernels/endpressure.h). A patch is the
-   faces around a corner of the slave. It counts where one term presses that lies in it, since of those that reach
-   beyond it the patch has no moments, and where another one does not. Within a face the corners share as the linear
-   shape functions do. */
+   faces around a corner of the slave. It counts where one of its faces bears nothing, and where a term presses that
+   lies in it: of those that reach beyond it no patch has the moments. Within a face the corners share as the linear shape functions do. */
 #include "contactimpl.h"
 #include "kernels/endpressure.h"
 
 /* Each slave point stands for so many places in each direction of its face: the square root at the end of a zone is not
    smooth. */
 enum { PLACES = 6, PLACES_MOST = PLACES * PLACES };
-/* Of a patch: force and moments of the pressures, of their rates; numbers of pressing terms that lie in it and of
-   points of terms that do not press */
-enum { SUM_MOMENT, SUM_RATE = SUM_MOMENT + 4, SUM_WHOLE = SUM_RATE + 4, SUM_OPEN, SUMS };
+/* Of a patch: force and moments of the pressures, of their rates, the number of pressing terms that lie in it */
+enum { SUM_MOMENT, SUM_RATE = SUM_MOMENT + 4, SUM_WHOLE = SUM_RATE + 4, SUMS };
 /* Its pressure: the square at the corner and its slopes, those of its rate; whether there is one */
 enum { END_SQUARE, END_RATE = END_SQUARE + 4, END_IS = END_RATE + 4, END_WIDTH };
 
 typedef struct {
   const ContactPair *pair;
   PetscInt          *face;  /* of each slave point */
+  int               *bears; /* each face bears a force, of any rank's terms */
   PetscReal         *along; /* changes of the gaps of the slave points along y */
   PetscReal         *rate;  /* of the pressure of each term along y */
   PetscReal         *end;   /* of each node of the slave points [END_WIDTH] */
@@ -62,6 +61,31 @@ static PetscErrorCode FindRates(ZoneEnd *z, const PetscReal *motion)
       sum += pair->term_weight[k] * pair->factor[pair->term_point[k]] * z->along[pair->term_point[k]];
     if (value.stiffness > 0) z->rate[c] = -value.stiffness * sum / area;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the faces that bear a force. */
+static PetscErrorCode FindBearing(ZoneEnd *z)
+{
+  const ContactPair *pair   = z->pair;
+  const SlavePoints  slaves = pair->slaves;
+  int               *home;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(slaves->surface->n_faces, &home));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    LawValue  value;
+    PetscReal area;
+
+    ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
+    for (PetscInt k = pair->term_ptr[c]; value.pressure > 0 && k < pair->term_ptr[c + 1]; k++)
+      if (pair->term_weight[k] > 0) z->bears[z->face[pair->term_point[k]]] = 1;
+  }
+  PetscCall(PetscSFReduceBegin(slaves->face_sf, MPI_INT, z->bears, home, MPI_MAX));
+  PetscCall(PetscSFReduceEnd(slaves->face_sf, MPI_INT, z->bears, home, MPI_MAX));
+  PetscCall(PetscSFBcastBegin(slaves->face_sf, MPI_INT, home, z->bears, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(slaves->face_sf, MPI_INT, home, z->bears, MPI_REPLACE));
+  PetscCall(PetscFree(home));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,18 +135,6 @@ static void AddTerm(const ZoneEnd *z, PetscInt c, PetscReal pressure, PetscInt *
   }
 }
 
-/* Counts a term that does not press in the patches into which it reaches. */
-static void AddOpenTerm(const ZoneEnd *z, PetscInt c, PetscReal *sums)
-{
-  const ContactPair *pair = z->pair;
-
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt f = z->face[pair->term_point[k]];
-
-    for (int a = 0; a < Corners(z, f); a++) sums[pair->slaves->faces[f].nodes[a] * SUMS + SUM_OPEN]++;
-  }
-}
-
 /* Sums up the patches, over all ranks at the owners of their corners. at_owner: [local nodes][SUMS]. */
 static PetscErrorCode SumPatches(const ZoneEnd *z, PetscReal *at_owner)
 {
@@ -139,10 +151,7 @@ static PetscErrorCode SumPatches(const ZoneEnd *z, PetscReal *at_owner)
     PetscReal area;
 
     ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
-    if (value.pressure > 0)
-      AddTerm(z, c, value.pressure, count, sums);
-    else
-      AddOpenTerm(z, c, sums);
+    if (value.pressure > 0) AddTerm(z, c, value.pressure, count, sums);
   }
   PetscCallMPI(MPI_Type_contiguous(SUMS, MPIU_REAL, &block));
   PetscCallMPI(MPI_Type_commit(&block));
@@ -199,7 +208,8 @@ static int PointPlaces(const ZoneEnd *z, PetscInt q, PetscReal along[2][3], Pets
       const PetscReal at[2] = {((j + 0.5) / PLACES - 0.5) * size, dim == 3 ? ((i + 0.5) / PLACES - 0.5) * size : 0};
 
       for (int d = 0; d < dim; d++)
-        place[i * PLACES + j][d] = z->pair->lists->slave_X[q * dim + d] + at[0] * along[0][d] + at[1] * along[1][d];
+        place[i * PLACES + j][d] =
+          z->pair->lists->slave_X[q * dim + d] + at[0] * along[0][d] + at[1] * along[1][d];
     }
   }
   return rows * PLACES;
@@ -230,8 +240,8 @@ static void Tangents(int dim, const PetscReal n[3], PetscReal t[2][3])
 static PetscErrorCode FitPatch(const ZoneEnd *z, PetscInt node, PetscInt n_faces, const PetscInt face[],
                                const PetscReal *sum, PetscReal *end)
 {
-  const SlavePoints slaves    = z->pair->slaves;
-  const int         dim       = z->pair->mesh->dim;
+  const SlavePoints slaves = z->pair->slaves;
+  const int         dim    = z->pair->mesh->dim;
   PetscReal         normal[3] = {0, 0, 0}, size = 0, t[2][3], moment[2][ENDPRESSURE_TERMS] = {{0}}, *term, *weight;
   int               points = 0, room = 0;
   EndPressure       fit;
@@ -320,8 +330,11 @@ static PetscErrorCode FitPatches(ZoneEnd *z)
   for (PetscInt i = 0; i < slaves->n_nodes; i++) {
     const NodeKey   *node = &slaves->nodes[i];
     const PetscReal *sum  = &sums[node->local * SUMS];
+    PetscBool        ends_here = PETSC_FALSE;
 
-    if (node->owner == rank && sum[SUM_WHOLE] > 0 && sum[SUM_OPEN] > 0)
+    if (node->owner != rank || !(sum[SUM_WHOLE] > 0)) continue;
+    for (PetscInt k = ptr[i]; k < ptr[i + 1]; k++) ends_here = (PetscBool)(ends_here || !z->bears[list[k]]);
+    if (ends_here)
       PetscCall(FitPatch(z, i, ptr[i + 1] - ptr[i], &list[ptr[i]], sum, &ends[node->local * END_WIDTH]));
   }
   PetscCallMPI(MPI_Type_contiguous(END_WIDTH, MPIU_REAL, &block));
@@ -415,8 +428,8 @@ static PetscErrorCode Create(const ContactPair *pair, ZoneEnd *z)
 
   PetscFunctionBeginUser;
   *z = (ZoneEnd){.pair = pair};
-  PetscCall(PetscCalloc5(slaves->n, &z->face, slaves->n, &z->along, 3 * slaves->n, &z->at, pair->n, &z->rate,
-                         slaves->n_nodes * END_WIDTH, &z->end));
+  PetscCall(PetscCalloc6(slaves->n, &z->face, slaves->n_faces, &z->bears, slaves->n, &z->along, 3 * slaves->n, &z->at,
+                         pair->n, &z->rate, slaves->n_nodes * END_WIDTH, &z->end));
   for (PetscInt f = 0; f < slaves->n_faces; f++)
     for (PetscInt q = slaves->first[f]; q < slaves->first[f + 1]; q++) z->face[q] = f;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -450,10 +463,11 @@ PetscErrorCode ContactPairZoneEnd(Contact contact, int p, const PetscReal *y, Pe
   PetscCall(PetscCalloc1(pair->lists->n_nodes * pair->mesh->dim, &motion));
   PetscCall(ContactPairMove(contact, pair, y, pair->t, pair->t, motion));
   PetscCall(FindRates(&z, motion));
+  PetscCall(FindBearing(&z));
   PetscCall(FitPatches(&z));
   SumError(&z, error);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, error, 1, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
   PetscCall(PetscFree(motion));
-  PetscCall(PetscFree5(z.face, z.along, z.at, z.rate, z.end));
+  PetscCall(PetscFree6(z.face, z.bears, z.along, z.at, z.rate, z.end));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

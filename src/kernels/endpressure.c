@@ -3,8 +3,10 @@
 #include "kernels/recovery.h"
 #include <math.h>
 
-/* The moments are met to this part of the force. */
-static const double met = 1e-10;
+/* The function, which is about 1, is within some of this part of its largest value: round-off. */
+static const double met = 1e-15;
+/* Where round-off lets no step rise, so near is enough. */
+static const double near = 1e-8;
 /* A step counts that raises the function by this part of what its slope promises (Armijo). */
 static const double enough = 1e-4;
 /* Steps, and halvings of one: moments at the very edge of the region have no pressure that is found in fewer. */
@@ -48,13 +50,12 @@ static double Value(const Region *r, const double *a, double *slope, double *mat
   return value;
 }
 
-/* Goes from a along a direction as far as the function rises. Returns 0 where it does not. */
-static int Step(const Region *r, const double *slope, const double *direction, double *a)
+/* Goes from a along a direction as far as the function rises. promise: slope along it. Returns 0 where it does not. */
+static int Step(const Region *r, double promise, const double *direction, double *a)
 {
-  const double before  = Value(r, a, 0, 0);
-  double       promise = 0, length = 1;
+  const double before = Value(r, a, 0, 0);
+  double       length = 1;
 
-  for (int i = 0; i < r->terms; i++) promise += slope[i] * direction[i];
   for (int halving = 0; halving < MOST_HALVINGS; halving++, length /= 2) {
     double there[ENDPRESSURE_TERMS];
 
@@ -70,17 +71,14 @@ static int Step(const Region *r, const double *slope, const double *direction, d
 static int Maximise(const Region *r, double *a, double *matrix)
 {
   for (int step = 0; step < MOST_STEPS; step++) {
-    double slope[ENDPRESSURE_TERMS], direction[ENDPRESSURE_TERMS], variance, most = 0;
+    double slope[ENDPRESSURE_TERMS], direction[ENDPRESSURE_TERMS], variance, promise = 0;
 
     Value(r, a, slope, matrix);
-    for (int i = 0; i < r->terms; i++) {
-      direction[i] = slope[i];
-      most         = fmax(most, fabs(slope[i]));
-    }
+    for (int i = 0; i < r->terms; i++) direction[i] = slope[i];
     if (RecoveryFactor(r->terms - 1, 1, matrix, &variance) < 1) return 0;
-    if (most <= met) return 1;
     RecoverySolve(r->terms, matrix, 1, direction);
-    if (!Step(r, slope, direction, a)) return 0;
+    for (int i = 0; i < r->terms; i++) promise += slope[i] * direction[i];
+    if (promise <= met || !Step(r, promise, direction, a)) return promise <= near;
   }
   return 0;
 }
