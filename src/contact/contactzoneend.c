@@ -447,7 +447,8 @@ static PetscErrorCode Create(const ContactPair *pair, ZoneEnd *z)
 
   Output Parameters:
 + error - true less computed value, the same on all ranks
-- known - PETSC_FALSE: not known in node to surface contact, which sees no gaps between nodes
+- known - PETSC_FALSE: not known in node to surface contact, which sees no gaps between nodes, nor with friction, which
+          follows the pressures
 @*/
 PetscErrorCode ContactPairZoneEnd(Contact contact, int p, const PetscReal *y, PetscReal *error, PetscBool *known)
 {
@@ -457,7 +458,7 @@ PetscErrorCode ContactPairZoneEnd(Contact contact, int p, const PetscReal *y, Pe
 
   PetscFunctionBeginUser;
   *error = 0;
-  *known = pair->formulation.surface;
+  *known = (PetscBool)(pair->formulation.surface && !pair->friction);
   if (!*known) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Create(pair, &z));
   PetscCall(PetscCalloc1(pair->lists->n_nodes * pair->mesh->dim, &motion));

@@ -3,6 +3,9 @@
 #include "errors/bodyerror.h"
 #include <math.h>
 
+/* Recovered fields are known to a factor of two: what they give of error may be off by this part of it. */
+#define QUANTITYERROR_DOUBT 0.5
+
 const char *const ErrorCauses[] = {
   [ERROR_BODIES] = "bodies",     [ERROR_GEOMETRY] = "contact surfaces", [ERROR_ENDS] = "ends of zones", [ERROR_PENETRATION] = "penetration",
   [ERROR_SLIP] = "elastic slip", [ERROR_STEPS] = "load steps",          [ERROR_SOLVER] = "solver"};
@@ -24,7 +27,14 @@ PetscBool ModelDependsOnPath(Model model)
 /* Adds up the known parts. */
 static void Total(QuantityError *error)
 {
+  const ErrorCause recovered[] = {ERROR_GEOMETRY, ERROR_ENDS};
+
   error->sum = error->magnitude = 0;
+  error->uncertain              = QUANTITYERROR_DOUBT * error->spread;
+  for (int k = 0; k < 2; k++) {
+    if (!isnan((double)error->part[recovered[k]]))
+      error->uncertain += QUANTITYERROR_DOUBT * PetscAbsReal(error->part[recovered[k]]);
+  }
   for (int c = 0; c < ERROR_CAUSES; c++) {
     if (isnan((double)error->part[c])) continue;
     error->sum += error->part[c];
@@ -47,6 +57,22 @@ void QuantityErrorSetSteps(QuantityError *error, PetscReal steps)
   Total(error);
 }
 
+/*@
+  QuantityErrorCancels - says whether the parts of an estimate cancel, so that the sign of the sum is not known.
+
+  Not collective
+
+  Input Parameter:
+. error - the estimate
+
+  Note:
+  The error may then be as large as error->uncertain.
+@*/
+PetscBool QuantityErrorCancels(const QuantityError *error)
+{
+  return (PetscBool)(error->uncertain > PetscAbsReal(error->sum));
+}
+
 /* Joins the parts of one quantity. shape: that of the masters; end: that of the ends of zones of contact. */
 static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint, PetscReal shape, PetscReal end,
                            QuantityError *error)
@@ -55,7 +81,7 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
 
   PetscFunctionBeginUser;
   error->why = adjoint->known ? NULL : "the transposed tangent cannot be solved with";
-  error->sum = error->magnitude = error->spread = 0;
+  error->sum = error->magnitude = error->uncertain = error->spread = 0;
   error->shared                                 = PETSC_FALSE;
   error->cells                                  = NULL;
   for (int c = 0; c < ERROR_CAUSES; c++) error->part[c] = NAN;

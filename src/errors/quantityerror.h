@@ -7,8 +7,13 @@
    known is NaN: that of the load steps where the answer depends on the path, unless a second run gives it
    (QuantityErrorSetSteps(), run/historyerror.c), and that of the surfaces in contact
    where one master is a meshed rigid tool or of facets. Of smooth masters it is how far they miss their own nodes
-   (ContactPairShapeForces()). It is 0 where there is no such cause, as with analytic masters. That straight edges of
-   elements stand for curved boundaries is in no part.
+   (ContactPairShapeForces()). That of the ends of zones of contact is known in surface to surface contact
+   without friction (ContactPairZoneEnd()). Each is 0 where there is no such cause: masters are analytic, all of a slave
+   is in contact. That straight edges of elements stand for curved boundaries is in no part.
+
+   What is estimated by recovered fields is known to a factor of two: cells, contact surfaces, ends of zones. Half of
+   their magnitudes is what the sum may be off by. Where that is more than the sum, the parts cancel, and the error has
+   no sign and may be as large (QuantityErrorCancels()).
 
    QuantityErrorShares() serves quantities without a first variation, such as a peak or the end of a contact zone: it
    says where elements are to become smaller, but not how large the error is. */
@@ -32,6 +37,7 @@ typedef struct {
   PetscReal   part[ERROR_CAUSES];
   PetscReal   sum;       /* of the known parts */
   PetscReal   magnitude; /* sum of their absolute values */
+  PetscReal   uncertain; /* of the sum: half of what is estimated by recovered fields */
   PetscReal   spread;    /* sum of the magnitudes of the cells' shares in that of the bodies */
   PetscBool   shared;    /* the cells' shares are known; the same on all ranks */
   PetscReal  *cells;     /* share of each local cell in that of the bodies; NULL on a rank without cells, too */
@@ -41,5 +47,6 @@ PetscErrorCode QuantityErrorsEstimate(Model, int n, const Functional[], Quantity
 PetscErrorCode QuantityErrorShares(Model, QuantityError *);
 void           QuantityErrorScale(PetscReal value, QuantityError *);
 PetscBool      ModelDependsOnPath(Model);
+PetscBool      QuantityErrorCancels(const QuantityError *);
 void           QuantityErrorSetSteps(QuantityError *, PetscReal steps);
 PetscErrorCode QuantityErrorReset(QuantityError *);

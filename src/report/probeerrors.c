@@ -5,8 +5,6 @@
 /* The end of a zone of contact is told of where it may leave more than this part of the forces: so much the run lets
    penetration leave. */
 #define PROBEERRORS_ZONE 0.004
-/* Shares of elements cancel where their magnitudes are so many times their sum. */
-#define PROBEERRORS_CANCEL 2
 /* Zones with less than this part of the forces of the most loaded one are not told of. */
 #define PROBEERRORS_LIGHT 0.01
 
@@ -230,13 +228,6 @@ PetscReal ProbeErrorsHistorySeconds(ProbeErrors errors)
   return errors->history_s;
 }
 
-/* Do the cells' shares cancel? Where each is known to a factor of two, half of their magnitudes is then as much as
-   their sum. */
-static PetscBool SharesCancel(const QuantityError *error)
-{
-  return (PetscBool)(error->spread > PROBEERRORS_CANCEL * PetscAbsReal(error->part[ERROR_BODIES]));
-}
-
 /* Prints one probe: the sum, then its parts. */
 static void PrintError(const char *name, PetscReal value, const QuantityError *error, FILE *stream)
 {
@@ -254,10 +245,12 @@ static void PrintError(const char *name, PetscReal value, const QuantityError *e
     if (isfinite(part) && !isnan((double)error->part[c])) fprintf(stream, " (%+.2g %%)", part * (double)error->part[c]);
   }
   fprintf(stream, "\n");
-  if (!SharesCancel(error)) return;
-  fprintf(stream, "         the shares of the elements in it cancel: their magnitudes are %.3g", (double)error->spread);
+  if (!QuantityErrorCancels(error)) return;
+  fprintf(stream, "         its parts cancel: the error may be %.3g", (double)error->uncertain);
+  if (isfinite(part)) fprintf(stream, " (%.2g %%)", part * (double)error->uncertain);
+  fprintf(stream, " with either sign; the shares of the elements have a magnitude of %.3g", (double)error->spread);
   if (isfinite(part)) fprintf(stream, " (%.2g %%)", part * (double)error->spread);
-  fprintf(stream, ", and the error may be as large\n");
+  fprintf(stream, "\n");
 }
 
 /*@

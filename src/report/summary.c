@@ -238,6 +238,7 @@ static void AddErrors(cJSON *json, const RunFigures *figures)
     AddReal(probe, "value", value);
     AddReal(probe, "sum", error->sum);
     AddReal(probe, "magnitude", error->magnitude);
+    AddReal(probe, "uncertain", error->uncertain);
     AddReal(probe, "spread", error->spread);
     AddReal(probe, "per_cent", value != 0 ? 100 * error->sum / PetscAbsReal(value) : NAN);
     parts = cJSON_AddObjectToObject(probe, "causes");

@@ -88,18 +88,23 @@ static void Say(const Refinement *r, const char *format, ...)
   fflush(stdout);
 }
 
-/* The part of the contact surfaces, 0 where it is not known. */
-static PetscReal SurfacesPart(const QuantityError *error)
+/* A part, 0 where it is not known. */
+static PetscReal KnownPart(const QuantityError *error, ErrorCause cause)
 {
-  return isnan((double)error->part[ERROR_GEOMETRY]) ? 0 : error->part[ERROR_GEOMETRY];
+  return isnan((double)error->part[cause]) ? 0 : error->part[cause];
+}
+
+/* What the shape of the contact surfaces and the ends of their zones leave, as estimated. */
+static PetscReal SurfacesEstimate(const QuantityError *error)
+{
+  return PetscAbsReal(KnownPart(error, ERROR_GEOMETRY)) + PetscAbsReal(KnownPart(error, ERROR_ENDS));
 }
 
 /* What the elements and the contact surfaces leave of error, as estimated. */
 static PetscReal MeshEstimate(const QuantityError *error)
 {
-  return isnan((double)error->part[ERROR_BODIES])
-           ? 0
-           : PetscAbsReal(error->part[ERROR_BODIES]) + PetscAbsReal(SurfacesPart(error));
+  return isnan((double)error->part[ERROR_BODIES]) ? 0
+                                                  : PetscAbsReal(error->part[ERROR_BODIES]) + SurfacesEstimate(error);
 }
 
 /* What they leave: the estimate, and no less than what the change from the mesh before implies. */
@@ -188,7 +193,7 @@ static PetscErrorCode End(Refinement *r)
 /* What the elements and the contact surfaces leave of error, with its sign. */
 static PetscReal MeshPart(const QuantityError *error)
 {
-  return error->part[ERROR_BODIES] + SurfacesPart(error);
+  return error->part[ERROR_BODIES] + KnownPart(error, ERROR_GEOMETRY) + KnownPart(error, ERROR_ENDS);
 }
 
 /* The answer of a mesh without the errors of other causes than the mesh, as far as they are known. */
@@ -200,7 +205,7 @@ static PetscReal MeshAnswer(const SolvedMesh *mesh)
 /* Sum of the magnitudes of what single places leave, by which the fall of the error shows. */
 static double Spread(const QuantityError *error)
 {
-  return (double)error->spread + fabs((double)SurfacesPart(error));
+  return (double)(error->spread + SurfacesEstimate(error));
 }
 
 /* Takes what the change from the mesh before implies. Second order puts nodes half as far apart. Where it is more than
@@ -382,7 +387,7 @@ static PetscReal Largest(const Refinement *r)
 static MeshWish WishedParts(const Refinement *r)
 {
   const SolvedMesh *mesh   = Last(r);
-  const PetscReal   wanted = WantedMeshError(r), surfaces = PetscAbsReal(SurfacesPart(&mesh->error)),
+  const PetscReal   wanted = WantedMeshError(r), surfaces = SurfacesEstimate(&mesh->error),
                   bodies = MeshEstimate(&mesh->error) - surfaces,
                   zone   = surfaces + (r->n == 1 || !mesh->zone.ends ? 0 : mesh->unseen);
   MeshWish split;
