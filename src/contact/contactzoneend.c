@@ -11,7 +11,8 @@
    hats are near to it. Where the zone ends within a face, they are not: p and z there are those that end as pressures
    do where smooth surfaces part, with the forces and moments of p_h and z_h (kernels/endpressure.h). A patch is the
    faces around a corner of the slave. It counts where one of its faces bears nothing, and where a term presses that
-   lies in it: of those that reach beyond it no patch has the moments. Within a face the corners share as the linear shape functions do. */
+   lies in it: of those that reach beyond it no patch has the moments. Within a face the corners share as the linear
+   shape functions do. */
 #include "contactimpl.h"
 #include "kernels/endpressure.h"
 
@@ -20,8 +21,8 @@
 enum { PLACES = 6, PLACES_MOST = PLACES * PLACES };
 /* Of a patch: force and moments of the pressures, of their rates, the number of pressing terms that lie in it */
 enum { SUM_MOMENT, SUM_RATE = SUM_MOMENT + 4, SUM_WHOLE = SUM_RATE + 4, SUMS };
-/* Its pressure: the square at the corner and its slopes, those of its rate; whether there is one */
-enum { END_SQUARE, END_RATE = END_SQUARE + 4, END_IS = END_RATE + 4, END_WIDTH };
+/* Its pressure: the square at the corner and its slopes, those of its rate; the least one; whether there is one */
+enum { END_SQUARE, END_RATE = END_SQUARE + 4, END_LEAST = END_RATE + 4, END_IS, END_WIDTH };
 
 typedef struct {
   const ContactPair *pair;
@@ -208,8 +209,7 @@ static int PointPlaces(const ZoneEnd *z, PetscInt q, PetscReal along[2][3], Pets
       const PetscReal at[2] = {((j + 0.5) / PLACES - 0.5) * size, dim == 3 ? ((i + 0.5) / PLACES - 0.5) * size : 0};
 
       for (int d = 0; d < dim; d++)
-        place[i * PLACES + j][d] =
-          z->pair->lists->slave_X[q * dim + d] + at[0] * along[0][d] + at[1] * along[1][d];
+        place[i * PLACES + j][d] = z->pair->lists->slave_X[q * dim + d] + at[0] * along[0][d] + at[1] * along[1][d];
     }
   }
   return rows * PLACES;
@@ -240,8 +240,8 @@ static void Tangents(int dim, const PetscReal n[3], PetscReal t[2][3])
 static PetscErrorCode FitPatch(const ZoneEnd *z, PetscInt node, PetscInt n_faces, const PetscInt face[],
                                const PetscReal *sum, PetscReal *end)
 {
-  const SlavePoints slaves = z->pair->slaves;
-  const int         dim    = z->pair->mesh->dim;
+  const SlavePoints slaves    = z->pair->slaves;
+  const int         dim       = z->pair->mesh->dim;
   PetscReal         normal[3] = {0, 0, 0}, size = 0, t[2][3], moment[2][ENDPRESSURE_TERMS] = {{0}}, *term, *weight;
   int               points = 0, room = 0;
   EndPressure       fit;
@@ -282,9 +282,11 @@ static PetscErrorCode FitPatch(const ZoneEnd *z, PetscInt node, PetscInt n_faces
     for (int a = 0; a < dim - 1; a++)
       for (int d = 0; d < dim; d++) moment[k][1 + a] += of[1 + d] * t[a][d] / size;
   }
-  end[END_IS] = EndPressureFit(dim, points, term, weight, moment[0], moment[1], &fit);
+  end[END_IS] = EndPressureFit(dim, points, PetscPowReal((PetscReal)n_faces / points, 1. / (dim - 1)) / 2, term, weight,
+                               moment[0], moment[1], &fit);
   if (end[END_IS] > 0) {
     end[END_SQUARE] = fit.square[0];
+    end[END_LEAST]  = fit.least;
     end[END_RATE]   = fit.rate[0];
     for (int d = 0; d < dim; d++)
       for (int a = 0; a < dim - 1; a++) {
@@ -328,14 +330,13 @@ static PetscErrorCode FitPatches(ZoneEnd *z)
   PetscCall(SumPatches(z, sums));
   PetscCall(ListFaces(z, &ptr, &list));
   for (PetscInt i = 0; i < slaves->n_nodes; i++) {
-    const NodeKey   *node = &slaves->nodes[i];
-    const PetscReal *sum  = &sums[node->local * SUMS];
+    const NodeKey   *node      = &slaves->nodes[i];
+    const PetscReal *sum       = &sums[node->local * SUMS];
     PetscBool        ends_here = PETSC_FALSE;
 
     if (node->owner != rank || !(sum[SUM_WHOLE] > 0)) continue;
     for (PetscInt k = ptr[i]; k < ptr[i + 1]; k++) ends_here = (PetscBool)(ends_here || !z->bears[list[k]]);
-    if (ends_here)
-      PetscCall(FitPatch(z, i, ptr[i + 1] - ptr[i], &list[ptr[i]], sum, &ends[node->local * END_WIDTH]));
+    if (ends_here) PetscCall(FitPatch(z, i, ptr[i + 1] - ptr[i], &list[ptr[i]], sum, &ends[node->local * END_WIDTH]));
   }
   PetscCallMPI(MPI_Type_contiguous(END_WIDTH, MPIU_REAL, &block));
   PetscCallMPI(MPI_Type_commit(&block));
@@ -362,7 +363,7 @@ static void PatchAt(const ZoneEnd *z, PetscInt node, int places, PetscReal place
       square += end[END_SQUARE + 1 + d] * (place[k][d] - X[d]);
       square_rate += end[END_RATE + 1 + d] * (place[k][d] - X[d]);
     }
-    EndPressureAt(square, square_rate, &p_at, &rate_at);
+    EndPressureAt(square, square_rate, end[END_LEAST], &p_at, &rate_at);
     *p += p_at / places;
     *rate += rate_at / places;
   }

@@ -7,7 +7,7 @@
    rate of force and moments gives the rate of the pressure, which grows as one over the root towards the end.
 
    The place is given as terms, the first of which is 1 and the others coordinates from about the middle, over the size
-   of the region. */
+   of the region. A point stands for a square around it, whose mean rate is bounded. */
 #pragma once
 
 enum { ENDPRESSURE_TERMS = 3 }; /* at most: 1 and two coordinates */
@@ -15,8 +15,9 @@ enum { ENDPRESSURE_TERMS = 3 }; /* at most: 1 and two coordinates */
 typedef struct {
   double square[ENDPRESSURE_TERMS]; /* the square of the pressure where it is positive */
   double rate[ENDPRESSURE_TERMS];   /* the rate of the square */
+  double least;                     /* of the square that counts for the rate of a point */
 } EndPressure;
 
-int  EndPressureFit(int terms, int points, const double *term, const double *weight, const double *moment,
-                    const double *moment_rate, EndPressure *);
-void EndPressureAt(double square, double square_rate, double *pressure, double *rate);
+int EndPressureFit(int terms, int points, double extent, const double *term, const double *weight, const double *moment,
+                   const double *moment_rate, EndPressure *);
+void EndPressureAt(double square, double square_rate, double least, double *pressure, double *rate);
