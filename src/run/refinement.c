@@ -190,22 +190,25 @@ static PetscErrorCode End(Refinement *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the elements and the contact surfaces leave of error, with its sign. */
+/* What the elements and the shape of the contact surfaces leave of error, with its sign. The ends of zones are not in
+   it: from mesh to mesh they fall anywhere within faces, so that no change is forecast by them. */
 static PetscReal MeshPart(const QuantityError *error)
 {
-  return error->part[ERROR_BODIES] + KnownPart(error, ERROR_GEOMETRY) + KnownPart(error, ERROR_ENDS);
+  return error->part[ERROR_BODIES] + KnownPart(error, ERROR_GEOMETRY);
 }
 
 /* The answer of a mesh without the errors of other causes than the mesh, as far as they are known. */
 static PetscReal MeshAnswer(const SolvedMesh *mesh)
 {
-  return mesh->value + mesh->error.sum - (mesh->rough ? 0 : MeshPart(&mesh->error));
+  const QuantityError *error = &mesh->error;
+
+  return mesh->value + error->sum - (mesh->rough ? 0 : MeshPart(error) + KnownPart(error, ERROR_ENDS));
 }
 
 /* Sum of the magnitudes of what single places leave, by which the fall of the error shows. */
 static double Spread(const QuantityError *error)
 {
-  return (double)(error->spread + SurfacesEstimate(error));
+  return (double)(error->spread + PetscAbsReal(KnownPart(error, ERROR_GEOMETRY)));
 }
 
 /* Takes what the change from the mesh before implies. Second order puts nodes half as far apart. Where it is more than
