@@ -3,8 +3,9 @@ output.error, against a reference of the same scene on a finer mesh, or a known 
 wish_table.py and adaptive_table.py. Leaves one record per probe and mesh and prints the
 table; --print tables an existing record, --only runs some scenes.
     python scripts/error_table.py [--burnish BINARY] [--record FILE] [--only NAME ...]
-Effectivity is the true error over the estimated one. Where the parts cancel, so that the run says how large the error
-may be but no sign, it is the magnitude of the true error over that, marked as +-. Rows whose true error is below 0.05 %, or below four times that of
+Effectivity is the true error over the estimated one. Where the parts cancel, the run says that the error
+may be so large as what the sum is uncertain by, with either sign. There it is the magnitude of the true error over the
+nearest one between that of the sum and this, marked as +-. Rows whose true error is below 0.05 %, or below four times that of
 the reference as estimated, are listed apart: they say nothing of the estimate."""
 import shutil
 import subprocess
@@ -14,7 +15,7 @@ from wish_table import PLATE_TIP, PUNCH, PUNCH_FORCE
 
 SMALL, TIMES = 0.05, 4  # per cent; of the reference's own error
 COLUMNS = ("scene", "order", "mesh", "probe", "status", "dofs", "cpu_s", "value", "estimate", "uncertain", "bodies",
-           "surfaces", "ends", "penetration", "spread", "zone", "reference", "reference_error")
+           "surfaces", "faces", "penetration", "spread", "zone", "reference", "reference_error")
 
 
 class Case:
@@ -129,7 +130,7 @@ def records(args, name):
                     "dofs": found["dofs"], "cpu_s": f"{found['cpu_s']:.2f}", "value": f"{error['value']:.9g}",
                     "estimate": f"{error['sum']:.4g}", "uncertain": f"{error['uncertain']:.4g}",
                     "bodies": part(error, "bodies"), "surfaces": part(error, "contact surfaces"),
-                    "ends": part(error, "ends of zones"), "penetration": part(error, "penetration"),
+                    "faces": part(error, "contact within faces"), "penetration": part(error, "penetration"),
                     "spread": f"{error['spread']:.4g}",
                     "zone": f"{max((z['per_cent'] for z in found.get('error_zones', {}).values()), default=0):.3g}",
                     "reference": f"{own['value']:.9g}",
@@ -156,7 +157,8 @@ def cancels(row):
 def effectivity(row):
     """The true error over the estimated one."""
     if cancels(row):
-        return abs(true_error(row)) / float(row["uncertain"])
+        size = abs(true_error(row))
+        return size / min(max(size, abs(float(row["estimate"]))), float(row["uncertain"]))
     return true_error(row) / float(row["estimate"])
 
 
@@ -173,8 +175,9 @@ def table(rows):
     for row in judged + [row for row in rows if apart(row)]:
         value, true = float(row["reference"]), true_error(row)
         ratio = "apart" if apart(row) else f"{effectivity(row):.2f}{' +-' if cancels(row) else ''}"
-        estimate = f"+-{100 * float(row['uncertain']) / abs(value):.3g}" if cancels(
-            row) else f"{100 * float(row['estimate']) / abs(value):+.3g}"
+        estimate = f"{100 * float(row['estimate']) / abs(value):+.3g}"
+        if cancels(row):
+            estimate += f", up to +-{100 * float(row['uncertain']) / abs(value):.3g}"
         print(f"| {row['scene']} | {row['order']} | {row['dofs']} | {row['probe']} | {float(row['value']):.5g} "
               f"| {100 * true / abs(value):+.3g} | {estimate} "
               f"| {100 * besides(row) / abs(value):.2g} | {ratio} |")

@@ -199,7 +199,8 @@ PetscErrorCode ContactPairLoad(Contact, int pair, const PetscReal *u, ContactLoa
 PetscErrorCode ContactStifferForces(Contact, PenaltySource, PetscReal *f);
 PetscErrorCode ContactPairStifferForces(Contact, int pair, PenaltySource, PetscReal *f);
 PetscErrorCode ContactPairShapeForces(Contact, int pair, const PetscReal *u, PetscReal *f, PetscBool *known);
-PetscErrorCode ContactPairZoneEnd(Contact, int pair, const PetscReal *y, PetscReal *error, PetscBool *known);
+PetscErrorCode ContactPairWithinFaces(Contact, int pair, const PetscReal *u, int n, PetscReal *const y[],
+                                      PetscReal error[], PetscBool *known);
 PetscErrorCode ContactLoadChanges(Contact, PenaltySource, const PetscReal *u, const PetscReal *v, ContactLoad change[]);
 PetscErrorCode ContactAdjustPenalty(Contact, ContactWindowState *);
 PetscErrorCode ContactAdjustNextPenalty(Contact);

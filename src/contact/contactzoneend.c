@@ -436,31 +436,13 @@ static PetscErrorCode Create(const ContactPair *pair, ZoneEnd *z)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactPairZoneEnd - estimates what the end of a pair's zone of contact leaves of error in a quantity.
-
-  Collective
-
-  Input Parameters:
-+ contact - the contact, in the state of its last ContactResidual() with forces
-. p       - number of the pair
-- y       - adjoint solution of the quantity, with what it sees of the pair directly, y[n_nodes*dim], ghosts included
-
-  Output Parameters:
-+ error - true less computed value, the same on all ranks
-- known - PETSC_FALSE: not known in node to surface contact, which sees no gaps between nodes, nor with friction, which
-          follows the pressures
-@*/
-PetscErrorCode ContactPairZoneEnd(Contact contact, int p, const PetscReal *y, PetscReal *error, PetscBool *known)
+/* Sums up what the end of a pair's zone leaves in one quantity, on this rank. */
+static PetscErrorCode ZoneEndError(Contact contact, ContactPair *pair, const PetscReal *y, PetscReal *error)
 {
-  ContactPair *pair = &contact->pairs[p];
-  PetscReal   *motion;
-  ZoneEnd      z;
+  PetscReal *motion;
+  ZoneEnd    z;
 
   PetscFunctionBeginUser;
-  *error = 0;
-  *known = (PetscBool)(pair->formulation.surface && !pair->friction);
-  if (!*known) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Create(pair, &z));
   PetscCall(PetscCalloc1(pair->lists->n_nodes * pair->mesh->dim, &motion));
   PetscCall(ContactPairMove(contact, pair, y, pair->t, pair->t, motion));
@@ -468,8 +450,41 @@ PetscErrorCode ContactPairZoneEnd(Contact contact, int p, const PetscReal *y, Pe
   PetscCall(FindBearing(&z));
   PetscCall(FitPatches(&z));
   SumError(&z, error);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, error, 1, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
   PetscCall(PetscFree(motion));
   PetscCall(PetscFree6(z.face, z.bears, z.along, z.at, z.rate, z.end));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairWithinFaces - estimates what a pair leaves of error within faces in some quantities: where the zone of
+  contact ends in surface to surface contact, between nodes in node to surface contact.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact, in the state of its last ContactResidual() with forces
+. p       - number of the pair
+. u       - local displacements of that residual, u[n_nodes*dim] (length)
+. n       - number of quantities
+- y       - adjoint solution of each, with what it sees of the pair directly, y[n_nodes*dim], ghosts included
+
+  Output Parameters:
++ error - of each: true less computed value, the same on all ranks
+- known - PETSC_FALSE: not known with friction, which follows the pressures
+@*/
+PetscErrorCode ContactPairWithinFaces(Contact contact, int p, const PetscReal *u, int n, PetscReal *const y[],
+                                      PetscReal error[], PetscBool *known)
+{
+  ContactPair *pair = &contact->pairs[p];
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < n; i++) error[i] = 0;
+  *known = (PetscBool)!pair->friction;
+  if (!*known) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->formulation.surface)
+    for (int i = 0; i < n; i++) PetscCall(ZoneEndError(contact, pair, y[i], &error[i]));
+  else
+    PetscCall(ContactBetweenNodes(contact, pair, u, n, y, error));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, error, n, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

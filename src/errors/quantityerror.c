@@ -7,8 +7,9 @@
 #define QUANTITYERROR_DOUBT 0.5
 
 const char *const ErrorCauses[] = {
-  [ERROR_BODIES] = "bodies",     [ERROR_GEOMETRY] = "contact surfaces", [ERROR_ENDS] = "ends of zones", [ERROR_PENETRATION] = "penetration",
-  [ERROR_SLIP] = "elastic slip", [ERROR_STEPS] = "load steps",          [ERROR_SOLVER] = "solver"};
+  [ERROR_BODIES] = "bodies",           [ERROR_GEOMETRY] = "contact surfaces", [ERROR_FACES] = "contact within faces",
+  [ERROR_PENETRATION] = "penetration", [ERROR_SLIP] = "elastic slip",         [ERROR_STEPS] = "load steps",
+  [ERROR_SOLVER] = "solver"};
 
 /*@
   ModelDependsOnPath - says whether the answer depends on the way to it.
@@ -27,7 +28,7 @@ PetscBool ModelDependsOnPath(Model model)
 /* Adds up the known parts. */
 static void Total(QuantityError *error)
 {
-  const ErrorCause recovered[] = {ERROR_GEOMETRY, ERROR_ENDS};
+  const ErrorCause recovered[] = {ERROR_GEOMETRY, ERROR_FACES};
 
   error->sum = error->magnitude = 0;
   error->uncertain              = QUANTITYERROR_DOUBT * error->spread;
@@ -73,8 +74,8 @@ PetscBool QuantityErrorCancels(const QuantityError *error)
   return (PetscBool)(error->uncertain > PetscAbsReal(error->sum));
 }
 
-/* Joins the parts of one quantity. shape: that of the masters; end: that of the ends of zones of contact. */
-static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint, PetscReal shape, PetscReal end,
+/* Joins the parts of one quantity. shape: that of the masters; faces: that of contact within faces. */
+static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint, PetscReal shape, PetscReal faces,
                            QuantityError *error)
 {
   BodyErrorSums sums;
@@ -93,7 +94,7 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
   error->spread             = sums.spread;
   if (!sums.holds) error->why = "enhanced elements (bodies.*.formulation) turn too much within themselves";
   error->part[ERROR_GEOMETRY]    = shape;
-  error->part[ERROR_ENDS]        = end;
+  error->part[ERROR_FACES]       = faces;
   error->part[ERROR_PENETRATION] = adjoint->penetration;
   error->part[ERROR_SLIP]        = adjoint->slip;
   error->part[ERROR_STEPS]       = ModelDependsOnPath(model) ? NAN : 0;
@@ -123,21 +124,21 @@ PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional funct
   const PetscInt dofs = model->mesh->n_nodes * model->mesh->dim;
   BodyError      bodies;
   Adjoint       *adjoint;
-  PetscReal     *shape, *end;
+  PetscReal     *shape, *faces;
 
   PetscFunctionBeginUser;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc3(n, &adjoint, n, &shape, n, &end));
+  PetscCall(PetscMalloc3(n, &adjoint, n, &shape, n, &faces));
   for (int i = 0; i < n; i++) PetscCall(PetscCalloc1(dofs, &adjoint[i].y));
   PetscCall(ModelAdjoint(model, n, functional, adjoint));
   PetscCall(ModelShapeErrors(model, n, functional, adjoint, shape));
-  PetscCall(ModelZoneEnds(model, n, functional, adjoint, end));
+  PetscCall(ModelWithinFaces(model, n, functional, adjoint, faces));
   PetscCall(
     BodyErrorCreate(model->mesh, model->problem->elasticity, model->scene->kinematics, model->problem->trial, &bodies));
-  for (int i = 0; i < n; i++) PetscCall(Join(model, bodies, &adjoint[i], shape[i], end[i], &error[i]));
+  for (int i = 0; i < n; i++) PetscCall(Join(model, bodies, &adjoint[i], shape[i], faces[i], &error[i]));
   PetscCall(BodyErrorDestroy(&bodies));
   for (int i = 0; i < n; i++) PetscCall(PetscFree(adjoint[i].y));
-  PetscCall(PetscFree3(adjoint, shape, end));
+  PetscCall(PetscFree3(adjoint, shape, faces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -7,11 +7,11 @@
    known is NaN: that of the load steps where the answer depends on the path, unless a second run gives it
    (QuantityErrorSetSteps(), run/historyerror.c), and that of the surfaces in contact
    where one master is a meshed rigid tool or of facets. Of smooth masters it is how far they miss their own nodes
-   (ContactPairShapeForces()). That of the ends of zones of contact is known in surface to surface contact
-   without friction (ContactPairZoneEnd()). Each is 0 where there is no such cause: masters are analytic, all of a slave
+   (ContactPairShapeForces()). That of contact within faces is known without friction
+   (ContactPairWithinFaces()). Each is 0 where there is no such cause: masters are analytic, all of a slave
    is in contact. That straight edges of elements stand for curved boundaries is in no part.
 
-   What is estimated by recovered fields is known to a factor of two: cells, contact surfaces, ends of zones. Half of
+   What is estimated by recovered fields is known to a factor of two: cells, contact surfaces, contact within faces. Half of
    their magnitudes is what the sum may be off by. Where that is more than the sum, the parts cancel, and the error has
    no sign and may be as large (QuantityErrorCancels()).
 
@@ -23,7 +23,7 @@
 typedef enum {
   ERROR_BODIES,
   ERROR_GEOMETRY,
-  ERROR_ENDS,
+  ERROR_FACES,
   ERROR_PENETRATION,
   ERROR_SLIP,
   ERROR_STEPS,

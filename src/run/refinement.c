@@ -94,10 +94,10 @@ static PetscReal KnownPart(const QuantityError *error, ErrorCause cause)
   return isnan((double)error->part[cause]) ? 0 : error->part[cause];
 }
 
-/* What the shape of the contact surfaces and the ends of their zones leave, as estimated. */
+/* What the shape of the contact surfaces and contact within their faces leave, as estimated. */
 static PetscReal SurfacesEstimate(const QuantityError *error)
 {
-  return PetscAbsReal(KnownPart(error, ERROR_GEOMETRY)) + PetscAbsReal(KnownPart(error, ERROR_ENDS));
+  return PetscAbsReal(KnownPart(error, ERROR_GEOMETRY)) + PetscAbsReal(KnownPart(error, ERROR_FACES));
 }
 
 /* What the elements and the contact surfaces leave of error, as estimated. */
@@ -190,8 +190,8 @@ static PetscErrorCode End(Refinement *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the elements and the shape of the contact surfaces leave of error, with its sign. The ends of zones are not in
-   it: from mesh to mesh they fall anywhere within faces, so that no change is forecast by them. */
+/* What the elements and the shape of the contact surfaces leave of error, with its sign. Contact within faces is not in
+   it: from mesh to mesh zones end anywhere within them, so that it forecasts no change. */
 static PetscReal MeshPart(const QuantityError *error)
 {
   return error->part[ERROR_BODIES] + KnownPart(error, ERROR_GEOMETRY);
@@ -202,7 +202,7 @@ static PetscReal MeshAnswer(const SolvedMesh *mesh)
 {
   const QuantityError *error = &mesh->error;
 
-  return mesh->value + error->sum - (mesh->rough ? 0 : MeshPart(error) + KnownPart(error, ERROR_ENDS));
+  return mesh->value + error->sum - (mesh->rough ? 0 : MeshPart(error) + KnownPart(error, ERROR_FACES));
 }
 
 /* Sum of the magnitudes of what single places leave, by which the fall of the error shows. */

@@ -170,26 +170,29 @@ PetscErrorCode ModelShapeErrors(Model model, int n, const Functional functional[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds what the end of one pair's zone leaves to the error of a functional. */
-static PetscErrorCode AddZoneEnd(Model model, int p, const Functional *functional, const Adjoint *adjoint,
-                                 PetscReal *error)
+/* Adds what one pair leaves within faces to the errors of all functionals. y: room for each. */
+static PetscErrorCode AddWithinFaces(Model model, int p, int n, const Functional functional[], const Adjoint adjoint[],
+                                     PetscReal *const y[], PetscReal error[])
 {
-  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
-  PetscReal     *y, part;
+  const PetscInt dofs = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *part;
   PetscBool      known;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &y));
-  for (PetscInt i = 0; i < n; i++)
-    y[i] = adjoint->y[i] + (functional->pressed && functional->pairs[p] ? functional->pressed[i] : 0);
-  PetscCall(ContactPairZoneEnd(model->contact, p, y, &part, &known));
-  *error = known ? *error + part : NAN;
-  PetscCall(PetscFree(y));
+  PetscCall(PetscMalloc1(n, &part));
+  for (int i = 0; i < n; i++) {
+    const PetscReal *own = functional[i].pressed && functional[i].pairs[p] ? functional[i].pressed : NULL;
+
+    for (PetscInt k = 0; k < dofs; k++) y[i][k] = adjoint[i].y[k] + (own ? own[k] : 0);
+  }
+  PetscCall(ContactPairWithinFaces(model->contact, p, model->problem->trial, n, y, part, &known));
+  for (int i = 0; i < n; i++) error[i] = known ? error[i] + part[i] : NAN;
+  PetscCall(PetscFree(part));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ModelZoneEnds - computes what zones of contact leave of error that end within faces.
+  ModelWithinFaces - computes what contact leaves of error within faces.
 
   Collective
 
@@ -197,20 +200,26 @@ static PetscErrorCode AddZoneEnd(Model model, int p, const Functional *functiona
 + model      - after ModelAdjoint()
 . n          - number of functionals
 . functional - of ModelAdjoint()
-- adjoint    - likewise; those that are not known are left out
+- adjoint    - likewise; those that are not known say nothing
 
   Output Parameter:
 . error - of each functional: true less computed value; NaN where it is not known of a pair
 @*/
-PetscErrorCode ModelZoneEnds(Model model, int n, const Functional functional[], const Adjoint adjoint[],
-                             PetscReal error[])
+PetscErrorCode ModelWithinFaces(Model model, int n, const Functional functional[], const Adjoint adjoint[],
+                                PetscReal error[])
 {
+  PetscReal **y;
+
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &y));
   for (int i = 0; i < n; i++) {
     error[i] = 0;
-    for (int p = 0; p < ContactPairs(model->contact) && adjoint[i].known; p++)
-      PetscCall(AddZoneEnd(model, p, &functional[i], &adjoint[i], &error[i]));
+    PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &y[i]));
   }
+  for (int p = 0; p < ContactPairs(model->contact); p++)
+    PetscCall(AddWithinFaces(model, p, n, functional, adjoint, y, error));
+  for (int i = 0; i < n; i++) PetscCall(PetscFree(y[i]));
+  PetscCall(PetscFree(y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -18,7 +18,7 @@
 
    ModelAdjoint() computes y for any number of functionals with one tangent and one factor. What is in
    contact at the solution stays so. ModelShapeErrors() weighs with them what masters leave that miss their own nodes,
-   ModelZoneEnds() what zones of contact leave that end within faces.
+   ModelWithinFaces() what contact leaves within faces.
    ModelRespond() goes the other way: one change of the residual, and how all
    displacements follow it. Source: Becker and Rannacher, Acta Numerica 10 (2001). */
 #pragma once
@@ -42,5 +42,5 @@ typedef struct {
 
 PetscErrorCode ModelAdjoint(Model, int n, const Functional[], Adjoint[]);
 PetscErrorCode ModelShapeErrors(Model, int n, const Functional[], const Adjoint[], PetscReal error[]);
-PetscErrorCode ModelZoneEnds(Model, int n, const Functional[], const Adjoint[], PetscReal error[]);
+PetscErrorCode ModelWithinFaces(Model, int n, const Functional[], const Adjoint[], PetscReal error[]);
 PetscErrorCode ModelRespond(Model, Vec change, Vec response, PetscBool *known);

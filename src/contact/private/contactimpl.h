@@ -343,6 +343,9 @@ PetscErrorCode ContactPointForces(const ContactPair *, const PetscReal *point_fo
 PetscErrorCode ContactPointReactions(const ContactPair *, const PetscReal *point_force, const PetscReal *values,
                                      PetscReal *reaction);
 PetscErrorCode ContactNodalForces(const ContactPair *, const PetscReal *point_force, PetscReal *force);
+/* contactbetween.c */
+PetscErrorCode ContactBetweenNodes(Contact, ContactPair *, const PetscReal *u, int n, PetscReal *const y[],
+                                   PetscReal error[]);
 /* contacttangent.c */
 PetscErrorCode ContactMatrixRows(Contact, PetscInt *rows);
 /* contactlists.c */
