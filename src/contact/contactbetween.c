@@ -5,7 +5,8 @@
    dg is the change of the gap along the displacements u and along y, less what is interpolated of it between the nodes,
    p the pressure and z its rate along y (contactzoneend.c has the source). p and z are interpolated between the nodes
    by the shape functions of the faces. A face whose nodes do not all press holds the end of the zone, where p and z are
-   not known, and is left out. The shape of the surfaces is not in it, as changes alone are compared.
+   not known, and is left out. The shape of the surfaces is not in it, as changes alone are compared. On curved faces of
+   first order displacements are interpolated too badly for that.
 
    The gaps are those of the pair's own smoother at quadrature points of the slave's faces, for which lists are made. */
 #include "contactimpl.h"

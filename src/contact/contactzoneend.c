@@ -470,7 +470,7 @@ static PetscErrorCode ZoneEndError(Contact contact, ContactPair *pair, const Pet
 
   Output Parameters:
 + error - of each: true less computed value, the same on all ranks
-- known - PETSC_FALSE: not known with friction, which follows the pressures
+- known - PETSC_FALSE: not known with friction, which follows the pressures, nor between nodes of first order
 @*/
 PetscErrorCode ContactPairWithinFaces(Contact contact, int p, const PetscReal *u, int n, PetscReal *const y[],
                                       PetscReal error[], PetscBool *known)
@@ -479,7 +479,7 @@ PetscErrorCode ContactPairWithinFaces(Contact contact, int p, const PetscReal *u
 
   PetscFunctionBeginUser;
   for (int i = 0; i < n; i++) error[i] = 0;
-  *known = (PetscBool)!pair->friction;
+  *known = (PetscBool)(!pair->friction && (pair->formulation.surface || pair->slave->order > 1));
   if (!*known) PetscFunctionReturn(PETSC_SUCCESS);
   if (pair->formulation.surface)
     for (int i = 0; i < n; i++) PetscCall(ZoneEndError(contact, pair, y[i], &error[i]));

@@ -8,12 +8,12 @@
    (QuantityErrorSetSteps(), run/historyerror.c), and that of the surfaces in contact
    where one master is a meshed rigid tool or of facets. Of smooth masters it is how far they miss their own nodes
    (ContactPairShapeForces()). That of contact within faces is known without friction
-   (ContactPairWithinFaces()). Each is 0 where there is no such cause: masters are analytic, all of a slave
-   is in contact. That straight edges of elements stand for curved boundaries is in no part.
+   (ContactPairWithinFaces()), but not between nodes of first order. Each is 0 where there is no such cause: masters are
+   analytic, all of a slave is in contact. That straight edges of elements stand for curved boundaries is in no part.
 
-   What is estimated by recovered fields is known to a factor of two: cells, contact surfaces, contact within faces. Half of
-   their magnitudes is what the sum may be off by. Where that is more than the sum, the parts cancel, and the error has
-   no sign and may be as large (QuantityErrorCancels()).
+   What is estimated by recovered fields is known to a factor of two: cells, contact surfaces, contact within faces. Half
+   of their magnitudes is what the sum may be off by. Where that is more than the sum, the parts cancel, and the error
+   may be as large with either sign (QuantityErrorCancels()).
 
    QuantityErrorShares() serves quantities without a first variation, such as a peak or the end of a contact zone: it
    says where elements are to become smaller, but not how large the error is. */
