@@ -26,12 +26,13 @@ enum { END_SQUARE, END_RATE = END_SQUARE + 4, END_LEAST = END_RATE + 4, END_IS, 
 
 typedef struct {
   const ContactPair *pair;
-  PetscInt          *face;  /* of each slave point */
-  int               *bears; /* each face bears a force, of any rank's terms */
-  PetscReal         *along; /* changes of the gaps of the slave points along y */
-  PetscReal         *rate;  /* of the pressure of each term along y */
-  PetscReal         *end;   /* of each node of the slave points [END_WIDTH] */
-  PetscReal         *at;    /* of each slave point: PointAt() */
+  PetscInt          *face;   /* of each slave point */
+  int               *bears;  /* each face bears a force, of any rank's terms */
+  PetscReal         *motion; /* of the contact nodes along y */
+  PetscReal         *along;  /* changes of the gaps of the slave points along y; NaN: not known yet */
+  PetscReal         *rate;   /* of the pressure of each term along y */
+  PetscReal         *end;    /* of each node of the slave points [END_WIDTH] */
+  PetscReal         *at;     /* of each slave point: PointAt() */
 } ZoneEnd;
 
 static int Corners(const ZoneEnd *z, PetscInt f)
@@ -39,28 +40,41 @@ static int Corners(const ZoneEnd *z, PetscInt f)
   return ElementGet(z->pair->slaves->faces[f].type)->corners;
 }
 
-/* Finds the changes of the gaps of all points along a motion of the contact nodes, and the rates of the pressures. */
-static PetscErrorCode FindRates(ZoneEnd *z, const PetscReal *motion)
+/* Finds the change of the gap of a point along y, unless it is known. */
+static PetscErrorCode FindAlong(const ZoneEnd *z, PetscInt q)
 {
   const ContactPair       *pair = z->pair;
   const int                dim  = pair->mesh->dim;
   const ContactVariations *v    = pair->variations;
 
   PetscFunctionBeginUser;
-  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
-    if (PetscIsNanReal(pair->point_gap[q])) continue;
-    PetscCall(ContactVariationsNeed(pair, q));
-    for (PetscInt i = v->first[q]; i < v->end[q]; i++)
-      for (int d = 0; d < dim; d++) z->along[q] += v->N[i * dim + d] * motion[v->number[i] * dim + d];
-  }
+  if (!PetscIsNanReal(z->along[q]) || PetscIsNanReal(pair->point_gap[q])) PetscFunctionReturn(PETSC_SUCCESS);
+  z->along[q] = 0;
+  PetscCall(ContactVariationsNeed(pair, q));
+  for (PetscInt i = v->first[q]; i < v->end[q]; i++)
+    for (int d = 0; d < dim; d++) z->along[q] += v->N[i * dim + d] * z->motion[v->number[i] * dim + d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the rates of the pressures along y. */
+static PetscErrorCode FindRates(ZoneEnd *z)
+{
+  const ContactPair *pair = z->pair;
+
+  PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n; c++) {
     LawValue  value;
     PetscReal area, sum = 0;
 
     ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
-    for (PetscInt k = pair->term_ptr[c]; value.stiffness > 0 && k < pair->term_ptr[c + 1]; k++)
-      sum += pair->term_weight[k] * pair->factor[pair->term_point[k]] * z->along[pair->term_point[k]];
-    if (value.stiffness > 0) z->rate[c] = -value.stiffness * sum / area;
+    if (!(value.stiffness > 0)) continue;
+    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+      const PetscInt q = pair->term_point[k];
+
+      PetscCall(FindAlong(z, q));
+      if (!PetscIsNanReal(z->along[q])) sum += pair->term_weight[k] * pair->factor[q] * z->along[q];
+    }
+    z->rate[c] = -value.stiffness * sum / area;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -397,30 +411,38 @@ static void PointAt(const ZoneEnd *z, PetscInt q, PetscReal *share, PetscReal *p
   }
 }
 
-/* Sums up the error over this rank's terms. */
-static void SumError(const ZoneEnd *z, PetscReal *error)
+/* Adds what a term's points leave. */
+static PetscErrorCode AddTermError(const ZoneEnd *z, PetscInt c, PetscReal *error)
 {
-  const ContactPair *pair = z->pair;
-  PetscReal         *at;
+  const ContactPair *pair   = z->pair;
+  const PetscReal    begins = ContactTermOnsetGap(pair, c, pair->t);
+  LawValue           value;
+  PetscReal          area;
 
-  at = z->at;
-  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) PointAt(z, q, &at[3 * q], &at[3 * q + 1], &at[3 * q + 2]);
-  *error = 0;
-  for (PetscInt c = 0; c < pair->n; c++) {
-    const PetscReal begins = ContactTermOnsetGap(pair, c, pair->t);
-    LawValue        value;
-    PetscReal       area;
+  PetscFunctionBeginUser;
+  ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt   q      = pair->term_point[k];
+    const PetscReal  weight = pair->term_weight[k] * pair->factor[q];
+    const PetscReal *at     = &z->at[3 * q];
 
-    ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
-    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-      const PetscInt  q      = pair->term_point[k];
-      const PetscReal weight = pair->term_weight[k] * pair->factor[q], share = at[3 * q];
-
-      if (PetscIsNanReal(pair->point_gap[q]) || share == 0) continue;
-      *error -= weight * ((at[3 * q + 2] - share * z->rate[c]) * (pair->point_gap[q] - begins) +
-                          (at[3 * q + 1] - share * value.pressure) * z->along[q]);
-    }
+    if (PetscIsNanReal(pair->point_gap[q]) || at[0] == 0) continue;
+    PetscCall(FindAlong(z, q));
+    *error -= weight * ((at[2] - at[0] * z->rate[c]) * (pair->point_gap[q] - begins) +
+                        (at[1] - at[0] * value.pressure) * z->along[q]);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sums up the error over this rank's terms. */
+static PetscErrorCode SumError(const ZoneEnd *z, PetscReal *error)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < z->pair->lists->n_slaves; q++)
+    PointAt(z, q, &z->at[3 * q], &z->at[3 * q + 1], &z->at[3 * q + 2]);
+  *error = 0;
+  for (PetscInt c = 0; c < z->pair->n; c++) PetscCall(AddTermError(z, c, error));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Create(const ContactPair *pair, ZoneEnd *z)
@@ -429,8 +451,10 @@ static PetscErrorCode Create(const ContactPair *pair, ZoneEnd *z)
 
   PetscFunctionBeginUser;
   *z = (ZoneEnd){.pair = pair};
-  PetscCall(PetscCalloc6(slaves->n, &z->face, slaves->n_faces, &z->bears, slaves->n, &z->along, 3 * slaves->n, &z->at,
-                         pair->n, &z->rate, slaves->n_nodes * END_WIDTH, &z->end));
+  PetscCall(PetscCalloc7(slaves->n, &z->face, slaves->n_faces, &z->bears, slaves->n, &z->along, 3 * slaves->n, &z->at,
+                         pair->n, &z->rate, slaves->n_nodes * END_WIDTH, &z->end,
+                         pair->lists->n_nodes * pair->mesh->dim, &z->motion));
+  for (PetscInt q = 0; q < slaves->n; q++) z->along[q] = NAN;
   for (PetscInt f = 0; f < slaves->n_faces; f++)
     for (PetscInt q = slaves->first[f]; q < slaves->first[f + 1]; q++) z->face[q] = f;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -439,19 +463,16 @@ static PetscErrorCode Create(const ContactPair *pair, ZoneEnd *z)
 /* Sums up what the end of a pair's zone leaves in one quantity, on this rank. */
 static PetscErrorCode ZoneEndError(Contact contact, ContactPair *pair, const PetscReal *y, PetscReal *error)
 {
-  PetscReal *motion;
-  ZoneEnd    z;
+  ZoneEnd z;
 
   PetscFunctionBeginUser;
   PetscCall(Create(pair, &z));
-  PetscCall(PetscCalloc1(pair->lists->n_nodes * pair->mesh->dim, &motion));
-  PetscCall(ContactPairMove(contact, pair, y, pair->t, pair->t, motion));
-  PetscCall(FindRates(&z, motion));
+  PetscCall(ContactPairMove(contact, pair, y, pair->t, pair->t, z.motion));
+  PetscCall(FindRates(&z));
   PetscCall(FindBearing(&z));
   PetscCall(FitPatches(&z));
-  SumError(&z, error);
-  PetscCall(PetscFree(motion));
-  PetscCall(PetscFree6(z.face, z.bears, z.along, z.at, z.rate, z.end));
+  PetscCall(SumError(&z, error));
+  PetscCall(PetscFree7(z.face, z.bears, z.along, z.at, z.rate, z.end, z.motion));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
