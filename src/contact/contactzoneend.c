@@ -250,65 +250,95 @@ static void Tangents(int dim, const PetscReal n[3], PetscReal t[2][3])
   }
 }
 
-/* Fits the pressure of one patch. face: its faces. */
-static PetscErrorCode FitPatch(const ZoneEnd *z, PetscInt node, PetscInt n_faces, const PetscInt face[],
-                               const PetscReal *sum, PetscReal *end)
+/* The faces around a corner, with coordinates in their plane over their size, from the corner */
+typedef struct {
+  PetscInt         n;
+  const PetscInt  *face;
+  const PetscReal *corner;
+  PetscReal        axis[2][3]; /* coordinates by distances (one over length) */
+} Patch;
+
+/* Finds the coordinates of a patch. room: for its places. */
+static void PatchFrame(const ZoneEnd *z, Patch *patch, int *room)
 {
   const SlavePoints slaves    = z->pair->slaves;
-  const int         dim       = z->pair->mesh->dim;
-  PetscReal         normal[3] = {0, 0, 0}, size = 0, t[2][3], moment[2][ENDPRESSURE_TERMS] = {{0}}, *term, *weight;
-  int               points = 0, room = 0;
-  EndPressure       fit;
+  PetscReal         normal[3] = {0, 0, 0}, size = 0;
 
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n_faces; i++) {
-    PetscReal along[2][3], of_face[3];
+  *room = 0;
+  for (PetscInt i = 0; i < patch->n; i++) {
+    const PetscInt f = patch->face[i];
+    PetscReal      along[2][3], of_face[3];
 
-    FaceFrame(z, face[i], along, of_face);
+    FaceFrame(z, f, along, of_face);
     for (int d = 0; d < 3; d++) normal[d] += of_face[d];
-    room += (int)(slaves->first[face[i] + 1] - slaves->first[face[i]]) * PLACES_MOST;
-    size = PetscMax(size, slaves->size[slaves->first[face[i]]]);
+    *room += (int)(slaves->first[f + 1] - slaves->first[f]) * PLACES_MOST;
+    size = PetscMax(size, slaves->size[slaves->first[f]]);
   }
-  Tangents(dim, normal, t);
-  PetscCall(PetscMalloc2(room * dim, &term, room, &weight));
-  for (PetscInt i = 0; i < n_faces; i++) {
-    PetscReal along[2][3], of_face[3], place[PLACES_MOST][3];
+  Tangents(z->pair->mesh->dim, normal, patch->axis);
+  for (int k = 0; k < 2; k++)
+    for (int d = 0; d < 3; d++) patch->axis[k][d] /= size;
+}
 
-    FaceFrame(z, face[i], along, of_face);
-    for (PetscInt q = slaves->first[face[i]]; q < slaves->first[face[i] + 1]; q++) {
+/* The terms of a place, or of moments: the first one, and the others by distances from the corner. */
+static void PatchTerms(int dim, const Patch *patch, PetscReal first, const PetscReal *distance, PetscReal *term)
+{
+  term[0] = first;
+  for (int a = 0; a < dim - 1; a++) {
+    term[1 + a] = 0;
+    for (int d = 0; d < dim; d++) term[1 + a] += distance[d] * patch->axis[a][d];
+  }
+}
+
+/* Lists the places of a patch. Returns their number. */
+static int PatchPlaces(const ZoneEnd *z, const Patch *patch, PetscReal *term, PetscReal *weight)
+{
+  const SlavePoints slaves = z->pair->slaves;
+  const int         dim    = z->pair->mesh->dim;
+  int               n      = 0;
+
+  for (PetscInt i = 0; i < patch->n; i++) {
+    PetscReal along[2][3], normal[3], place[PLACES_MOST][3];
+
+    FaceFrame(z, patch->face[i], along, normal);
+    for (PetscInt q = slaves->first[patch->face[i]]; q < slaves->first[patch->face[i] + 1]; q++) {
       const int places = PointPlaces(z, q, along, place);
 
-      for (int k = 0; k < places; k++, points++) {
-        weight[points]     = slaves->weight[q] * z->pair->scene->share * z->pair->factor[q] / places;
-        term[points * dim] = 1;
-        for (int a = 0; a < dim - 1; a++) {
-          term[points * dim + 1 + a] = 0;
-          for (int d = 0; d < dim; d++)
-            term[points * dim + 1 + a] += (place[k][d] - slaves->nodes[node].X[d]) * t[a][d] / size;
-        }
+      for (int k = 0; k < places; k++, n++) {
+        for (int d = 0; d < dim; d++) place[k][d] -= patch->corner[d];
+        PatchTerms(dim, patch, 1, place[k], &term[n * dim]);
+        weight[n] = slaves->weight[q] * z->pair->scene->share * z->pair->factor[q] / places;
       }
     }
   }
-  for (int k = 0; k < 2; k++) {
-    const PetscReal *of = &sum[k ? SUM_RATE : SUM_MOMENT];
+  return n;
+}
 
-    moment[k][0] = of[0];
-    for (int a = 0; a < dim - 1; a++)
-      for (int d = 0; d < dim; d++) moment[k][1 + a] += of[1 + d] * t[a][d] / size;
-  }
-  end[END_IS] = EndPressureFit(dim, points, PetscPowReal((PetscReal)n_faces / points, 1. / (dim - 1)) / 2, term, weight,
-                               moment[0], moment[1], &fit);
-  if (end[END_IS] > 0) {
-    end[END_SQUARE] = fit.square[0];
-    end[END_LEAST]  = fit.least;
-    end[END_RATE]   = fit.rate[0];
-    for (int d = 0; d < dim; d++)
-      for (int a = 0; a < dim - 1; a++) {
-        end[END_SQUARE + 1 + d] += fit.square[1 + a] * t[a][d] / size;
-        end[END_RATE + 1 + d] += fit.rate[1 + a] * t[a][d] / size;
-      }
-  }
+/* Fits the pressure of one patch. */
+static PetscErrorCode FitPatch(const ZoneEnd *z, Patch *patch, const PetscReal *sum, PetscReal *end)
+{
+  const int   dim = z->pair->mesh->dim;
+  PetscReal   moment[ENDPRESSURE_TERMS], rate[ENDPRESSURE_TERMS], *term, *weight;
+  int         room, places;
+  EndPressure fit;
+
+  PetscFunctionBeginUser;
+  PatchFrame(z, patch, &room);
+  PetscCall(PetscMalloc2(room * dim, &term, room, &weight));
+  places = PatchPlaces(z, patch, term, weight);
+  PatchTerms(dim, patch, sum[SUM_MOMENT], &sum[SUM_MOMENT + 1], moment);
+  PatchTerms(dim, patch, sum[SUM_RATE], &sum[SUM_RATE + 1], rate);
+  end[END_IS] = EndPressureFit(dim, places, PetscPowReal((PetscReal)patch->n / places, 1. / (dim - 1)) / 2, term,
+                               weight, moment, rate, &fit);
   PetscCall(PetscFree2(term, weight));
+  if (!(end[END_IS] > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  end[END_SQUARE] = fit.square[0];
+  end[END_LEAST]  = fit.least;
+  end[END_RATE]   = fit.rate[0];
+  for (int d = 0; d < dim; d++)
+    for (int a = 0; a < dim - 1; a++) {
+      end[END_SQUARE + 1 + d] += fit.square[1 + a] * patch->axis[a][d];
+      end[END_RATE + 1 + d] += fit.rate[1 + a] * patch->axis[a][d];
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -346,11 +376,12 @@ static PetscErrorCode FitPatches(ZoneEnd *z)
   for (PetscInt i = 0; i < slaves->n_nodes; i++) {
     const NodeKey   *node      = &slaves->nodes[i];
     const PetscReal *sum       = &sums[node->local * SUMS];
+    Patch            patch     = {.n = ptr[i + 1] - ptr[i], .face = &list[ptr[i]], .corner = node->X};
     PetscBool        ends_here = PETSC_FALSE;
 
     if (node->owner != rank || !(sum[SUM_WHOLE] > 0)) continue;
     for (PetscInt k = ptr[i]; k < ptr[i + 1]; k++) ends_here = (PetscBool)(ends_here || !z->bears[list[k]]);
-    if (ends_here) PetscCall(FitPatch(z, i, ptr[i + 1] - ptr[i], &list[ptr[i]], sum, &ends[node->local * END_WIDTH]));
+    if (ends_here) PetscCall(FitPatch(z, &patch, sum, &ends[node->local * END_WIDTH]));
   }
   PetscCallMPI(MPI_Type_contiguous(END_WIDTH, MPIU_REAL, &block));
   PetscCallMPI(MPI_Type_commit(&block));
