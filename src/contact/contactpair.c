@@ -14,9 +14,8 @@
    of 60 degrees. */
 #define CONTACT_GLOBAL_COSINE 0.5
 
-/* In a list of surfaces an edge whose faces differ by feature_angle but for this part of it is sharp: skins of bodies
-   have chamfers of 45 degrees, the default, which round-off must not round off. Named surfaces keep the angle itself:
-   with this part of it a D-ring in a groove would leak at 6.3 MPa in the place of 7.8. */
+/* An edge whose faces differ by feature_angle but for this part of it is sharp: chamfers have 45 degrees, the default,
+   and round-off must not decide whether a fit goes on past them. */
 #define CONTACT_SHARP_FROM (1 - 1e-4)
 
 /* In surface to surface, a slave whose faces are at least this many times coarser than the master's takes a finer
@@ -268,7 +267,7 @@ static FitSettings PairFitSettings(Scene scene, const ContactPair *pair, int ord
   if (fit.exponent == 0) fit.exponent = scene->dim == 3 && fit.degree == 4 ? 3.5 : 6;
   fit.derivatives   = contact->diffuse_derivatives ? FIT_DIFFUSE : FIT_FULL;
   fit.global_frame  = contact->global_frame ? PETSC_TRUE : PETSC_FALSE;
-  fit.feature_angle = (contact->listed ? CONTACT_SHARP_FROM : 1) * contact->feature_angle * PETSC_PI / 180;
+  fit.feature_angle = CONTACT_SHARP_FROM * contact->feature_angle * PETSC_PI / 180;
   return fit;
 }
 

@@ -283,8 +283,7 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.derivatives", CHOICE, .values = "full | diffuse", .preset = "full",
    .help = "tangent of the diffuse fit; diffuse neglects the variation of the weights and is cheaper"},
   {"contact.*.feature_angle", REAL, .range = "(0, 180]", .unit = "degrees", .preset = "45",
-   .help = "the neighbourhood of a slave point ends at edges that are sharper than this angle, in lists of surfaces at "
-           "those of this angle too"},
+   .help = "the neighbourhood of a slave point ends at edges that are as sharp as this angle, or sharper"},
   {"contact.*.symmetry", TEXTS,
    .help = "planar surfaces beyond which the model continues as its mirror image; without the key these are the planes at "
            "which slave or master end square to a support that fixes the normal displacement alone; []: none"},
