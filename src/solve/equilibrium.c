@@ -126,7 +126,10 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
     PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t, PETSC_TRUE,
                               sizeof(report->detail), report->detail));
   if (report->detail[0] && !adrift)
-    PetscCall(PetscStrlcat(report->detail, ", is driven by the loads, and friction alone holds it, which slips",
+    PetscCall(PetscStrlcat(report->detail,
+                           SceneHasFriction(model->scene)
+                             ? ", is driven by the loads, and friction alone holds it, which slips"
+                             : ", is driven by the loads, and contact alone holds it",
                            sizeof(report->detail)));
   if (report->detail[0]) PetscFunctionReturn(PETSC_SUCCESS);
   if (adrift) PetscCall(FreeModesUnheld(model->mesh, model->scene, model->problem->loads, sizeof(loose), loose));

@@ -9,7 +9,10 @@ ROWS = ["contact.0.smoother=diffuse", "mesh.order=1", "mesh.parameters.n_width=2
 CASES = {  # rungs on which slave points stand
     "six rows": (PLATE, ROWS + ["mesh.parameters.n_cylinder_z=6"], {"plain", "wider"}),
     "two rows": (PLATE, ROWS + ["mesh.parameters.n_cylinder_z=2"], {"degree 2"}),
-    "one row": (PLATE, ROWS + ["mesh.parameters.n_cylinder_z=1"], {"linear"}),
+    "one row of a body": (SCENES / "contact_patch.yaml", ["contact.0.smoother=diffuse", "contact.0.symmetry=[]",
+                                                          "mesh.parameters.n_lower=6",
+                                                          "mesh.parameters.n_depth_lower=1"], {"linear"}),
+    "one row of a tool, which is divided": (PLATE, ROWS + ["mesh.parameters.n_cylinder_z=1"], {"plain", "wider"}),
     "one facet": (SCENES / "contact_patch.yaml", ["contact.0.smoother=diffuse", "contact.0.symmetry=[]", "mesh.parameters.n_lower=1",
                                                   "mesh.parameters.n_depth_lower=1"], {"facets"}),
     "six rows, quadrature points": (PLATE, ROWS + ["mesh.parameters.n_cylinder_z=6",
