@@ -57,20 +57,6 @@ static PetscErrorCode Destroy(Between *b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The change of the gap of a slave point along a motion of the contact nodes. */
-static PetscErrorCode Along(const ContactPair *pair, PetscInt q, const PetscReal *motion, PetscReal *change)
-{
-  const int                dim = pair->mesh->dim;
-  const ContactVariations *v   = pair->variations;
-
-  PetscFunctionBeginUser;
-  *change = 0;
-  PetscCall(ContactVariationsNeed(pair, q));
-  for (PetscInt i = v->first[q]; i < v->end[q]; i++)
-    for (int d = 0; d < dim; d++) *change += v->N[i * dim + d] * motion[v->number[i] * dim + d];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Moves the contact nodes of a pair along u and y. */
 static PetscErrorCode Motions(Contact contact, ContactPair *pair, const PetscReal *u, const PetscReal *y,
                               PetscReal **along_u, PetscReal **along_y)
@@ -101,8 +87,8 @@ static PetscErrorCode NodeValues(Contact contact, ContactPair *pair, const Betwe
 
     ContactTermLaw(pair, c, pair->t, &law, NULL, &area);
     if (!(law.pressure > 0)) continue;
-    PetscCall(Along(pair, q, along_u, &of[NODE_ALONG_U]));
-    PetscCall(Along(pair, q, along_y, &of[NODE_ALONG_Y]));
+    PetscCall(ContactVariationsAlong(pair, q, along_u, &of[NODE_ALONG_U]));
+    PetscCall(ContactVariationsAlong(pair, q, along_y, &of[NODE_ALONG_Y]));
     of[NODE_PRESSES]  = 1;
     of[NODE_PRESSURE] = law.pressure;
     of[NODE_RATE]     = -law.stiffness * of[NODE_ALONG_Y];
@@ -136,8 +122,8 @@ static PetscErrorCode AddPoint(const Between *b, PetscInt q, const PetscReal *va
   if (b->pair.lists->facet_ptr[q] == b->pair.lists->facet_ptr[q + 1]) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = slaves->ptr[q]; k < slaves->ptr[q + 1]; k++)
     for (int i = 0; i < NODE_WIDTH; i++) at[i] += slaves->S[k] * value[slaves->node[k] * NODE_WIDTH + i];
-  PetscCall(Along(&b->pair, q, along_u, &u));
-  PetscCall(Along(&b->pair, q, along_y, &y));
+  PetscCall(ContactVariationsAlong(&b->pair, q, along_u, &u));
+  PetscCall(ContactVariationsAlong(&b->pair, q, along_y, &y));
   *error -= b->pair.scene->share * slaves->weight[q] *
             (at[NODE_RATE] * (u - at[NODE_ALONG_U]) + at[NODE_PRESSURE] * (y - at[NODE_ALONG_Y]));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -28,21 +28,16 @@ static PetscReal TermStiffer(const ContactPair *pair, PetscInt c, const LawValue
 static PetscErrorCode TermGapAlong(const ContactPair *pair, PetscInt c, PetscReal area, const PetscReal *motion,
                                    PetscReal *change)
 {
-  const int                dim = pair->mesh->dim;
-  const ContactVariations *v   = pair->variations;
-
   PetscFunctionBeginUser;
   *change = 0;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt  q      = pair->term_point[k];
     const PetscReal weight = pair->term_weight[k] * pair->factor[q];
-    PetscReal       sum    = 0;
+    PetscReal       of_point;
 
     if (weight == 0) continue;
-    PetscCall(ContactVariationsNeed(pair, q));
-    for (PetscInt i = v->first[q]; i < v->end[q]; i++)
-      for (int d = 0; d < dim; d++) sum += v->N[i * dim + d] * motion[v->number[i] * dim + d];
-    *change += weight / area * sum;
+    PetscCall(ContactVariationsAlong(pair, q, motion, &of_point));
+    *change += weight / area * of_point;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -147,6 +147,32 @@ PetscErrorCode ContactVariationsNeed(const ContactPair *pair, PetscInt q)
 }
 
 /*@
+  ContactVariationsAlong - finds the change of the gap of a slave point along a motion of the contact nodes.
+
+  Not collective
+
+  Input Parameters:
++ pair   - the pair
+. q      - the slave point
+- motion - motion[n_nodes*dim] of the nodes of its lists (length)
+
+  Output Parameter:
+. change - of the gap (length)
+@*/
+PetscErrorCode ContactVariationsAlong(const ContactPair *pair, PetscInt q, const PetscReal *motion, PetscReal *change)
+{
+  const int                dim = pair->mesh->dim;
+  const ContactVariations *v   = pair->variations;
+
+  PetscFunctionBeginUser;
+  *change = 0;
+  PetscCall(ContactVariationsNeed(pair, q));
+  for (PetscInt i = v->first[q]; i < v->end[q]; i++)
+    for (int d = 0; d < dim; d++) *change += v->N[i * dim + d] * motion[v->number[i] * dim + d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactVariationsOwnPart - gives the part of a first variation that belongs to the slave point itself.
 
   Not collective

@@ -14,6 +14,7 @@
    lies in it: of those that reach beyond it no patch has the moments. Within a face the corners share as the linear
    shape functions do. */
 #include "contactimpl.h"
+#include "base/vectors.h"
 #include "kernels/endpressure.h"
 
 /* Each slave point stands for so many places in each direction of its face: the square root at the end of a zone is not
@@ -43,16 +44,11 @@ static int Corners(const ZoneEnd *z, PetscInt f)
 /* Finds the change of the gap of a point along y, unless it is known. */
 static PetscErrorCode FindAlong(const ZoneEnd *z, PetscInt q)
 {
-  const ContactPair       *pair = z->pair;
-  const int                dim  = pair->mesh->dim;
-  const ContactVariations *v    = pair->variations;
+  const ContactPair *pair = z->pair;
 
   PetscFunctionBeginUser;
   if (!PetscIsNanReal(z->along[q]) || PetscIsNanReal(pair->point_gap[q])) PetscFunctionReturn(PETSC_SUCCESS);
-  z->along[q] = 0;
-  PetscCall(ContactVariationsNeed(pair, q));
-  for (PetscInt i = v->first[q]; i < v->end[q]; i++)
-    for (int d = 0; d < dim; d++) z->along[q] += v->N[i * dim + d] * z->motion[v->number[i] * dim + d];
+  PetscCall(ContactVariationsAlong(pair, q, z->motion, &z->along[q]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,19 +189,11 @@ static void FaceFrame(const ZoneEnd *z, PetscInt f, PetscReal along[2][3], Petsc
   }
   if (dim == 2) edge[1][0] = edge[1][1] = 0;
   if (dim == 2) edge[1][2] = 1;
-  length = PetscSqrtReal(length);
-  for (int d = 0; d < 3; d++) {
-    const int i = (d + 1) % 3, j = (d + 2) % 3;
-
-    normal[d]   = edge[0][i] * edge[1][j] - edge[0][j] * edge[1][i];
-    along[0][d] = edge[0][d] / length;
-  }
-  length = PetscSqrtReal(PetscSqr(normal[0]) + PetscSqr(normal[1]) + PetscSqr(normal[2]));
-  for (int d = 0; d < 3; d++) {
-    const int i = (d + 1) % 3, j = (d + 2) % 3;
-
-    along[1][d] = (normal[i] * along[0][j] - normal[j] * along[0][i]) / length;
-  }
+  for (int d = 0; d < 3; d++) along[0][d] = edge[0][d] / PetscSqrtReal(length);
+  Cross(edge[0], edge[1], normal);
+  Cross(normal, along[0], along[1]);
+  length = PetscSqrtReal(Dot(normal, normal));
+  for (int d = 0; d < 3; d++) along[1][d] /= length;
 }
 
 /* Lists the places for which a point stands, in space in a square with its share of the face. Returns their number. */
@@ -238,14 +226,10 @@ static void Tangents(int dim, const PetscReal n[3], PetscReal t[2][3])
   for (int d = 0; d < 2 && dim == 3; d++)
     if (PetscAbsReal(n[d]) < PetscAbsReal(n[least])) least = d;
   for (int k = 0; k < 2; k++) {
-    const PetscReal e[3] = {least == 0, least == 1, least == 2}, *from = k ? t[0] : e;
+    const PetscReal e[3] = {least == 0, least == 1, least == 2};
 
-    length = 0;
-    for (int d = 0; d < 3; d++) {
-      t[k][d] = n[(d + 1) % 3] * from[(d + 2) % 3] - n[(d + 2) % 3] * from[(d + 1) % 3];
-      length += PetscSqr(t[k][d]);
-    }
-    length = PetscSqrtReal(length);
+    Cross(n, k ? t[0] : e, t[k]);
+    length = PetscSqrtReal(Dot(t[k], t[k]));
     for (int d = 0; d < 3; d++) t[k][d] /= length;
   }
 }

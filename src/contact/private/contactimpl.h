@@ -274,6 +274,7 @@ PetscErrorCode ContactVariationsDestroy(ContactVariations **);
 void           ContactVariationsReset(ContactVariations *);
 PetscErrorCode ContactVariationsKeep(const ContactPair *, PetscInt q, PetscBool found);
 PetscErrorCode ContactVariationsNeed(const ContactPair *, PetscInt q);
+PetscErrorCode ContactVariationsAlong(const ContactPair *, PetscInt q, const PetscReal *motion, PetscReal *change);
 PetscErrorCode ContactVariationsOwnPart(const ContactPair *, PetscInt slave, PetscReal own[], PetscBool *found);
 PetscInt       ContactVariationsOwn(const ContactPair *, PetscInt q);
 PetscErrorCode ContactVariationsNodes(const ContactPair *, PetscInt n, const PetscInt points[]);
