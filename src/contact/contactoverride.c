@@ -54,8 +54,11 @@ static PetscErrorCode RefuseSidesOfEdge(Contact contact, const ContactPair *a, c
   const PetscReal cosine = PetscCosReal(a->fit.feature_angle);
   PetscReal      *area, *normal, *other, *way;
   Complaint       complaint = {""};
+  PetscBool       meet;
 
   PetscFunctionBeginUser;
+  PetscCall(MeshGroupsMeet(mesh, a->master->group, b->master->group, &meet));
+  if (!meet) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(
     PetscMalloc4(mesh->n_nodes, &area, 3 * mesh->n_nodes, &normal, 3 * mesh->n_nodes, &other, 3 * mesh->n_nodes, &way));
   PetscCall(SurfaceNodeNormals(a->master, NULL, area, normal));

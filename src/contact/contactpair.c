@@ -74,24 +74,16 @@ static PetscErrorCode PairCreateNodePoints(Mesh mesh, ContactPair *pair)
 static PetscErrorCode PairIsOneBody(Mesh mesh, Scene scene, const ContactPair *pair, PetscBool *one)
 {
   const ContactSurface side[] = {pair->slave, pair->master};
-  int                 *has, shared = 0;
-  PetscReal           *sides;
+  int                 *has;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(2 * mesh->n_nodes, &sides));
-  for (int i = 0; i < 2; i++)
-    for (PetscInt k = 0; side[i]->group && k < side[i]->group->n_nodes; k++)
-      sides[2 * side[i]->group->nodes[k] + i] = 1;
-  for (PetscInt k = 0; k < mesh->n_nodes; k++) shared = shared || (sides[2 * k] > 0 && sides[2 * k + 1] > 0);
-  PetscCall(PetscFree(sides));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &shared, 1, MPI_INT, MPI_LOR, mesh->comm));
+  PetscCall(MeshGroupsMeet(mesh, side[0]->group, side[1]->group, one));
   PetscCall(PetscCalloc1(2 * scene->n_bodies, &has));
   for (int i = 0; i < 2; i++)
     for (PetscInt f = 0; side[i]->group && f < side[i]->n_faces; f++)
       has[i * scene->n_bodies + mesh->cell_body[side[i]->group->face_cell[f]]] = 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, 2 * scene->n_bodies, MPI_INT, MPI_LOR, mesh->comm));
-  for (int b = 0; b < scene->n_bodies; b++) shared = shared || (has[b] && has[scene->n_bodies + b]);
-  *one = shared ? PETSC_TRUE : PETSC_FALSE;
+  for (int b = 0; b < scene->n_bodies; b++) *one = (PetscBool)(*one || (has[b] && has[scene->n_bodies + b]));
   PetscCall(PetscFree(has));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,6 +16,7 @@
 #include "contactimpl.h"
 #include "base/vectors.h"
 #include "kernels/endpressure.h"
+#include "smooth/fitframe.h"
 
 /* Each slave point stands for so many places in each direction of its face: the square root at the end of a zone is not
    smooth. */
@@ -217,29 +218,12 @@ static int PointPlaces(const ZoneEnd *z, PetscInt q, PetscReal along[2][3], Pets
   return rows * PLACES;
 }
 
-/* Two unit vectors normal to n and to each other; in the plane the first one lies in it. */
-static void Tangents(int dim, const PetscReal n[3], PetscReal t[2][3])
-{
-  int       least = 2;
-  PetscReal length;
-
-  for (int d = 0; d < 2 && dim == 3; d++)
-    if (PetscAbsReal(n[d]) < PetscAbsReal(n[least])) least = d;
-  for (int k = 0; k < 2; k++) {
-    const PetscReal e[3] = {least == 0, least == 1, least == 2};
-
-    Cross(n, k ? t[0] : e, t[k]);
-    length = PetscSqrtReal(Dot(t[k], t[k]));
-    for (int d = 0; d < 3; d++) t[k][d] /= length;
-  }
-}
-
 /* The faces around a corner, with coordinates in their plane over their size, from the corner */
 typedef struct {
   PetscInt         n;
   const PetscInt  *face;
   const PetscReal *corner;
-  PetscReal        axis[2][3]; /* coordinates by distances (one over length) */
+  PetscReal        axis[3][3]; /* coordinates by distances (one over length), and the faces' normal */
 } Patch;
 
 /* Finds the coordinates of a patch. room: for its places. */
@@ -258,8 +242,8 @@ static void PatchFrame(const ZoneEnd *z, Patch *patch, int *room)
     *room += (int)(slaves->first[f + 1] - slaves->first[f]) * PLACES_MOST;
     size = PetscMax(size, slaves->size[slaves->first[f]]);
   }
-  Tangents(z->pair->mesh->dim, normal, patch->axis);
-  for (int k = 0; k < 2; k++)
+  FitFrameFromNormal(z->pair->mesh->dim, normal, patch->axis);
+  for (int k = 0; k < z->pair->mesh->dim - 1; k++)
     for (int d = 0; d < 3; d++) patch->axis[k][d] /= size;
 }
 

@@ -32,6 +32,34 @@ void MeshGroupLabel(Mesh mesh, const MeshGroup *group, char label[MESH_TEXT])
 }
 
 /*@
+  MeshGroupsMeet - tells whether two groups have a node in common.
+
+  Collective
+
+  Input Parameters:
++ mesh - the mesh
+. a    - a group; NULL: it has no nodes
+- b    - likewise
+
+  Output Parameter:
+. meet - the same on all ranks
+@*/
+PetscErrorCode MeshGroupsMeet(Mesh mesh, const MeshGroup *a, const MeshGroup *b, PetscBool *meet)
+{
+  PetscFunctionBeginUser;
+  *meet = PETSC_FALSE;
+  for (PetscInt i = 0, j = 0; a && b && !*meet && i < a->n_nodes && j < b->n_nodes;) {
+    *meet = (PetscBool)(a->nodes[i] == b->nodes[j]);
+    if (a->nodes[i] < b->nodes[j])
+      i++;
+    else
+      j++;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, meet, 1, MPIU_BOOL, MPI_LOR, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   MeshFindBody - finds a body of the scene by its name.
 
   Not collective

@@ -193,7 +193,6 @@ PetscErrorCode SliceRigidCreate(Scene scene, const SliceMesh *slice, Mesh mesh)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(scene->n_bodies, &mesh->rigid));
-  PetscCall(NextTags(slice, tags));
   for (int b = 0; b < scene->n_bodies; b++) {
     const int g = MeshFindGroup(mesh, mesh->dim - 1, scene->bodies[b].name);
 
@@ -202,6 +201,7 @@ PetscErrorCode SliceRigidCreate(Scene scene, const SliceMesh *slice, Mesh mesh)
       PetscCall(RefuseInput(mesh->comm, "%s: the mesh has no surface group '%s' for this rigid tool",
                             SceneWhere(scene, scene->bodies[b].path, "surface"), scene->bodies[b].name));
     }
+    if (!mesh->n_rigid) PetscCall(NextTags(slice, tags));
     MeshRigid *rigid = &mesh->rigid[mesh->n_rigid++];
 
     PetscCall(PetscStrallocpy(scene->bodies[b].name, &rigid->name));

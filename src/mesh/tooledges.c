@@ -72,7 +72,7 @@ static void Direction(int dim, const MeshRigid *tool, PetscInt from, PetscInt to
 
   Place(dim, tool, from, a);
   Place(dim, tool, to, b);
-  for (int k = 0; k < 3; k++) d[k] = b[k] - a[k];
+  Minus(b, a, d);
   length = PetscSqrtReal(Dot(d, d));
   for (int k = 0; k < 3 && length > 0; k++) d[k] /= length;
 }
@@ -235,8 +235,7 @@ PetscReal ToolEdgeLength(int dim, const MeshRigid *tool, const ToolEdge *edge)
 
   Place(dim, tool, edge->corner[0], a);
   Place(dim, tool, edge->corner[1], b);
-  for (int k = 0; k < 3; k++) a[k] -= b[k];
-  return PetscSqrtReal(Dot(a, a));
+  return Distance(a, b);
 }
 
 /*@

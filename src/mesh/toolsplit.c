@@ -26,17 +26,19 @@ static void Mark(const ToolEdges *edges, PetscInt e, PetscBool *marked, PetscInt
   }
 }
 
-/* The longest edge of a face; of equal ones the first by number, which all faces of an edge agree upon. */
-static PetscInt LongestEdge(const MeshRigid *tool, const ToolEdges *edges, PetscInt f)
+/* Which edge of a face is the longest; of equal ones the first by number, which all faces of an edge agree upon. */
+static int LongestEdge(const MeshRigid *tool, const ToolEdges *edges, PetscInt f)
 {
-  PetscInt longest = -1;
+  const PetscInt *of      = &edges->of_face[TOOL_FACE_EDGES * f];
+  int             longest = 0;
+  PetscReal       most    = -1;
 
   for (int k = 0; k < ElementGet(tool->face_type[f])->edges; k++) {
-    const PetscInt  e      = edges->of_face[TOOL_FACE_EDGES * f + k];
-    const PetscReal length = ToolEdgeLength(edges->dim, tool, &edges->edge[e]);
-    const PetscReal most   = longest < 0 ? 0 : ToolEdgeLength(edges->dim, tool, &edges->edge[longest]);
+    const PetscReal length = ToolEdgeLength(edges->dim, tool, &edges->edge[of[k]]);
 
-    if (longest < 0 || length > most || (length == most && e < longest)) longest = e;
+    if (length < most || (length == most && of[k] > of[longest])) continue;
+    longest = k;
+    most    = length;
   }
   return longest;
 }
@@ -75,7 +77,7 @@ PetscErrorCode ToolSplitClose(const MeshRigid *tool, const ToolEdges *edges, Pet
 
     listed[f] = PETSC_FALSE;
     for (int k = 0; k < count; k++) any[k % 2] = (PetscBool)(any[k % 2] || marked[of[k]]);
-    if (count == 3 && (any[0] || any[1])) Mark(edges, LongestEdge(tool, edges, f), marked, list, &n, listed);
+    if (count == 3 && (any[0] || any[1])) Mark(edges, of[LongestEdge(tool, edges, f)], marked, list, &n, listed);
     for (int k = 0; k < count && count == 4; k++)
       if (any[k % 2]) Mark(edges, of[k], marked, list, &n, listed);
   }
@@ -289,8 +291,7 @@ static void AddParts(Maker *maker, const ToolEdges *edges, const MeshRigid *old,
   const Element *face = ElementGet(old->face_type[f]);
   SplitWork      work = {face, &old->face_nodes[old->face_ptr[f]], &edges->of_face[TOOL_FACE_EDGES * f], {0}, {{0}}};
   PetscBool      m[4] = {PETSC_FALSE}, any = PETSC_FALSE;
-  int            longest = 0;
-  Parts          parts   = {1, {{0, 1, 2, 3}}};
+  Parts          parts = {1, {{0, 1, 2, 3}}};
 
   for (int p = 0; p < FACE_POINTS; p++)
     for (int q = 0; q < FACE_POINTS; q++) work.inner[p][q] = -1;
@@ -299,9 +300,8 @@ static void AddParts(Maker *maker, const ToolEdges *edges, const MeshRigid *old,
     m[k]                   = marked[work.edges[k]];
     any                    = (PetscBool)(any || m[k]);
     work.point[MIDDLE + k] = maker->middle[work.edges[k]];
-    if (work.edges[k] == LongestEdge(old, edges, f)) longest = k;
   }
-  if (any) parts = SplitFace(face->edges, m, longest);
+  if (any) parts = SplitFace(face->edges, m, LongestEdge(old, edges, f));
   if (any && face->edges == 4 && m[0] && m[1])
     work.point[CENTRE] = face->order > 1 ? work.nodes[8] : AddInner(maker, &work, 1, (const int[1]){CENTRE});
   for (int i = 0; i < parts.n; i++)
