@@ -1,8 +1,9 @@
 """How time and memory grow: scenes with contact, meshes from 1e4 unknowns on, 1 and 2 ranks, direct and iterative
 solver. Raw records of every run go to a CSV file; tables and a plot are made from there (make bench).
-    scaling.py [--burnish BINARY] [--large] [--out DIR] [--record FILE [--add]] [CASE ...]     runs, prints, plots
+    scaling.py [--burnish BINARY] [--large] [--largest] [--out DIR] [--record FILE [--add]] [CASE ...]     runs, prints, plots
     scaling.py --table FILE                                                          prints and plots only
---large adds 3e5 unknowns, and 1e6 iterative. A CASE is a part of a run's name: "ring_in_ring_3d 30 iterative"; --add
+--large adds 3e5 unknowns, and 1e6 iterative; --largest the rings with 4e6 unknowns too, which take 16 GB and some 20
+minutes. A CASE is a part of a run's name: "ring_in_ring_3d 30 iterative"; --add
 keeps the record's other runs. CPU seconds are summed over the ranks, meshing apart. Those of a phase are its share of
 the wall time: on a busy machine wall times mean little. Bandwidth: what as many processes as ranks together read and
 write in one array's sum of two others, just before the run."""
@@ -31,7 +32,7 @@ CONTACT = ("search", "fit", "assembly_contact")
 COLUMNS = ("scene", "size", "solver", "ranks", "dofs", "status", "newton_iterations", "krylov_iterations", "cpu_s",
            "wall_s", "peak_rss_mb", "contact_nodes", "imbalance_cells", "imbalance_contact",
            *(f"seconds_{phase}" for phase in PHASES), "bandwidth_gb_s")
-SMALL, LARGE = 3, 5  # sizes run without and with --large: 1e4, 3e4 and 1e5 unknowns, 3e5 and 1e6
+SMALL, LARGE, LARGEST = 3, 5, 6  # sizes run without and with --large and --largest: 1e4 to 1e5 unknowns, 1e6, 4e6
 SOLVERS = ("direct", "iterative")
 RANKS = (1, 2)
 DIRECT_SIZES = 4  # of the sizes: a factor of 1e6 unknowns takes 20 GB and half an hour
@@ -54,11 +55,14 @@ def sphere(n):
     return f"mesh.parameters={{n_inner: {n}, n_outer: {5 * n // 4}, jitter: 0}}"
 
 
-# Contact along an axis (blocks) and across all of them; node to surface, and surface to surface (blocks)
+# Scene, values that it is run with, mesh and its sizes. Contact along an axis (blocks) and across all of them; node to
+# surface, and surface to surface (blocks, and the rings once more).
+RINGS = (ring, (20, 30, 48, 70, 100, 160))
 SCENES = {
-    "ring_in_ring_3d": (ring, (20, 30, 48, 70, 100)),
-    "spheres": (sphere, (8, 12, 18, 26, 38)),
-    "patch_blocks": (blocks, (14, 20, 30, 44, 64)),
+    "ring_in_ring_3d": ("ring_in_ring_3d", (), *RINGS),
+    "ring_in_ring_3d_surface": ("ring_in_ring_3d", ("contact.0.formulation=surface_to_surface",), *RINGS),
+    "spheres": ("spheres", (), sphere, (8, 12, 18, 26, 38)),
+    "patch_blocks": ("patch_blocks", (), blocks, (14, 20, 30, 44, 64)),
 }
 
 
@@ -80,12 +84,12 @@ def bandwidth(processes):
 
 def solve(args, scene, size, solver, ranks):
     """One run, as a row of the CSV file."""
-    mesh, _ = SCENES[scene]
+    file, values, mesh, _ = SCENES[scene]
     speed = bandwidth(ranks)
     directory = args.out / "run"
     shutil.rmtree(directory, ignore_errors=True)
-    line = command(args.burnish, ranks, ROOT / "runs" / f"{scene}.yaml", directory,
-                   (*COMMON, mesh(size), f"solver.type={solver}"), "-quiet")
+    line = command(args.burnish, ranks, ROOT / "runs" / f"{file}.yaml", directory,
+                   (*COMMON, *values, mesh(size), f"solver.type={solver}"), "-quiet")
     finished = subprocess.run([*args.launcher, *line], cwd=ROOT, env=environment(args.burnish), stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True)
     if finished.returncode not in (0, 2):  # 2: did not converge; the summary says so
@@ -105,13 +109,13 @@ def solve(args, scene, size, solver, ranks):
 
 def cases(args):
     """(scene, size, solver, ranks) of the runs asked for, small ones first."""
-    for i in range(LARGE if args.large else SMALL):
-        for scene, (_, sizes) in SCENES.items():
+    for i in range(LARGEST if args.largest else LARGE if args.large else SMALL):
+        for scene, (*_, sizes) in ((scene, case) for scene, case in SCENES.items() if i < len(case[-1])):
             for solver in SOLVERS:
                 for ranks in RANKS:
                     name = f"{scene} {sizes[i]} {solver} {ranks}"
-                    if (solver == "iterative" or i < DIRECT_SIZES) and (not args.case or any(case in name
-                                                                                             for case in args.case)):
+                    asked = not args.case or any(case in name for case in args.case)
+                    if asked and (solver == "iterative" or i < DIRECT_SIZES):
                         yield scene, sizes[i], solver, ranks
 
 
@@ -267,6 +271,7 @@ parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.R
 parser.add_argument("case", nargs="*", metavar="CASE")
 parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build" / "burnish")
 parser.add_argument("--large", action="store_true")
+parser.add_argument("--largest", action="store_true")
 parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / "bench" / "scaling")
 parser.add_argument("--record", type=pathlib.Path, help="raw records (default: scaling.csv in --out)")
 parser.add_argument("--add", action="store_true", help="keep what else is in the record")
