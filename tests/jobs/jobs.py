@@ -397,6 +397,16 @@ JOBS = [
         Answer("seat", -282.2, 0.04, "limit"),
         Answer("centre", -5.8175, 0.01, "limit"),
     ], steps=12, picture=["--mirror", "x"]),
+    # Friction on rubber, and springback
+    Job("quad_ring", "quad ring squeezed in its groove", [Answer("force", 41.684, 0.03, "limit")], steps=12, pairs=2,
+        stiff=["contact.*.friction.stick.slip=0.001"]),
+    # Its meshes have no order: the reference is the finest one
+    Job("stud_sheared", "rubber stud pressed and sheared to and fro", [
+        Answer("press", 133.2, 0.6, "limit"),
+        Answer("shear", 40.5, 0.8, "limit"),
+    ], steps=16, levels=(1, 1.4, 1.96), stiff=["contact.*.friction.stick.slip=0.001"], picture=["--mirror", "y"]),
+    Job("vee_bend", "sheet bent in a die, with springback", [Answer("end", -3.26, 0.7, "limit")], steps=20, pairs=2,
+        stiff=["contact.*.friction.stick.slip=0.001"], picture=["--mirror", "x"]),
     # Bodies that lie flush on each other, and no pairs named
     Job("keystone", "stone flush between two walls, no pairs named", [Answer("thrust", 86.212, 0.01, "limit")], steps=12),
     Job("tube_in_box", "rubber tube blown up in a box", [Answer("corner", 4.1137, 0.06, "limit")], steps=12),
