@@ -138,6 +138,11 @@ typedef struct {
   const SurfaceImage *mirrors;
 } ContactSides;
 
+/* Parts of the usual drift by which offsets may lag behind a solution. */
+typedef struct {
+  PetscReal term, mean; /* of each term; in the mean over the forces of a pair, PETSC_INFINITY: not asked for */
+} ContactLag;
+
 typedef struct _n_Contact *Contact;
 
 /* Life and state */
@@ -154,7 +159,7 @@ PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal
 PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
-                                PetscReal lag, PetscBool passing, PetscBool *hold);
+                                ContactLag lag, PetscBool passing, PetscBool *hold);
 PetscErrorCode ContactTakeOffsetsPart(Contact, PetscReal part, PetscBool *any);
 void           ContactForgetLost(Contact);
 void           ContactWatchOuter(Contact, PetscReal *outer);
