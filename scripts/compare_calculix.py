@@ -14,12 +14,17 @@ import csv
 import dataclasses
 import math
 import pathlib
+import resource
 import shlex
 import shutil
+import signal
 import statistics
 import subprocess
 import sys
 
+import numpy
+
+import o_ring_calculix
 from launch import environment, read_summary, timed
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -29,6 +34,10 @@ BRICK_SIDES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7,
                )  # corners of CalculiX's faces S1 ...
 PLANE_WIDTH, PLANE_ELEMENTS = 40, 20  # mm; the contact ends at 25
 QUAD_SIDES = ((0, 1), (1, 2), (2, 3), (3, 0))
+IRONING_SHEAR = {"slab": 68.96 / 2.64, "tool": 689.6 / 2.64}  # of a foam, whose law both codes have
+NECKING_WAY = 5  # mm, of half the bar
+NECKING_HARDENING = ("451, 0", "476, 0.006", "525, 0.019", "583, 0.038", "642, 0.066", "710, 0.147", "777, 0.5",
+                     "831, 1")
 SWAPPED = ("contact.0.slave=pipe_outer", "contact.0.master=plate_bottom")
 BY_ITERATIONS = ("stepping.control=iterations", "stepping.initial=0.25", "stepping.at=[]")
 AT_ONCE = ("stepping.initial=1", "stepping.at=[]")
@@ -63,6 +72,7 @@ class Setting:
     mu: float = 0
     turn: float = 0  # of the press fit's bore (radians)
     law: str = ""  # of LAWS; the scene's own without it
+    nu: float = 0  # of the O-ring
 
     def __str__(self):
         return f"{self.scene} {self.code} {self.name}"
@@ -184,8 +194,17 @@ SETTINGS = [
 ]
 
 
-SCENES = {"press_fit": "friction/press_fit.yaml"}  # in runs; the others have their own names
-GEOMETRIES = {"press_fit": "rings_turned.geo"}  # in meshes; the others have their own names
+# Where they have not their own names in runs and in meshes
+SCENES = {
+    "press_fit": "friction/press_fit.yaml",
+    "ironing": "../tests/jobs/ironing.yaml",
+    "necking": "../tests/scenes/necking.yaml"
+}
+GEOMETRIES = {
+    "press_fit": "rings_turned.geo",
+    "ironing": "../tests/jobs/ironing.geo",
+    "necking": "../tests/scenes/necking.geo"
+}
 
 # Meshes, and CalculiX's input
 
@@ -212,10 +231,16 @@ class AbaqusMesh:
 
     def add_element(self, kind, line):
         number, *nodes = [int(part) for part in line.split(",") if part.strip()]
-        self.elements[number] = (kind, nodes)
+        if kind == "T3D3":  # the middle node stands between the ends: corners first
+            nodes = [nodes[0], nodes[2], nodes[1]]
+        self.elements[number] = (kind, nodes[:8] if kind == "M3D9" else nodes)
 
     def cells(self, groups):
         return {number: self.elements[number][1] for group in groups for number in self.groups[group]}
+
+    def used(self, cells):
+        """Lines of the nodes that the cells have; inner nodes of quadrilaterals are those of Burnish alone."""
+        return [self.nodes[node] for node in sorted({node for nodes in cells.values() for node in nodes})]
 
     def group_nodes(self, group):
         return sorted({node for number in self.groups[group] for node in self.elements[number][1]})
@@ -355,12 +380,71 @@ def fit_input(setting, mesh):
     ]
 
 
-INPUTS = {"pipe_pinch": pipe_input, "cup_flattening": cup_input, "press_fit": fit_input}
-WHOLE = {
-    "pipe_pinch": 1,
-    "cup_flattening": 180
-}  # reactions are those of the wedge of 2 degrees to which CalculiX expands axisymmetric elements
+def ring_input(setting, mesh):
+    """The O-ring, by scripts/o_ring_calculix.py."""
+    nodes = numpy.zeros((max(mesh.nodes), 3))
+    for node, line in mesh.nodes.items():
+        nodes[node - 1] = [float(part) for part in line.split(",")[1:4]]
+    cells = numpy.array(list(mesh.cells(("ring", )).values())) - 1
+    return o_ring_calculix.deck(nodes, cells, setting.nu, setting.increment, setting.scale)
 
+
+def ironing_input(setting, mesh):
+    """A stiff tool is pressed into a slab and drawn over it."""
+    parts = {body: mesh.cells((body, )) for body in ("slab", "tool")}
+    cells = {**parts["slab"], **parts["tool"]}
+    deck = ["*NODE", *mesh.used(cells)]
+    for body, shear in IRONING_SHEAR.items():
+        deck += [
+            *element_lines(setting.element, body, parts[body]), f"*MATERIAL, NAME={body}", "*HYPERFOAM, N=1",
+            f"{shear!r}, 2, 0.32", f"*SOLID SECTION, ELSET={body}, MATERIAL={body}", "1."
+        ]
+    return [
+        *deck, *surface("SLAVE", mesh.sides("tool_sole", parts["tool"], QUAD_SIDES)),
+        *surface("MASTER", mesh.sides("slab_top", parts["slab"], QUAD_SIDES)), *contact(setting, 68.96, 0.25),
+        *fixed(mesh, {
+            "slab_bottom": "12",
+            "tool_top": ""
+        }), "*AMPLITUDE, NAME=PRESS", "0, 0, 0.2, 1, 1, 1", "*AMPLITUDE, NAME=DRAW", "0, 0, 0.2, 0, 1, 1",
+        *step(setting, [
+            "*BOUNDARY, AMPLITUDE=PRESS", "tool_top, 2, 2, -1", "*BOUNDARY, AMPLITUDE=DRAW", "tool_top, 1, 1, 7"
+        ], "tool_top")
+    ]
+
+
+def necking_input(setting, mesh):
+    """A bar that is drawn until it necks."""
+    cells = mesh.cells(("bar", ))
+    return [
+        "*NODE", *mesh.used(cells), *element_lines(setting.element, "BAR", cells), "*MATERIAL, NAME=BAR", "*ELASTIC",
+        "200e3, 0.3", "*PLASTIC", *NECKING_HARDENING, "*SOLID SECTION, ELSET=BAR, MATERIAL=BAR", *fixed(mesh, {
+            "middle": "2",
+            "axis": "1",
+            "end": ""
+        }), *step(setting, ["*BOUNDARY", f"end, 2, 2, {NECKING_WAY}"], "end")
+    ]
+
+
+INPUTS = {
+    "pipe_pinch": pipe_input,
+    "cup_flattening": cup_input,
+    "press_fit": fit_input,
+    "o_ring": ring_input,
+    "ironing": ironing_input,
+    "necking": necking_input
+}
+# Reactions are those of the wedge of 2 degrees to which CalculiX expands axisymmetric elements.
+WHOLE = {"cup_flattening": 180, "o_ring": 180, "necking": 180}
+
+
+PROBES = {
+    "pipe_pinch": "plate_force",
+    "cup_flattening": "plane_force",
+    "press_fit": "torque",
+    "o_ring": "force",
+    "ironing": "fy",
+    "necking": "force"
+}
 
 # Runs
 
@@ -368,7 +452,8 @@ WHOLE = {
 def timed_in(args, command, directory):
     """Exit status and CPU seconds of the one process; both codes have the same environment."""
     with open(directory / "output.txt", "w") as output:
-        return timed(command, cwd=directory, env=environment(args.burnish), stdout=output, stderr=subprocess.STDOUT)
+        return timed(command, cwd=directory, env=environment(args.burnish), stdout=output, stderr=subprocess.STDOUT,
+                     preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (args.limit, args.limit)))
 
 
 def run_calculix(args, setting, directory):
@@ -384,7 +469,7 @@ def reaction(setting, directory, mesh):
     """The last reaction of the .dat file: the y component of its sum, or its moment about the origin."""
     rows = [line.split() for line in (directory / "case.dat").read_text().splitlines()]
     if setting.scene != "press_fit":
-        return WHOLE[setting.scene] * float([row for row in rows if len(row) == 3][-1][1])
+        return WHOLE.get(setting.scene, 1) * float([row for row in rows if len(row) == 3][-1][1])
     forces = {int(row[0]): [float(part) for part in row[1:3]] for row in rows if len(row) == 4 and row[0].isdigit()}
     places = {node: [float(part) for part in mesh.nodes[node].split(",")[1:3]] for node in forces}
     return sum(places[node][0] * force[1] - places[node][1] * force[0] for node, force in forces.items())
@@ -423,10 +508,11 @@ def run_burnish(args, setting, directory):
     for override in (mesh, "output.every=0", *(part for part in setting.overrides if not part.startswith("mesh."))):
         command += ["-set", override]
     returned, cpu = timed_in(args, command, directory)
+    if returned == -signal.SIGXCPU:
+        return {"status": "stopped", "cpu_s": cpu, "force": None}
     if returned not in (0, 2):  # 2: did not converge; the summary says how far it came
         sys.exit(f"{' '.join(str(part) for part in command)}\n{(directory / 'output.txt').read_text()}")
     summary = read_summary(directory / "results")
-    probe = {"pipe_pinch": "plate_force", "cup_flattening": "plane_force", "press_fit": "torque"}[setting.scene]
     return {
         "status": summary["status"],
         "steps": summary["steps"],
@@ -434,7 +520,7 @@ def run_burnish(args, setting, directory):
         "iterations": summary["newton_iterations"],
         "dofs": summary["dofs"],
         "cpu_s": cpu,
-        "force": abs(summary["probes"][probe]) if returned == 0 else None
+        "force": abs(summary["probes"][PROBES[setting.scene]]) if returned == 0 else None
     }
 
 
@@ -444,7 +530,7 @@ def record(args, setting, repeat):
     directory.mkdir(parents=True)
     row = (run_burnish if setting.code == "burnish" else run_calculix)(args, setting, directory)
     own = not setting.mu and not setting.law  # what the reference is of
-    reference = REFERENCES[setting.scene] if own else FIT_TORQUE if setting.turn == SLIPS else None
+    reference = REFERENCES.get(setting.scene) if own else FIT_TORQUE if setting.turn == SLIPS else None
     error = 100 * (row["force"] / reference - 1) if row["force"] is not None and reference else None
     row.update(scene=setting.scene, code=setting.code, setting=setting.name, repeat=repeat, error=error)
     return row
@@ -500,20 +586,26 @@ def table(path):
     print("\n".join(notes))
 
 
-parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("case", nargs="*", metavar="CASE")
-parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build" / "burnish")
-parser.add_argument("--ccx", default="ccx")
-parser.add_argument("--repeats", type=int, default=2)
-parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / "calculix")
-parser.add_argument("--record", type=pathlib.Path, help="raw records (default: calculix.csv in --out)")
-parser.add_argument("--launcher", type=shlex.split, default=[],
-                    help="command put before each of the runs: a queue, taskset, nice")
-parser.add_argument("--table", type=pathlib.Path, help="raw records to print, nothing is run")
-args = parser.parse_args()
-if not args.table:
-    if not shutil.which(args.ccx):
-        sys.exit(f"{args.ccx}: CalculiX is not there: apt-get install calculix-ccx")
-    args.burnish, args.out = args.burnish.resolve(), args.out.resolve()
-    args.out.mkdir(parents=True, exist_ok=True)
-table(args.table or measure(args))
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("case", nargs="*", metavar="CASE")
+    parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build" / "burnish")
+    parser.add_argument("--ccx", default="ccx")
+    parser.add_argument("--repeats", type=int, default=2)
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / "calculix")
+    parser.add_argument("--limit", type=int, default=resource.RLIM_INFINITY, help="CPU seconds of a run")
+    parser.add_argument("--record", type=pathlib.Path, help="raw records (default: calculix.csv in --out)")
+    parser.add_argument("--launcher", type=shlex.split, default=[],
+                        help="command put before each of the runs: a queue, taskset, nice")
+    parser.add_argument("--table", type=pathlib.Path, help="raw records to print, nothing is run")
+    args = parser.parse_args()
+    if not args.table:
+        if not shutil.which(args.ccx):
+            sys.exit(f"{args.ccx}: CalculiX is not there: apt-get install calculix-ccx")
+        args.burnish, args.out = args.burnish.resolve(), args.out.resolve()
+        args.out.mkdir(parents=True, exist_ok=True)
+    table(args.table or measure(args))
+
+
+if __name__ == "__main__":
+    main()

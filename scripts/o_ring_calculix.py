@@ -74,9 +74,13 @@ def row(name, face, behind, node, element):
                     *(f"{element + i}, S3" for i in range(n - 1)), f"*SOLID SECTION, ELSET={name}, MATERIAL=stiff"]
 
 
-def deck(results, nu, increment, stiffness):
+def mesh_of(results):
+    """Nodes and cells of a run, without the inner nodes."""
     with h5py.File(results / "results.h5", "r") as file:
-        nodes, cells = file["mesh/nodes"][()], file["mesh/cells_quad9"][()][:, :8]
+        return file["mesh/nodes"][()], file["mesh/cells_quad9"][()][:, :8]
+
+
+def deck(nodes, cells, nu, increment, stiffness):
     used = sorted(set(cells.ravel()))
     lines = ["*NODE", *(f"{k + 1}, {', '.join(f'{x:.12g}' for x in nodes[k])}" for k in used),
              "*ELEMENT, TYPE=CAX8R, ELSET=ring",
@@ -178,7 +182,7 @@ def rows_of(path):
     return [line.split() for line in path.read_text().splitlines() if line.split() and line.split()[0].isdigit()]
 
 
-def timed_in(command, directory, log, limit=resource.RLIM_INFINITY):
+def timed_in(args, command, directory, log, limit=resource.RLIM_INFINITY):
     def stop():
         resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
 
@@ -187,14 +191,14 @@ def timed_in(command, directory, log, limit=resource.RLIM_INFINITY):
                      preexec_fn=stop)
 
 
-def burnish(element, scene, overrides, law, nu, directory):
+def burnish(args, element, scene, overrides, law, nu, directory):
     """Directory and row of a run; the force is None where it has not ended."""
     results = pathlib.Path(tempfile.mkdtemp(dir=directory)) / "run"
     material = f"{{law: {law}, E: {YOUNG}, nu: {nu}}}"
     command = [args.burnish, ROOT / scene, "-o", results]
     for override in (*overrides, f"bodies.0.material={material}"):
         command += ["-set", override]
-    code, cpu = timed_in(command, directory, directory / "burnish.log")
+    code, cpu = timed_in(args, command, directory, directory / "burnish.log")
     summary = read_summary(results)
     return results, {"code": "Burnish", "element": f"{element} mixed", "nu": nu, "steps": summary["steps"],
                      "status": "done" if code == 0 else "not converged", "failed": summary["steps_failed"],
@@ -202,12 +206,12 @@ def burnish(element, scene, overrides, law, nu, directory):
                      "force": summary["probes"]["force"] if code == 0 else None}
 
 
-def calculix(lines, element, nu, increment, parts, directory):
+def calculix(args, lines, element, nu, increment, parts, directory):
     """Row of a run of a deck for one of `parts` of the ring."""
     for old in directory.glob("ring.*"):
         old.unlink()
     (directory / "ring.inp").write_text("\n".join(lines) + "\n")
-    _, cpu = timed_in([args.ccx, "-i", "ring"], directory, directory / "ccx.log", args.limit)
+    _, cpu = timed_in(args, [args.ccx, "-i", "ring"], directory, directory / "ccx.log", args.limit)
     accepted, iterations = rows_of(directory / "ring.sta"), rows_of(directory / "ring.cvg")
     done = bool(accepted) and abs(float(accepted[-1][4]) - 1) < 1e-9
     steps = len({line[1] for line in accepted})
@@ -222,53 +226,58 @@ def plane(order, triangles, n):
     return f"mesh.order={order}", f"mesh.parameters.n={n}", f"mesh.parameters.triangles={triangles}"
 
 
-def rings(directory):
+def rings(args, directory):
     """Rows of the axisymmetric ring."""
     for nu in NUS:
-        mesh, row = burnish("quad9", "runs/o_ring.yaml", plane(2, 0, args.n), "isochoric_neo_hookean", nu, directory)
+        mesh, row = burnish(args, "quad9", "runs/o_ring.yaml", plane(2, 0, args.n), "isochoric_neo_hookean", nu, directory)
         yield {**row, "n": args.n}
         for step in args.increments if nu <= 0.499 else ():
-            lines = deck(mesh, nu, step, args.stiffness)
-            yield {**calculix(lines, "CAX8R", nu, step, WEDGE, directory), "n": args.n}
+            lines = deck(*mesh_of(mesh), nu, step, args.stiffness)
+            yield {**calculix(args, lines, "CAX8R", nu, step, WEDGE, directory), "n": args.n}
 
 
-def solids(directory):
+def solids(args, directory):
     """Rows of the quarter in space."""
     for nu in SOLID_NUS:
         for element, order, simplex, n, arc in (case[:5] for case in SOLIDS if nu in case[5]):
             flat = {"hex27": "quad9", "tet10": "tri6", "tet4": "tri3"}[element]
-            mesh, row = burnish(flat, "runs/o_ring.yaml", plane(order, simplex, n), "neo_hookean", nu, directory)
+            mesh, row = burnish(args, flat, "runs/o_ring.yaml", plane(order, simplex, n), "neo_hookean", nu, directory)
             force = row["force"]
             overrides = (*plane(order, simplex, n), f"mesh.parameters.arc={arc}", "output.every=0")
-            found = [burnish(element, "runs/rubber/o_ring_3d.yaml", overrides, "neo_hookean", nu, directory)[1]]
+            found = [burnish(args, element, "runs/rubber/o_ring_3d.yaml", overrides, "neo_hookean", nu, directory)[1]]
             found[0]["force"] = found[0]["force"] and 4 * found[0]["force"]
             for step in args.increments if (element, n) == ("hex27", 4) and nu <= 0.499 else ():
-                lines = swept(deck(mesh, nu, step, args.stiffness), arc)
-                found.append(calculix(lines, "C3D20R", nu, step, 4, directory))
+                lines = swept(deck(*mesh_of(mesh), nu, step, args.stiffness), arc)
+                found.append(calculix(args, lines, "C3D20R", nu, step, 4, directory))
             for row in found:
                 yield {**row, "n": n, "arc": arc,
                        "axisymmetric": f"{row['force'] / force:.5f}" if row["force"] and force else ""}
 
 
-parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build/burnish")
-parser.add_argument("--ccx", default="ccx")
-parser.add_argument("--stiffness", type=float, default=200)
-parser.add_argument("--increments", type=float, nargs="+", default=(0.1,))
-parser.add_argument("--n", type=int, default=8, help="elements along a quarter of the axisymmetric ring's cord")
-parser.add_argument("--solid", action="store_true", help="a quarter of the ring in space")
-parser.add_argument("--limit", type=int, help="default 40, and 1000 in space")
-parser.add_argument("--record", type=pathlib.Path)
-args = parser.parse_args()
-args.burnish = args.burnish.resolve()
-args.limit = args.limit or (1000 if args.solid else 40)
-args.record = args.record or ROOT / f"runs/records/{'o_ring_3d' if args.solid else 'o_ring_calculix'}.csv"
-with open(args.record, "w", newline="") as record, tempfile.TemporaryDirectory() as temporary:
-    table = csv.DictWriter(record, COLUMNS, restval="", lineterminator="\n")
-    table.writeheader()
-    print(f"| {' | '.join(COLUMNS)} |\n|{' --- |' * len(COLUMNS)}")
-    for line in (solids if args.solid else rings)(pathlib.Path(temporary)):
-        line["force"] = f"{line['force']:.2f}" if line["force"] else ""
-        table.writerow(line)
-        record.flush()
-        print("| " + " | ".join(str(line.get(name, "")) for name in COLUMNS) + " |", flush=True)
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build/burnish")
+    parser.add_argument("--ccx", default="ccx")
+    parser.add_argument("--stiffness", type=float, default=200)
+    parser.add_argument("--increments", type=float, nargs="+", default=(0.1,))
+    parser.add_argument("--n", type=int, default=8, help="elements along a quarter of the axisymmetric ring's cord")
+    parser.add_argument("--solid", action="store_true", help="a quarter of the ring in space")
+    parser.add_argument("--limit", type=int, help="default 40, and 1000 in space")
+    parser.add_argument("--record", type=pathlib.Path)
+    args = parser.parse_args()
+    args.burnish = args.burnish.resolve()
+    args.limit = args.limit or (1000 if args.solid else 40)
+    args.record = args.record or ROOT / f"runs/records/{'o_ring_3d' if args.solid else 'o_ring_calculix'}.csv"
+    with open(args.record, "w", newline="") as record, tempfile.TemporaryDirectory() as temporary:
+        table = csv.DictWriter(record, COLUMNS, restval="", lineterminator="\n")
+        table.writeheader()
+        print(f"| {' | '.join(COLUMNS)} |\n|{' --- |' * len(COLUMNS)}")
+        for line in (solids if args.solid else rings)(args, pathlib.Path(temporary)):
+            line["force"] = f"{line['force']:.2f}" if line["force"] else ""
+            table.writerow(line)
+            record.flush()
+            print("| " + " | ".join(str(line.get(name, "")) for name in COLUMNS) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -143,6 +143,9 @@ typedef struct {
   PetscReal term, mean; /* of each term; in the mean over the forces of a pair, PETSC_INFINITY: not asked for */
 } ContactLag;
 
+/* That of each term is the usual one. */
+#define CONTACT_USUAL_LAG ((ContactLag){1, PETSC_INFINITY})
+
 typedef struct _n_Contact *Contact;
 
 /* Life and state */

@@ -315,8 +315,7 @@ static PetscErrorCode ModelLag(Model model, PetscInt times, ContactLag *lag)
   if (SceneBreaks(model->scene, model->t)) *lag = (ContactLag){EQUILIBRIUM_LAG_AT_BREAK, PETSC_INFINITY};
   if (model->t >= 1) *lag = (ContactLag){EQUILIBRIUM_LAG_AT_END, PETSC_INFINITY};
   if (rests) *lag = (ContactLag){EQUILIBRIUM_LAG_AT_REST, PETSC_INFINITY};
-  if (times >= (rests ? EQUILIBRIUM_MAX_REST_UPDATES : EQUILIBRIUM_MAX_OFFSET_UPDATES))
-    *lag = (ContactLag){1, PETSC_INFINITY};
+  if (times >= (rests ? EQUILIBRIUM_MAX_REST_UPDATES : EQUILIBRIUM_MAX_OFFSET_UPDATES)) *lag = CONTACT_USUAL_LAG;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
