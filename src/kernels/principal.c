@@ -9,42 +9,51 @@ enum { MAX_SWEEPS = 12 };
 /* A component off the diagonal that is below this part of the diagonal changes no digit of values and vectors. */
 static const double negligible = 1e-18;
 
+/* Entries of a where the mask is set, and of b elsewhere */
+LANES_INLINE Lanes Choose(LaneMask mask, Lanes a, Lanes b)
+{
+  return (Lanes)(((LaneMask)a & mask) | ((LaneMask)b & ~mask));
+}
+
+LANES_INLINE Lanes SquareRoot(Lanes a)
+{
+  Lanes root;
+
+  for (int lane = 0; lane < LANES; lane++) root[lane] = sqrt(a[lane]);
+  return root;
+}
+
 /* Computes the tangent of the angle that makes component b between axes with values p and q vanish. Returns whether
    some lane needs a rotation. A lane that needs none gets the tangent 0, so that it does not depend on the others. */
 LANES_INLINE int Angle(const Lanes *p, const Lanes *q, const Lanes *b, Lanes *t)
 {
-  int rotates = 0;
+  const Lanes    h = *q - *p, twice = 2 * *b, none = {0};
+  const Lanes    root  = LanesAbsolute(h) + SquareRoot(h * h + twice * twice);
+  const LaneMask large = LanesAbsolute(twice) > negligible * (LanesAbsolute(*p) + LanesAbsolute(*q));
+  const LaneMask some = large & (root > DBL_MIN), down = h < 0;
+  long long      rotates = 0;
 
-  for (int lane = 0; lane < LANES; lane++) {
-    const double h = (*q)[lane] - (*p)[lane], twice = 2 * (*b)[lane];
-    const double root = fabs(h) + sqrt(h * h + twice * twice);
-    const int    some = fabs(twice) > negligible * (fabs((*p)[lane]) + fabs((*q)[lane])) && root > DBL_MIN;
-
-    (*t)[lane] = some ? (h < 0 ? -twice : twice) / root : 0;
-    rotates |= some;
-  }
-  return rotates;
+  *t = Choose(some, Choose(down, -twice, twice) / Choose(some, root, none + 1), none);
+  for (int lane = 0; lane < LANES; lane++) rotates |= some[lane];
+  return rotates != 0;
 }
 
 /* Rotates axes p and q. b is the component between them, d and e are those with the third axis. */
 LANES_INLINE int Rotate(Lanes *p, Lanes *q, Lanes *b, Lanes *d, Lanes *e, Lanes axis_p[3], Lanes axis_q[3])
 {
-  Lanes t, c, s, d0, e0;
+  const Lanes none = {0}, d0 = *d, e0 = *e;
+  Lanes       t, c, s;
+  LaneMask    turns;
 
   if (!Angle(p, q, b, &t)) return 0;
-  for (int lane = 0; lane < LANES; lane++) {
-    c[lane] = 1 / sqrt(1 + t[lane] * t[lane]);
-    if (t[lane] != 0) {
-      (*p)[lane] -= t[lane] * (*b)[lane];
-      (*q)[lane] += t[lane] * (*b)[lane];
-      (*b)[lane] = 0;
-    }
-  }
-  s  = t * c;
-  d0 = *d;
-  e0 = *e;
-  *d = c * d0 - s * e0;
-  *e = s * d0 + c * e0;
+  turns = t != 0;
+  c     = 1 / SquareRoot(1 + t * t);
+  *p    = Choose(turns, *p - t * *b, *p);
+  *q    = Choose(turns, *q + t * *b, *q);
+  *b    = Choose(turns, none, *b);
+  s     = t * c;
+  *d    = c * d0 - s * e0;
+  *e    = s * d0 + c * e0;
   for (int i = 0; i < 3; i++) {
     const Lanes a = axis_p[i];
 
