@@ -34,7 +34,7 @@ BRICK_SIDES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7,
                )  # corners of CalculiX's faces S1 ...
 PLANE_WIDTH, PLANE_ELEMENTS = 40, 20  # mm; the contact ends at 25
 QUAD_SIDES = ((0, 1), (1, 2), (2, 3), (3, 0))
-IRONING_SHEAR = {"slab": 68.96 / 2.64, "tool": 689.6 / 2.64}  # of a foam, whose law both codes have
+IRONING = {"slab": (68.96, 0.45), "tool": (689.6, 0.45)}  # E and nu; with less the laws of the two codes differ
 NECKING_WAY = 5  # mm, of half the bar
 NECKING_HARDENING = ("451, 0", "476, 0.006", "525, 0.019", "583, 0.038", "642, 0.066", "710, 0.147", "777, 0.5",
                      "831, 1")
@@ -394,10 +394,10 @@ def ironing_input(setting, mesh):
     parts = {body: mesh.cells((body, )) for body in ("slab", "tool")}
     cells = {**parts["slab"], **parts["tool"]}
     deck = ["*NODE", *mesh.used(cells)]
-    for body, shear in IRONING_SHEAR.items():
+    for body, (young, nu) in IRONING.items():
         deck += [
-            *element_lines(setting.element, body, parts[body]), f"*MATERIAL, NAME={body}", "*HYPERFOAM, N=1",
-            f"{shear!r}, 2, 0.32", f"*SOLID SECTION, ELSET={body}, MATERIAL={body}", "1."
+            *element_lines(setting.element, body, parts[body]), f"*MATERIAL, NAME={body}", "*HYPERELASTIC, NEO HOOKE",
+            f"{young / (4 * (1 + nu))!r}, {6 * (1 - 2 * nu) / young!r}", f"*SOLID SECTION, ELSET={body}, MATERIAL={body}", "1."
         ]
     return [
         *deck, *surface("SLAVE", mesh.sides("tool_sole", parts["tool"], QUAD_SIDES)),
