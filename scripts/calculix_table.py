@@ -107,7 +107,8 @@ SCENES = {
         *(yields(pipe(f"second order, {n} steps", 16, 1, 5, 1, *steps(n), order=2)) for n in (4, 20))
     ], yields(fine_pipe(24, 2, 10, 20))),
     "cup": Scene(THIN, 0.2, [
-        *(ccx_cup(1 / n, scale=1) for n in (1, 4, 10)), ccx_cup(1), cup("enhanced, steps by contact", 1, 120, 3, *ENHANCED),
+        *(ccx_cup(1 / n, scale=1) for n in (1, 4, 10)), ccx_cup(1),
+        cup("enhanced, steps by contact", 1, 120, 3, *ENHANCED),
         cup("enhanced, one step", 1, 120, 3, *ENHANCED, "stepping.control=fixed", "stepping.initial=1")
     ], REFERENCES["cup_flattening"]),
     "O-ring": Scene(OTHER, 1, [
@@ -136,7 +137,8 @@ def spooles(args, setting, directory):
     report = subprocess.run(["perf", "report", "-i", samples, "--sort", "dso", "--stdio", "-q"], capture_output=True,
                             text=True).stdout
     parts = [line.split() for line in report.splitlines() if "%" in line]
-    return sum(float(part[0].rstrip("%")) for part in parts if any(name in part[-1] for name in ("spooles", "blas"))) / 100
+    return sum(float(part[0].rstrip("%")) for part in parts
+               if any(name in part[-1] for name in ("spooles", "blas"))) / 100
 
 
 def solve(args, name, setting, role, repeat):
@@ -221,8 +223,9 @@ def print_table(rows):
             if code == "burnish" and best["calculix"]:
                 ratio = cpu / best["calculix"][1]
                 end = f"| {ratio:.2g} | {scene.asked:.2g} | {'held' if ratio <= scene.asked else 'missed'} |"
-            print(f"{head} {runs[0]['setting']} | {runs[0]['steps']} ({runs[0]['steps_failed']}) | "
-                  f"{runs[0]['iterations']} | {cpu:.2f}{equations} | {float(runs[0]['force']):.5g} | {error:+.2f} {end}")
+            first = runs[0]
+            print(f"{head} {first['setting']} | {first['steps']} ({first['steps_failed']}) | "
+                  f"{first['iterations']} | {cpu:.2f}{equations} | {float(first['force']):.5g} | {error:+.2f} {end}")
 
 
 def main():

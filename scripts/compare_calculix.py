@@ -397,7 +397,8 @@ def ironing_input(setting, mesh):
     for body, (young, nu) in IRONING.items():
         deck += [
             *element_lines(setting.element, body, parts[body]), f"*MATERIAL, NAME={body}", "*HYPERELASTIC, NEO HOOKE",
-            f"{young / (4 * (1 + nu))!r}, {6 * (1 - 2 * nu) / young!r}", f"*SOLID SECTION, ELSET={body}, MATERIAL={body}", "1."
+            f"{young / (4 * (1 + nu))!r}, {6 * (1 - 2 * nu) / young!r}",
+            f"*SOLID SECTION, ELSET={body}, MATERIAL={body}", "1."
         ]
     return [
         *deck, *surface("SLAVE", mesh.sides("tool_sole", parts["tool"], QUAD_SIDES)),

@@ -229,7 +229,8 @@ def plane(order, triangles, n):
 def rings(args, directory):
     """Rows of the axisymmetric ring."""
     for nu in NUS:
-        mesh, row = burnish(args, "quad9", "runs/o_ring.yaml", plane(2, 0, args.n), "isochoric_neo_hookean", nu, directory)
+        mesh, row = burnish(args, "quad9", "runs/o_ring.yaml", plane(2, 0, args.n), "isochoric_neo_hookean", nu,
+                            directory)
         yield {**row, "n": args.n}
         for step in args.increments if nu <= 0.499 else ():
             lines = deck(*mesh_of(mesh), nu, step, args.stiffness)
