@@ -255,6 +255,19 @@ PetscErrorCode LinearSolverRenew(LinearSolver solver)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  LinearSolverIsSymmetric - tells whether every operator is symmetric.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. solver - the linear solver
+@*/
+PetscBool LinearSolverIsSymmetric(LinearSolver solver)
+{
+  return solver->symmetric;
+}
+
 /* Solves A^T x = b with the factor of the KSP, and refines x once; r is work space. *found: there is a factor. */
 static PetscErrorCode SolveTransposed(LinearSolver solver, Mat A, Vec b, Vec x, Vec r, PetscBool *found)
 {
@@ -282,7 +295,7 @@ static PetscErrorCode SolveTransposed(LinearSolver solver, Mat A, Vec b, Vec x, 
   Collective
 
   Input Parameters:
-+ solver - the linear solver, after LinearSolverRenew() and LinearSolverNext()
++ solver - the linear solver, after LinearSolverNext(), and LinearSolverRenew() where it is not symmetric
 . A      - the operator
 - b      - right-hand side
 

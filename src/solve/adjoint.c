@@ -117,7 +117,7 @@ PetscErrorCode ModelAdjoint(Model model, int n, const Functional functional[], A
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
   PetscCall(ProblemCollectResidual(model->problem, model->x, F));
-  PetscCall(ModelLinearise(model, &ksp));
+  PetscCall(ModelLinearise(model, PETSC_TRUE, &ksp));
   for (int i = 0; i < n; i++) PetscCall(Solve(model, &functional[i], F, &adjoint[i]));
   PetscCall(VecDestroy(&F));
   PetscFunctionReturn(PETSC_SUCCESS);

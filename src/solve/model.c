@@ -77,6 +77,7 @@ static PetscErrorCode ModelClear(Model m)
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));
   PetscCall(VecDestroy(&m->work->look_ahead));
+  PetscCall(VecDestroy(&m->work->tangent_x));
   PetscCall(VecDestroy(&m->work->residual));
   PetscCall(VecDestroy(&m->work->step));
   PetscCall(ProblemDestroy(&m->problem));

@@ -520,6 +520,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   SNESLineSearch      search;
 
   PetscFunctionBeginUser;
+  PetscCall(VecDestroy(&model->work->tangent_x)); /* contact lists may be others than those of the last tangent */
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchSetDamping(search, model->work->damping));
   if (model->contact) PetscCall(ContactCycleStart(model->work->watch));

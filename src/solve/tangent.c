@@ -91,6 +91,8 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, const StressReferen
   PetscBool     older;
 
   PetscFunctionBeginUser;
+  model->work->tangents++;
+  PetscCall(VecDestroy(&model->work->tangent_x));
   PetscCall(ModelOrder(model));
   PetscCall(LinearSolverRelease(model->work->solver));
   PetscCall(ProblemTangent(model->problem, u, reference, t, &change));
@@ -145,25 +147,54 @@ PetscErrorCode ModelTangentOdd(Model model, PetscBool *odd)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Does the linear solver have the tangent at the trial state, which is the derivative of the residual? A problem with a
+   single solve has one tangent. */
+static PetscErrorCode HasTangent(Model model, PetscBool *has)
+{
+  const ModelWork *work = model->work;
+
+  PetscFunctionBeginUser;
+  *has = PETSC_FALSE;
+  if (LinearSolverIterates(work->solver)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ProblemIsLinear(model->problem))
+    *has = (PetscBool)(work->tangents > 0);
+  else if (work->tangent_x && work->tangent_t == model->t)
+    PetscCall(VecEqual(work->tangent_x, model->x, has));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelLinearise - computes the tangent at the trial state for linear solves with it.
 
   Collective
 
-  Input Parameter:
-. model - after ProblemSetTrial() at its solution
+  Input Parameters:
++ model - after ProblemSetTrial() and ProblemResidual() at model->x, its solution
+- older - the factor of an earlier tangent of the step may serve, where it is symmetric
 
   Output Parameter:
 . ksp - solves with the tangent, which is the derivative of the residual
+
+  Note:
+  Nothing is computed where the last tangent was that of this state.
 @*/
-PetscErrorCode ModelLinearise(Model model, KSP *ksp)
+PetscErrorCode ModelLinearise(Model model, PetscBool older, KSP *ksp)
 {
+  ModelWork *work = model->work;
+  PetscBool  has;
+
   PetscFunctionBeginUser;
-  PetscCall(LinearSolverRenew(model->work->solver));
-  PetscCall(LinearSolverSetStart(model->work->solver, 0));
-  if (model->contact) ContactForgetForeseen(model->contact);
-  PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
   PetscCall(SNESGetKSP(model->snes, ksp));
+  if (model->contact) ContactForgetForeseen(model->contact);
+  PetscCall(HasTangent(model, &has));
+  if (!has) {
+    if (!older || !LinearSolverIsSymmetric(work->solver)) PetscCall(LinearSolverRenew(work->solver));
+    PetscCall(LinearSolverSetStart(work->solver, 0));
+    PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
+    PetscCall(VecDuplicate(model->x, &work->tangent_x));
+    PetscCall(VecCopy(model->x, work->tangent_x));
+    work->tangent_t = model->t;
+  }
   PetscCall(KSPSetOperators(*ksp, model->problem->A, model->problem->P));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

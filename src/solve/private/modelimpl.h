@@ -106,6 +106,11 @@ typedef struct _n_ModelWork {
   Extrapolation  extrapolation; /* NULL with small kinematics and no plasticity: bodies move along straight lines */
   PetscReal      damping;       /* of the line search while no contact set repeats itself */
 
+  /* The last tangent */
+  PetscInt  tangents;  /* made so far */
+  Vec       tangent_x; /* free displacements (length) at which it is the derivative of the residual; NULL: it need not be */
+  PetscReal tangent_t; /* and its load parameter */
+
   /* The accepted state */
   PetscReal *accepted_u; /* local displacements (length) */
   Vec        accepted_x; /* free displacements (length) */
@@ -181,7 +186,7 @@ typedef struct _n_ModelWork {
 PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, PetscReal t);
 PetscErrorCode ModelReleaseTangent(Model);
 PetscErrorCode ModelTangentOdd(Model, PetscBool *odd);
-PetscErrorCode ModelLinearise(Model, KSP *);
+PetscErrorCode ModelLinearise(Model, PetscBool older, KSP *);
 /* heldsolve.c */
 PetscErrorCode ModelHeldTakeOut(Model, Vec z);
 PetscErrorCode ModelHeldSolve(Model, Vec b, Vec z);
