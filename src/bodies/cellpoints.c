@@ -6,22 +6,22 @@
 #define POINT_STEP 1e-5
 
 /*@
-  ElasticityEnhanced - says whether any cell is an enhanced element, whose gradients are not those of displacements.
+  ElasticityHas - says whether any cell has a formulation.
 
   Collective
 
-  Input Parameter:
-. e - the elasticity
+  Input Parameters:
++ e           - the elasticity
+- formulation - such as that of enhanced elements, whose gradients are not those of displacements
 
   Output Parameter:
 . any - the same on all ranks
 @*/
-PetscErrorCode ElasticityEnhanced(Elasticity e, PetscBool *any)
+PetscErrorCode ElasticityHas(Elasticity e, Formulation formulation, PetscBool *any)
 {
   PetscFunctionBeginUser;
   *any = PETSC_FALSE;
-  for (int g = 0; g < e->n_groups; g++)
-    *any = (PetscBool)(*any || e->groups[g].kernel.formulation == FORMULATION_ENHANCED);
+  for (int g = 0; g < e->n_groups; g++) *any = (PetscBool)(*any || e->groups[g].kernel.formulation == formulation);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, any, 1, MPIU_BOOL, MPI_LOR, e->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -77,7 +77,7 @@ PetscErrorCode ElasticityArchive(Elasticity, Archive);
 PetscBool      ElasticityAugments(Elasticity);
 PetscErrorCode ElasticitySetEnclosed(Elasticity, Scene, const PetscBool *prescribed);
 PetscBool      ElasticityEnclosedChange(Elasticity);
-PetscErrorCode ElasticityEnhanced(Elasticity, PetscBool *any);
+PetscErrorCode ElasticityHas(Elasticity, Formulation, PetscBool *any);
 /* Points of a cell: the quadrature points of the element, or those of ElementGetProducts() */
 typedef enum { POINTS_OF_ELEMENT, POINTS_OF_PRODUCTS } CellPoints;
 

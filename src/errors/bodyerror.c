@@ -6,10 +6,11 @@
    themselves. More of it than this part of the estimated error leaves a factor of 2 no room. */
 #define BODYERROR_MODES_WORK 0.5
 
-/* Components at a point: of the solution the stress, its pressure and ln det F; of an adjoint solution the displacement
-   gradient, the pressure and, with enhanced elements, the rate of the stress */
-enum { STATE_PRESSURE = 9, STATE_DILATATION, STATE_WIDTH };
-enum { RATE_PRESSURE = 9, RATE_STRESS, RATE_MOST = RATE_STRESS + 9 };
+/* Components at a point that are recovered. Of the solution: those entries of the stress whose displacement gradients
+   can be other than 0, and with mixed elements the pressure and ln det F. Of an adjoint solution: the same entries of
+   the displacement gradient, with mixed elements the pressure, and with enhanced elements the entries of the rate of
+   the stress */
+enum { MOST_ENTRIES = 9, MOST_WIDTH = 2 * MOST_ENTRIES + 1 };
 
 struct _n_BodyError {
   Mesh             mesh;
@@ -17,11 +18,13 @@ struct _n_BodyError {
   Kinematics       kinematics;
   const PetscReal *u;
   Recovery         recovery;
-  PetscReal       *state;      /* of the solution at the points [points][STATE_WIDTH] */
-  PetscReal       *patches;    /* of its recovered fields */
+  int              entries, entry[MOST_ENTRIES]; /* at 3 i + I */
+  PetscBool        mixed;
+  int              state_width, rate_width;
+  PetscReal       *state;      /* of the solution at the points [points][state_width] */
+  PetscReal       *defect;     /* recovered less computed at the points of products [points][state_width] */
   PetscReal       *compliance; /* of the volume of each cell, see ElasticityPointStates() */
   PetscReal       *modes;      /* enhanced parts of the displacement gradients [points][9]; NULL: there are none */
-  int              rate_width; /* components of an adjoint solution */
 };
 
 /* An adjoint solution at the points */
@@ -67,7 +70,7 @@ static PetscErrorCode CellModes(BodyError b, const PetscReal *v, PetscInt cell, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Evaluates the solution at points of a cell: [points][STATE_WIDTH]. modes: of all cells, at the quadrature points;
+/* Evaluates the solution at points of a cell: [points][state_width]. modes: of all cells, at the quadrature points;
    NULL: not wanted. */
 static PetscErrorCode CellState(BodyError b, PetscInt cell, CellPoints set, PetscReal *states, PetscReal *modes)
 {
@@ -76,11 +79,12 @@ static PetscErrorCode CellState(BodyError b, PetscInt cell, CellPoints set, Pets
   PetscFunctionBeginUser;
   PetscCall(ElasticityPointStates(b->elasticity, cell, set, b->u, H, P, pressure, &b->compliance[cell]));
   for (int p = 0; p < CountPoints(b, cell, set); p++) {
-    PetscReal *state = &states[p * STATE_WIDTH];
+    PetscReal *state = &states[p * b->state_width];
 
-    for (int r = 0; r < 9; r++) state[r] = P[9 * p + r];
-    state[STATE_PRESSURE]   = pressure[p];
-    state[STATE_DILATATION] = Dilatation(&H[9 * p], b->kinematics);
+    for (int k = 0; k < b->entries; k++) *state++ = P[9 * p + b->entry[k]];
+    if (!b->mixed) continue;
+    *state++ = pressure[p];
+    *state   = Dilatation(&H[9 * p], b->kinematics);
   }
   if (modes) PetscCall(CellModes(b, b->u, cell, H, modes));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -97,11 +101,46 @@ static PetscErrorCode CellRate(BodyError b, const PetscReal *y, PetscInt cell, C
   for (int p = 0; p < CountPoints(b, cell, set); p++) {
     PetscReal *rate = &rates[p * b->rate_width];
 
-    for (int r = 0; r < 9; r++) rate[r] = H[9 * p + r];
-    rate[RATE_PRESSURE] = pressure[p];
-    for (int r = 0; r < 9 && b->modes; r++) rate[RATE_STRESS + r] = P[9 * p + r];
+    for (int k = 0; k < b->entries; k++) *rate++ = H[9 * p + b->entry[k]];
+    if (b->mixed) *rate++ = pressure[p];
+    for (int k = 0; k < b->entries && b->modes; k++) *rate++ = P[9 * p + b->entry[k]];
   }
   if (modes) PetscCall(CellModes(b, y, cell, H, modes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Lists the entries of displacement gradients that can be other than 0. In the plane that out of it is one of them: of
+   bodies of revolution, and of elements whose mean dilatation takes the place of that at a point. */
+static void ListEntries(BodyError b)
+{
+  for (int i = 0; i < b->mesh->dim; i++)
+    for (int j = 0; j < b->mesh->dim; j++) b->entry[b->entries++] = 3 * i + j;
+  if (b->mesh->dim == 2) b->entry[b->entries++] = 8;
+}
+
+/* What recovered fields of the solution differ by from the computed ones at the points of products. */
+static PetscErrorCode FindDefects(BodyError b)
+{
+  const Mesh mesh = b->mesh;
+  PetscReal *patches, more[ELEMENT_MAX_POINTS * MOST_WIDTH];
+  PetscInt   n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(RecoveryFit(b->recovery, b->state_width, b->state, &patches));
+  PetscCall(PetscMalloc1(RecoveryProducts(b->recovery, mesh->n_cells, NULL) * b->state_width, &b->defect));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const PetscReal *computed = &b->state[RecoveryPoints(b->recovery, c, NULL) * b->state_width];
+
+    if (!SamePoints(b, c)) {
+      PetscCall(CellState(b, c, POINTS_OF_PRODUCTS, more, NULL));
+      computed = more;
+    }
+    for (int p = 0; p < CountPoints(b, c, POINTS_OF_PRODUCTS); p++) {
+      RecoveryEvaluate(b->recovery, b->state_width, patches, c, p, &b->defect[n]);
+      for (int k = 0; k < b->state_width; k++) b->defect[n++] -= computed[p * b->state_width + k];
+    }
+  }
+  PetscCall(PetscFree(patches));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -119,10 +158,10 @@ static PetscErrorCode CellRate(BodyError b, const PetscReal *y, PetscInt cell, C
   Output Parameter:
 . error - free it with BodyErrorDestroy()
 @*/
-PetscErrorCode BodyErrorCreate(Mesh mesh, Elasticity elasticity, Kinematics kinematics, const PetscReal *u,
-                               BodyError *error)
+PetscErrorCode BodyErrorCreate(Mesh mesh, Elasticity elasticity, Kinematics kinematics, const PetscReal *u, BodyError *error)
 {
   BodyError b;
+  PetscInt  points;
   PetscBool enhanced;
 
   PetscFunctionBeginUser;
@@ -131,16 +170,19 @@ PetscErrorCode BodyErrorCreate(Mesh mesh, Elasticity elasticity, Kinematics kine
   b->elasticity = elasticity;
   b->u          = u;
   b->kinematics = kinematics;
+  ListEntries(b);
+  PetscCall(ElasticityHas(elasticity, FORMULATION_MIXED, &b->mixed));
+  PetscCall(ElasticityHas(elasticity, FORMULATION_ENHANCED, &enhanced));
+  b->state_width = b->entries + (b->mixed ? 2 : 0);
+  b->rate_width  = b->entries + (b->mixed ? 1 : 0) + (enhanced ? b->entries : 0);
   PetscCall(RecoveryCreate(mesh, elasticity, &b->recovery));
-  PetscCall(PetscMalloc2(RecoveryPoints(b->recovery, mesh->n_cells, NULL) * STATE_WIDTH, &b->state, mesh->n_cells,
-                         &b->compliance));
-  PetscCall(ElasticityEnhanced(elasticity, &enhanced));
-  if (enhanced) PetscCall(PetscMalloc1(RecoveryPoints(b->recovery, mesh->n_cells, NULL) * 9, &b->modes));
-  b->rate_width = enhanced ? RATE_MOST : RATE_STRESS;
+  points = RecoveryPoints(b->recovery, mesh->n_cells, NULL);
+  PetscCall(PetscMalloc2(points * b->state_width, &b->state, mesh->n_cells, &b->compliance));
+  if (enhanced) PetscCall(PetscMalloc1(points * 9, &b->modes));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
     PetscCall(
-      CellState(b, c, POINTS_OF_ELEMENT, &b->state[RecoveryPoints(b->recovery, c, NULL) * STATE_WIDTH], b->modes));
-  PetscCall(RecoveryFit(b->recovery, STATE_WIDTH, b->state, &b->patches));
+      CellState(b, c, POINTS_OF_ELEMENT, &b->state[RecoveryPoints(b->recovery, c, NULL) * b->state_width], b->modes));
+  PetscCall(FindDefects(b));
   *error = b;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -160,19 +202,22 @@ PetscErrorCode BodyErrorDestroy(BodyError *error)
   PetscCall(RecoveryDestroy(&(*error)->recovery));
   PetscCall(PetscFree2((*error)->state, (*error)->compliance));
   PetscCall(PetscFree((*error)->modes));
-  PetscCall(PetscFree((*error)->patches));
+  PetscCall(PetscFree((*error)->defect));
   PetscCall(PetscFree(*error));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the modes of an enhanced element add at a point: P* : e + E : T*. state, rate: recovered. */
-static PetscReal ModesProduct(BodyError b, const PointRates *rates, PetscInt point, const PetscReal *state,
+/* What the modes of an enhanced element add at a point: P* : e + E : T*. defect, rate: at the point, the latter
+   recovered. */
+static PetscReal ModesProduct(BodyError b, const PointRates *rates, PetscInt point, const PetscReal *defect,
                               const PetscReal *rate)
 {
-  PetscReal product = 0;
+  const PetscReal *state = &b->state[point * b->state_width], *stress_rate = &rate[b->rate_width - b->entries];
+  PetscReal        product = 0;
 
-  for (int r = 0; r < 9; r++)
-    product += state[r] * rates->modes[9 * point + r] + b->modes[9 * point + r] * rate[RATE_STRESS + r];
+  for (int k = 0; k < b->entries; k++)
+    product += (state[k] + defect[k]) * rates->modes[9 * point + b->entry[k]] +
+               b->modes[9 * point + b->entry[k]] * stress_rate[k];
   return product;
 }
 
@@ -186,8 +231,8 @@ static PetscReal ModesWork(BodyError b, const PointRates *rates)
     const PetscInt   first = RecoveryPoints(b->recovery, c, &volume);
 
     for (int p = 0; p < ElementGet(b->mesh->cell_type[c])->points; p++)
-      for (int r = 0; r < 9; r++)
-        sum += volume[p] * b->state[(first + p) * STATE_WIDTH + r] * rates->modes[9 * (first + p) + r];
+      for (int k = 0; k < b->entries; k++)
+        sum += volume[p] * b->state[(first + p) * b->state_width + k] * rates->modes[9 * (first + p) + b->entry[k]];
   }
   return sum;
 }
@@ -197,29 +242,26 @@ static PetscErrorCode CellError(BodyError b, PetscInt cell, const PetscReal *y, 
                                 PetscReal *error)
 {
   const PetscInt   first = RecoveryPoints(b->recovery, cell, NULL);
-  const PetscReal *volume, *computed_state = &b->state[first * STATE_WIDTH],
-                           *computed_rate = &rates->value[first * b->rate_width];
-  PetscReal more_states[ELEMENT_MAX_POINTS * STATE_WIDTH], more_rates[ELEMENT_MAX_POINTS * RATE_MOST];
+  const PetscReal *volume, *computed = &rates->value[first * b->rate_width];
+  const PetscReal *defect = &b->defect[RecoveryProducts(b->recovery, cell, &volume) * b->state_width];
+  const PetscBool  same   = SamePoints(b, cell);
+  PetscReal        more[ELEMENT_MAX_POINTS * MOST_WIDTH];
 
   PetscFunctionBeginUser;
   *error = 0;
-  if (!SamePoints(b, cell)) {
-    PetscCall(CellState(b, cell, POINTS_OF_PRODUCTS, more_states, NULL));
-    PetscCall(CellRate(b, y, cell, POINTS_OF_PRODUCTS, more_rates, NULL));
-    computed_state = more_states;
-    computed_rate  = more_rates;
+  if (!same) {
+    PetscCall(CellRate(b, y, cell, POINTS_OF_PRODUCTS, more, NULL));
+    computed = more;
   }
-  for (int p = 0; p < RecoveryProducts(b->recovery, cell, &volume); p++) {
-    PetscReal state[STATE_WIDTH], rate[RATE_MOST], product = 0;
+  for (int p = 0; p < CountPoints(b, cell, POINTS_OF_PRODUCTS); p++, defect += b->state_width) {
+    PetscReal rate[MOST_WIDTH], product = 0;
 
-    RecoveryEvaluate(b->recovery, STATE_WIDTH, b->patches, cell, p, state);
     RecoveryEvaluate(b->recovery, b->rate_width, rates->patches, cell, p, rate);
-    if (b->modes && SamePoints(b, cell)) product = ModesProduct(b, rates, first + p, state, rate);
-    for (int k = 0; k < STATE_WIDTH; k++) state[k] -= computed_state[p * STATE_WIDTH + k];
-    for (int k = 0; k < RATE_STRESS; k++) rate[k] -= computed_rate[p * b->rate_width + k];
-    for (int r = 0; r < 9; r++) product += state[r] * rate[r];
+    if (b->modes && same) product = ModesProduct(b, rates, first + p, defect, rate);
+    for (int k = 0; k < b->entries; k++) product += defect[k] * (rate[k] - computed[p * b->rate_width + k]);
     if (b->compliance[cell] > 0)
-      product += rate[RATE_PRESSURE] * (state[STATE_DILATATION] - b->compliance[cell] * state[STATE_PRESSURE]);
+      product += (rate[b->entries] - computed[p * b->rate_width + b->entries]) *
+                 (defect[b->entries + 1] - b->compliance[cell] * defect[b->entries]);
     *error -= volume[p] * product;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -11,7 +11,8 @@ struct _n_Recovery {
   PetscReal *size;         /* of the patch of each node (length) */
   int       *patch_degree; /* -1: no patch */
   PetscReal *variance;     /* of its polynomial at the node */
-  PetscReal *factor;       /* RECOVERY_MATRIX for each node */
+  PetscInt   entries;      /* of the matrix of a patch */
+  PetscReal *factor;       /* of each node [entries] */
 };
 
 /* The element with the corners of a cell alone. */
@@ -89,13 +90,13 @@ static PetscErrorCode FactorPatches(Recovery r)
 
       for (PetscInt p = r->point_ptr[c]; p < r->point_ptr[c + 1]; p++) {
         PointTerms(r, node, &r->x[p * r->dim], terms);
-        RecoveryAdd(r->terms, terms, &r->factor[node * RECOVERY_MATRIX]);
+        RecoveryAdd(r->terms, terms, &r->factor[node * r->entries]);
       }
     }
   }
-  PetscCall(MeshSumNodes(mesh, RECOVERY_MATRIX, r->factor));
+  PetscCall(MeshSumNodes(mesh, r->entries, r->factor));
   for (PetscInt n = 0; n < mesh->n_nodes; n++)
-    r->patch_degree[n] = RecoveryFactor(r->dim, r->degree, &r->factor[n * RECOVERY_MATRIX], &r->variance[n]);
+    r->patch_degree[n] = RecoveryFactor(r->dim, r->degree, &r->factor[n * r->entries], &r->variance[n]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -117,12 +118,13 @@ PetscErrorCode RecoveryCreate(Mesh mesh, Elasticity elasticity, Recovery *recove
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&r));
-  r->mesh   = mesh;
-  r->dim    = mesh->dim;
-  r->degree = PetscMin(mesh->order, RECOVERY_DEGREE);
-  r->terms  = RecoveryTerms(r->dim, r->degree);
+  r->mesh    = mesh;
+  r->dim     = mesh->dim;
+  r->degree  = PetscMin(mesh->order, RECOVERY_DEGREE);
+  r->terms   = RecoveryTerms(r->dim, r->degree);
+  r->entries = r->terms * (r->terms + 1) / 2;
   PetscCall(PetscCalloc4(mesh->n_nodes, &r->size, mesh->n_nodes, &r->patch_degree, mesh->n_nodes, &r->variance,
-                         mesh->n_nodes * RECOVERY_MATRIX, &r->factor));
+                         mesh->n_nodes * r->entries, &r->factor));
   PetscCall(PlacePoints(mesh, elasticity, POINTS_OF_ELEMENT, &r->point_ptr, &r->x, &r->volume));
   PetscCall(PlacePoints(mesh, elasticity, POINTS_OF_PRODUCTS, &r->product_ptr, &r->product_x, &r->product_volume));
   PetscCall(SizePatches(r));
@@ -171,21 +173,21 @@ PetscInt RecoveryPoints(Recovery recovery, PetscInt cell, const PetscReal **volu
 }
 
 /*@
-  RecoveryProducts - returns the number of points of products of a local cell.
+  RecoveryProducts - returns the number of the first point of products of a local cell; the others follow it.
 
   Not collective
 
   Input Parameters:
 + recovery - the patches
-- cell     - a local cell
+- cell     - a local cell; the number of cells gives the number of points
 
   Output Parameter:
-. volume - reference volumes of these points
+. volume - reference volumes of the cell's points; or NULL
 @*/
-int RecoveryProducts(Recovery recovery, PetscInt cell, const PetscReal **volume)
+PetscInt RecoveryProducts(Recovery recovery, PetscInt cell, const PetscReal **volume)
 {
-  *volume = &recovery->product_volume[recovery->product_ptr[cell]];
-  return (int)(recovery->product_ptr[cell + 1] - recovery->product_ptr[cell]);
+  if (volume) *volume = &recovery->product_volume[recovery->product_ptr[cell]];
+  return recovery->product_ptr[cell];
 }
 
 /*@
@@ -225,7 +227,7 @@ PetscErrorCode RecoveryFit(Recovery r, int width, const PetscReal *values, Petsc
     const int used = r->patch_degree[n] < 0 ? 0 : RecoveryTerms(r->dim, r->patch_degree[n]);
 
     for (int i = 0; i < width && used; i++)
-      RecoverySolve(used, &r->factor[n * RECOVERY_MATRIX], width, &sums[n * stride + i]);
+      RecoverySolve(used, &r->factor[n * r->entries], width, &sums[n * stride + i]);
     for (PetscInt k = used * width; k < stride; k++) sums[n * stride + k] = 0;
   }
   *patches = sums;

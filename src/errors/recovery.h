@@ -20,6 +20,6 @@ typedef struct _n_Recovery *Recovery;
 PetscErrorCode RecoveryCreate(Mesh, Elasticity, Recovery *);
 PetscErrorCode RecoveryDestroy(Recovery *);
 PetscInt       RecoveryPoints(Recovery, PetscInt cell, const PetscReal **volume);
-int            RecoveryProducts(Recovery, PetscInt cell, const PetscReal **volume);
+PetscInt       RecoveryProducts(Recovery, PetscInt cell, const PetscReal **volume);
 PetscErrorCode RecoveryFit(Recovery, int width, const PetscReal *values, PetscReal **patches);
 void           RecoveryEvaluate(Recovery, int width, const PetscReal *patches, PetscInt cell, int p, PetscReal *value);
