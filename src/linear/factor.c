@@ -582,6 +582,19 @@ PetscBool FactorIsSymmetric(Factor f)
 }
 
 /*@
+  FactorExists - tells whether there is a factor, of the last matrix or of an earlier one.
+
+  Not collective
+
+  Input Parameter:
+. f - the factor
+@*/
+PetscBool FactorExists(Factor f)
+{
+  return f->exists;
+}
+
+/*@
   FactorNegatives - returns the number of negative eigenvalues of the matrix that was factored, with what its border
   stands for.
 

@@ -35,6 +35,7 @@ PetscErrorCode FactorSolve(Factor, Vec b, Vec x);
 PetscErrorCode FactorSolveTransposed(Factor, Vec b, Vec x);
 PetscErrorCode FactorSolveColumns(Factor, Mat B, Mat X);
 PetscBool      FactorIsSymmetric(Factor);
+PetscBool      FactorExists(Factor);
 PetscInt       FactorNegatives(Factor);
 PetscInt       FactorParity(Factor);
 void           FactorGetCost(Factor, FactorCost *);

@@ -25,6 +25,10 @@
 /* Relative residual above which a solution with the transposed operator is not taken: those are weights of an error
    estimate, for which three digits are enough. */
 #define LINEAR_TRANSPOSED 1e-3
+/* A factor that was made for an earlier operator serves for such a solution where refinement with it leaves this relative
+   residual, each step of it no more than the second part of what was left before. */
+#define LINEAR_AT_HAND 1e-6
+#define LINEAR_NEAR    0.1
 
 struct _n_LinearSolver {
   KSP          ksp;
@@ -255,17 +259,42 @@ PetscErrorCode LinearSolverRenew(LinearSolver solver)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  LinearSolverIsSymmetric - tells whether every operator is symmetric.
-
-  Not collective, the same on all ranks
-
-  Input Parameter:
-. solver - the linear solver
-@*/
-PetscBool LinearSolverIsSymmetric(LinearSolver solver)
+/* Computes r = b - A^T x and its norm. */
+static PetscErrorCode TransposedResidual(LinearSolver solver, Mat A, Vec b, Vec x, Vec r, PetscReal *norm)
 {
-  return solver->symmetric;
+  PetscFunctionBeginUser;
+  PetscCall((solver->symmetric ? MatMult : MatMultTranspose)(A, x, r));
+  PetscCall(VecAYPX(r, -1, b));
+  PetscCall(VecNorm(r, NORM_2, norm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves A^T x = b by refinement with the factor at hand, which may be that of an operator a little earlier; r is work
+   space. *solved: there is a factor, and it is near enough. */
+static PetscErrorCode RefineTransposed(LinearSolver solver, Mat A, Vec b, Vec x, Vec r, PetscBool *solved)
+{
+  PetscReal right, left, before;
+  Factor    factor;
+  Vec       d;
+
+  PetscFunctionBeginUser;
+  *solved = PETSC_FALSE;
+  PetscCall(DirectSolverFactor(solver->ksp, &factor));
+  if (!factor || !FactorExists(factor)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecNorm(b, NORM_2, &right));
+  PetscCall(VecDuplicate(x, &d));
+  PetscCall(VecSet(x, 0));
+  PetscCall(VecCopy(b, r));
+  left = right;
+  do {
+    before = left;
+    PetscCall((solver->symmetric ? FactorSolve : FactorSolveTransposed)(factor, r, d));
+    PetscCall(VecAXPY(x, 1, d));
+    PetscCall(TransposedResidual(solver, A, b, x, r, &left));
+    *solved = (PetscBool)(left <= LINEAR_AT_HAND * right);
+  } while (!*solved && left <= LINEAR_NEAR * before);
+  PetscCall(VecDestroy(&d));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Solves A^T x = b with the factor of the KSP, and refines x once; r is work space. *found: there is a factor. */
@@ -295,7 +324,7 @@ static PetscErrorCode SolveTransposed(LinearSolver solver, Mat A, Vec b, Vec x, 
   Collective
 
   Input Parameters:
-+ solver - the linear solver, after LinearSolverNext(), and LinearSolverRenew() where it is not symmetric
++ solver - the linear solver, after LinearSolverRenew() and LinearSolverNext()
 . A      - the operator
 - b      - right-hand side
 
@@ -304,7 +333,7 @@ static PetscErrorCode SolveTransposed(LinearSolver solver, Mat A, Vec b, Vec x, 
 - solved - PETSC_FALSE: the operator is singular, or it is not symmetric and no factor of this program serves
 
   Note:
-  A symmetric operator is solved with as it stands, by any solver.
+  A symmetric operator is solved with as it stands, by any solver. The factor at hand serves where it is near enough.
 @*/
 PetscErrorCode LinearSolverTransposed(LinearSolver solver, Mat A, Vec b, Vec x, PetscBool *solved)
 {
@@ -312,18 +341,19 @@ PetscErrorCode LinearSolverTransposed(LinearSolver solver, Mat A, Vec b, Vec x, 
   Vec       r;
 
   PetscFunctionBeginUser;
-  *solved = PETSC_TRUE;
   PetscCall(VecDuplicate(b, &r));
-  if (solver->symmetric)
-    PetscCall(KSPSolve(solver->ksp, b, x));
-  else
-    PetscCall(SolveTransposed(solver, A, b, x, r, solved));
-  if (*solved) {
-    PetscCall((solver->symmetric ? MatMult : MatMultTranspose)(A, x, r));
-    PetscCall(VecAYPX(r, -1, b));
-    PetscCall(VecNorm(r, NORM_2, &left));
-    PetscCall(VecNorm(b, NORM_2, &right));
-    *solved = (PetscBool)(left <= LINEAR_TRANSPOSED * right);
+  PetscCall(RefineTransposed(solver, A, b, x, r, solved));
+  if (!*solved) {
+    *solved = PETSC_TRUE;
+    if (solver->symmetric)
+      PetscCall(KSPSolve(solver->ksp, b, x));
+    else
+      PetscCall(SolveTransposed(solver, A, b, x, r, solved));
+    if (*solved) {
+      PetscCall(TransposedResidual(solver, A, b, x, r, &left));
+      PetscCall(VecNorm(b, NORM_2, &right));
+      *solved = (PetscBool)(left <= LINEAR_TRANSPOSED * right);
+    }
   }
   PetscCall(VecDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -23,7 +23,6 @@ PetscErrorCode LinearSolverNext(LinearSolver, const PetscReal *u, Mat C, PetscBo
                                 PetscBool *older);
 PetscErrorCode LinearSolverRenew(LinearSolver);
 PetscErrorCode LinearSolverSetEnough(LinearSolver, PetscReal residual);
-PetscBool      LinearSolverIsSymmetric(LinearSolver);
 PetscErrorCode LinearSolverTransposed(LinearSolver, Mat A, Vec b, Vec x, PetscBool *solved);
 PetscErrorCode LinearSolverDirect(LinearSolver, PetscBool *direct);
 PetscErrorCode LinearSolverColumns(LinearSolver, Mat B, Mat X, PetscBool *able);

@@ -104,7 +104,7 @@ static PetscErrorCode Solve(Model model, const Functional *functional, Vec F, Ad
 . adjoint - with room for y of each
 
   Note:
-  The state stays as it is. One tangent is made and factored for all functionals.
+  The state stays as it is. One tangent serves all functionals, with the factor at hand where that is near enough.
 @*/
 PetscErrorCode ModelAdjoint(Model model, int n, const Functional functional[], Adjoint adjoint[])
 {
@@ -117,7 +117,7 @@ PetscErrorCode ModelAdjoint(Model model, int n, const Functional functional[], A
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
   PetscCall(ProblemCollectResidual(model->problem, model->x, F));
-  PetscCall(ModelLinearise(model, PETSC_TRUE, &ksp));
+  PetscCall(ModelLinearise(model, &ksp));
   for (int i = 0; i < n; i++) PetscCall(Solve(model, &functional[i], F, &adjoint[i]));
   PetscCall(VecDestroy(&F));
   PetscFunctionReturn(PETSC_SUCCESS);

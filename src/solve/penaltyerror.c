@@ -208,7 +208,7 @@ static PetscErrorCode ModelPenaltySlopes(Model model, int sources, Vec slope[], 
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &forces));
-  PetscCall(ModelLinearise(model, PETSC_FALSE, &ksp));
+  PetscCall(ModelLinearise(model, &ksp));
   PetscCall(ModelReleaseTangent(model));
   *known = PETSC_TRUE;
   for (int source = 0; source < sources && *known; source++) {
@@ -502,7 +502,7 @@ PetscErrorCode ModelPredictStiffer(Model model, const PetscReal factor[], PetscB
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   if (!estimated) {
-    PetscCall(ModelLinearise(model, PETSC_FALSE, &ksp));
+    PetscCall(ModelLinearise(model, &ksp));
     PetscCall(ModelReleaseTangent(model));
     report->newton++;
   }

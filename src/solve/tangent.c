@@ -168,9 +168,8 @@ static PetscErrorCode HasTangent(Model model, PetscBool *has)
 
   Collective
 
-  Input Parameters:
-+ model - after ProblemSetTrial() and ProblemResidual() at model->x, its solution
-- older - the factor of an earlier tangent of the step may serve, where it is symmetric
+  Input Parameter:
+. model - after ProblemSetTrial() and ProblemResidual() at model->x, its solution
 
   Output Parameter:
 . ksp - solves with the tangent, which is the derivative of the residual
@@ -178,7 +177,7 @@ static PetscErrorCode HasTangent(Model model, PetscBool *has)
   Note:
   Nothing is computed where the last tangent was that of this state.
 @*/
-PetscErrorCode ModelLinearise(Model model, PetscBool older, KSP *ksp)
+PetscErrorCode ModelLinearise(Model model, KSP *ksp)
 {
   ModelWork *work = model->work;
   PetscBool  has;
@@ -188,7 +187,7 @@ PetscErrorCode ModelLinearise(Model model, PetscBool older, KSP *ksp)
   if (model->contact) ContactForgetForeseen(model->contact);
   PetscCall(HasTangent(model, &has));
   if (!has) {
-    if (!older || !LinearSolverIsSymmetric(work->solver)) PetscCall(LinearSolverRenew(work->solver));
+    PetscCall(LinearSolverRenew(work->solver));
     PetscCall(LinearSolverSetStart(work->solver, 0));
     PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
     PetscCall(VecDuplicate(model->x, &work->tangent_x));

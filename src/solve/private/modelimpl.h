@@ -186,7 +186,7 @@ typedef struct _n_ModelWork {
 PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, PetscReal t);
 PetscErrorCode ModelReleaseTangent(Model);
 PetscErrorCode ModelTangentOdd(Model, PetscBool *odd);
-PetscErrorCode ModelLinearise(Model, PetscBool older, KSP *);
+PetscErrorCode ModelLinearise(Model, KSP *);
 /* heldsolve.c */
 PetscErrorCode ModelHeldTakeOut(Model, Vec z);
 PetscErrorCode ModelHeldSolve(Model, Vec b, Vec z);
