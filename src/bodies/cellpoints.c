@@ -26,6 +26,16 @@ PetscErrorCode ElasticityHas(Elasticity e, Formulation formulation, PetscBool *a
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Elements of a group whose displacement gradients are those of their nodes. */
+static KernelCase NodalCase(const CellGroup *g)
+{
+  return (KernelCase){.type        = g->kernel.type,
+                      .geometry    = g->kernel.geometry,
+                      .kinematics  = KINEMATICS_SMALL,
+                      .law         = MATERIAL_LINEAR,
+                      .formulation = FORMULATION_FULL};
+}
+
 /*@
   ElasticityPointModes - gives the part of displacement gradients, or of their rates, that are not those of nodes: the
   modes of an enhanced element.
@@ -43,11 +53,7 @@ PetscErrorCode ElasticityHas(Elasticity e, Formulation formulation, PetscBool *a
 PetscErrorCode ElasticityPointModes(Elasticity e, PetscInt cell, const PetscReal *v, PetscReal *H)
 {
   CellGroup       *g     = &e->groups[e->cell_group[cell]];
-  const KernelCase nodal = {.type        = g->kernel.type,
-                            .geometry    = g->kernel.geometry,
-                            .kinematics  = KINEMATICS_SMALL,
-                            .law         = MATERIAL_LINEAR,
-                            .formulation = FORMULATION_FULL};
+  const KernelCase nodal = NodalCase(g);
   const int        n     = ElementGet(g->kernel.type)->points * 9;
   PetscReal        X[MAX_DOFS], cell_v[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES],
     gradient[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
@@ -133,8 +139,9 @@ PetscErrorCode ElasticityPlacePoints(Elasticity e, PetscInt cell, CellPoints set
 }
 
 /* ElementPointNominal() at all points of a set. P may be NULL. */
-static void MovedStates(Elasticity e, const CellGroup *g, CellPoints set, const PetscReal *X, const PetscReal *u,
-                        const PetscReal *constants, const PetscReal *m, PetscReal *H, PetscReal *pressure, PetscReal *P)
+static void MovedStates(Elasticity e, const CellGroup *g, const KernelCase *kernel, CellPoints set, const PetscReal *X,
+                        const PetscReal *u, const PetscReal *constants, const PetscReal *m, PetscReal *H,
+                        PetscReal *pressure, PetscReal *P)
 {
   const int moves = Moves(g, set);
   PetscReal X_at[MAX_DOFS], u_at[MAX_DOFS];
@@ -146,7 +153,7 @@ static void MovedStates(Elasticity e, const CellGroup *g, CellPoints set, const 
     }
     MoveToPoint(g, set, k, g->nodes, e->dim, X_at);
     MoveToPoint(g, set, k, g->nodes, e->dim, u_at);
-    ElementPointNominal(&g->kernel, X_at, u_at, constants, m, &H[9 * k], &pressure[k], P ? &P[9 * k] : NULL);
+    ElementPointNominal(kernel, X_at, u_at, constants, m, &H[9 * k], &pressure[k], P ? &P[9 * k] : NULL);
   }
 }
 
@@ -175,7 +182,7 @@ PetscErrorCode ElasticityPointStates(Elasticity e, PetscInt cell, CellPoints set
 
   PetscFunctionBeginUser;
   ElasticityGatherCell(e, g, e->cell_slot[cell], u, X, cell_u, constants, m);
-  MovedStates(e, g, set, X, cell_u, constants, m, H, pressure, P);
+  MovedStates(e, g, &g->kernel, set, X, cell_u, constants, m, H, pressure, P);
   *compliance = 0;
   if (g->kernel.formulation == FORMULATION_MIXED) {
     VolumeModuli moduli;
@@ -225,6 +232,12 @@ PetscErrorCode ElasticityPointRates(Elasticity e, PetscInt cell, CellPoints set,
   PetscFunctionBeginUser;
   ElasticityGatherCell(e, g, e->cell_slot[cell], v, X, cell_v, constants, m);
   ElasticityGatherCell(e, g, e->cell_slot[cell], u, X, cell_u, constants, m);
+  if (g->kernel.formulation == FORMULATION_FULL && !P) { /* gradients are linear in displacements */
+    const KernelCase nodal = NodalCase(g);
+
+    MovedStates(e, g, &nodal, set, X, cell_v, (PetscReal[]){1, 1}, NULL, H, pressure, NULL);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscArrayzero(H, points * 9));
   if (P) PetscCall(PetscArrayzero(P, points * 9));
   PetscCall(PetscArrayzero(pressure, points));
@@ -238,7 +251,7 @@ PetscErrorCode ElasticityPointRates(Elasticity e, PetscInt cell, CellPoints set,
     PetscReal H_at[ELEMENT_MAX_POINTS * 9], P_at[ELEMENT_MAX_POINTS * 9], pressure_at[ELEMENT_MAX_POINTS];
 
     for (int k = 0; k < g->nodes * e->dim; k++) at[k] = cell_u[k] + side * step * cell_v[k];
-    MovedStates(e, g, set, X, at, constants, m, H_at, pressure_at, P ? P_at : NULL);
+    MovedStates(e, g, &g->kernel, set, X, at, constants, m, H_at, pressure_at, P ? P_at : NULL);
     for (int k = 0; k < points * 9; k++) H[k] += side * H_at[k] / (2 * step);
     for (int k = 0; k < points * 9 && P; k++) P[k] += side * P_at[k] / (2 * step);
     for (int p = 0; p < points; p++) pressure[p] += side * pressure_at[p] / (2 * step);

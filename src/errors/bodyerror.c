@@ -158,7 +158,8 @@ static PetscErrorCode FindDefects(BodyError b)
   Output Parameter:
 . error - free it with BodyErrorDestroy()
 @*/
-PetscErrorCode BodyErrorCreate(Mesh mesh, Elasticity elasticity, Kinematics kinematics, const PetscReal *u, BodyError *error)
+PetscErrorCode BodyErrorCreate(Mesh mesh, Elasticity elasticity, Kinematics kinematics, const PetscReal *u,
+                               BodyError *error)
 {
   BodyError b;
   PetscInt  points;

@@ -8,11 +8,12 @@ struct _n_Recovery {
   PetscReal *x, *volume;  /* of the points: reference coordinates (length), reference volume */
   PetscInt  *product_ptr; /* the same of the points of products */
   PetscReal *product_x, *product_volume;
-  PetscReal *size;         /* of the patch of each node (length) */
-  int       *patch_degree; /* -1: no patch */
-  PetscReal *variance;     /* of its polynomial at the node */
-  PetscInt   entries;      /* of the matrix of a patch */
-  PetscReal *factor;       /* of each node [entries] */
+  PetscReal (*N)[ELEMENT_MAX_POINTS][ELEMENT_MAX_NODES]; /* of each type of cells: linear shape functions there */
+  PetscReal *size;                                       /* of the patch of each node (length) */
+  int       *patch_degree;                               /* -1: no patch */
+  PetscReal *variance;                                   /* of its polynomial at the node */
+  PetscInt   entries;                                    /* of the matrix of a patch */
+  PetscReal *factor;                                     /* of each node [entries] */
 };
 
 /* The element with the corners of a cell alone. */
@@ -100,6 +101,20 @@ static PetscErrorCode FactorPatches(Recovery r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Evaluates the linear shape functions of all types of cells at their points of products. */
+static PetscErrorCode ShapePoints(Recovery r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(ELEMENT_TYPES, &r->N));
+  for (int type = 0; type < ELEMENT_TYPES; type++) {
+    const Element *element = ElementGetProducts((ElementType)type);
+
+    for (int p = 0; element->dim == r->dim && p < element->points; p++)
+      ElementShape(LinearType((ElementType)type), element->point[p], r->N[type][p], NULL, NULL);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   RecoveryCreate - finds the patches of a mesh.
 
@@ -127,6 +142,7 @@ PetscErrorCode RecoveryCreate(Mesh mesh, Elasticity elasticity, Recovery *recove
                          mesh->n_nodes * r->entries, &r->factor));
   PetscCall(PlacePoints(mesh, elasticity, POINTS_OF_ELEMENT, &r->point_ptr, &r->x, &r->volume));
   PetscCall(PlacePoints(mesh, elasticity, POINTS_OF_PRODUCTS, &r->product_ptr, &r->product_x, &r->product_volume));
+  PetscCall(ShapePoints(r));
   PetscCall(SizePatches(r));
   PetscCall(FactorPatches(r));
   *recovery = r;
@@ -150,6 +166,7 @@ PetscErrorCode RecoveryDestroy(Recovery *recovery)
   PetscCall(PetscFree((*recovery)->point_ptr));
   PetscCall(PetscFree2((*recovery)->product_x, (*recovery)->product_volume));
   PetscCall(PetscFree((*recovery)->product_ptr));
+  PetscCall(PetscFree((*recovery)->N));
   PetscCall(PetscFree(*recovery));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -251,13 +268,13 @@ PetscErrorCode RecoveryFit(Recovery r, int width, const PetscReal *values, Petsc
 @*/
 void RecoveryEvaluate(Recovery r, int width, const PetscReal *patches, PetscInt cell, int p, PetscReal *value)
 {
-  const Mesh      mesh    = r->mesh;
-  const Element  *element = ElementGetProducts(mesh->cell_type[cell]);
-  const PetscInt *nodes = &mesh->cell_nodes[mesh->cell_ptr[cell]], stride = r->terms * width;
-  PetscReal       N[ELEMENT_MAX_NODES], terms[RECOVERY_TERMS], all = 0;
-  int             best = 0;
+  const Mesh       mesh    = r->mesh;
+  const Element   *element = ElementGetProducts(mesh->cell_type[cell]);
+  const PetscInt  *nodes = &mesh->cell_nodes[mesh->cell_ptr[cell]], stride = r->terms * width;
+  const PetscReal *N = r->N[mesh->cell_type[cell]][p];
+  PetscReal        terms[RECOVERY_TERMS], all = 0;
+  int              best = 0;
 
-  ElementShape(LinearType(mesh->cell_type[cell]), element->point[p], N, NULL, NULL);
   for (int k = 0; k < element->corners; k++) best = PetscMax(best, r->patch_degree[nodes[k]]);
   for (int i = 0; i < width; i++) value[i] = 0;
   for (int k = 0; k < element->corners; k++) {

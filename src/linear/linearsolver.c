@@ -25,8 +25,8 @@
 /* Relative residual above which a solution with the transposed operator is not taken: those are weights of an error
    estimate, for which three digits are enough. */
 #define LINEAR_TRANSPOSED 1e-3
-/* A factor that was made for an earlier operator serves for such a solution where refinement with it leaves this relative
-   residual, each step of it no more than the second part of what was left before. */
+/* A factor that was made for an earlier operator serves for such a solution where refinement with it leaves this
+   relative residual, each step of it no more than the second part of what was left before. */
 #define LINEAR_AT_HAND 1e-6
 #define LINEAR_NEAR    0.1
 
