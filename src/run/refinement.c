@@ -32,6 +32,9 @@
    a place is not to choose where. */
 #define REFINEMENT_WITNESS 1.5
 
+/* Penalties that the run has made stiffer by less than this begin on the next mesh as they did on the last one. */
+#define REFINEMENT_STIFFER 1.01
+
 enum { TABLE_ROW = 1024, EDIT_LENGTH = 2 * PETSC_MAX_PATH_LEN };
 
 /* A mesh that was solved */
@@ -59,8 +62,8 @@ typedef struct {
   PetscBool     structured; /* meshes follow densities, else sizes of elements in a file */
   PetscBool     even;       /* all elements of the next mesh are smaller by the same factor */
   PetscReal    *size;       /* wanted of the next mesh at each local cell of the last one */
-  int           n_edits;
-  char        **edit;             /* of each density, or of the file of sizes */
+  int           n_meshing, n_edits;
+  char        **edit;             /* of each density, or of the file of sizes; of the order; of the penalty of each pair */
   PetscBool     tries_order;      /* the next mesh has elements of second order in the place of those of the last one */
   PetscBool     chooses, may_try; /* the order is for the run to choose; it has not tried the second one yet */
   double        wanted;           /* cells that the sizes of the next mesh should give; 0: not by sizes */
@@ -167,7 +170,8 @@ static PetscErrorCode Begin(Run *run, const RunInput *input, Refinement *r)
                           "%s: '%s' declares no parameter that refines its mesh; allowed: names of them in "
                           "accuracy.densities",
                           SceneWhere(run->scene, "accuracy", NULL), run->scene->mesh_file));
-  r->n_edits = (r->structured ? r->n_densities : 1) + 1;
+  r->n_meshing = r->structured ? r->n_densities : 1;
+  r->n_edits   = r->n_meshing + 1 + run->scene->n_contacts;
   r->chooses = r->may_try = (PetscBool)(run->scene->order_chosen && r->order == 1);
   r->cells                = run->mesh->n_cells_global;
   PetscCall(PetscCalloc1(r->n_edits, &r->edit));
@@ -531,12 +535,43 @@ static PetscErrorCode EditSizes(Refinement *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How many times as stiff the penalties of a pair of the scene were at the end of the last mesh as at its begin, the
+   least of the pairs that stand for it. 1: no more, or the run may not choose them. */
+static PetscErrorCode Stiffened(const Refinement *r, const SceneContact *scene, PetscReal *factor)
+{
+  const Contact contact = r->run->model->contact;
+
+  PetscFunctionBeginUser;
+  *factor = PETSC_MAX_REAL;
+  for (int p = 0; p < ContactPairs(contact); p++) {
+    PetscReal least, most;
+
+    if (strcmp(ContactPairScene(contact, p)->path, scene->path)) continue;
+    PetscCall(ContactPairPenalty(contact, p, &least, &most));
+    *factor = PetscMin(*factor, most > 0 ? most / ContactPairInitialPenalty(contact, p) : 1);
+  }
+  if (!scene->penalty_may_stiffen || *factor == PETSC_MAX_REAL) *factor = 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes the edit with which the penalties of a pair begin on the next mesh as they were at the end of the last one. */
+static PetscErrorCode EditPenalty(const Refinement *r, const SceneContact *scene, char *edit)
+{
+  PetscReal factor;
+
+  PetscFunctionBeginUser;
+  PetscCall(Stiffened(r, scene, &factor));
+  if (factor > REFINEMENT_STIFFER)
+    PetscCall(PetscSNPrintf(edit, EDIT_LENGTH, "%s.penalty.scale=%.6g", scene->path,
+                            (double)(factor * (PetscReal)scene->penalty_scale)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Makes the edits of the scene that give the next mesh. */
 static PetscErrorCode Edit(Refinement *r, double factor)
 {
-  RunInput *input     = &r->input;
-  const int densities = r->n_edits - 1;
-  int       n         = r->n_given;
+  RunInput *input = &r->input;
+  int       n     = r->n_given;
   char    **set;
   char      value[MESH_DENSITY_TEXT];
 
@@ -545,14 +580,16 @@ static PetscErrorCode Edit(Refinement *r, double factor)
   PetscCall(PetscArraycpy(set, input->set, r->n_given));
   for (int i = 0; i < r->n_edits; i++)
     if (!r->edit[i]) PetscCall(PetscCalloc1(EDIT_LENGTH, &r->edit[i]));
-  for (int i = 0; i < densities && r->structured; i++) {
+  for (int i = 0; i < r->n_meshing && r->structured; i++) {
     MeshDensityText(&r->density[i], (PetscReal)factor, value);
     PetscCall(PetscSNPrintf(r->edit[i], EDIT_LENGTH, "mesh.parameters.%s=%s", r->density[i].name, value));
   }
   if (!r->structured && !r->tries_order) PetscCall(EditSizes(r));
-  PetscCall(PetscSNPrintf(r->edit[densities], EDIT_LENGTH, "mesh.order=%d", r->order));
+  if (r->chooses) PetscCall(PetscSNPrintf(r->edit[r->n_meshing], EDIT_LENGTH, "mesh.order=%d", r->order));
+  for (int i = 0; i < r->run->scene->n_contacts; i++)
+    PetscCall(EditPenalty(r, &r->run->scene->contacts[i], r->edit[r->n_meshing + 1 + i]));
   for (int i = 0; i < r->n_edits; i++)
-    if (r->edit[i][0] && (i < densities || r->chooses)) set[n++] = r->edit[i];
+    if (r->edit[i][0]) set[n++] = r->edit[i];
   if (input->n_set > r->n_given) PetscCall(PetscFree(input->set));
   input->set       = set;
   input->n_set     = n;
@@ -571,7 +608,7 @@ static PetscErrorCode SolveNext(Refinement *r, const MeshFigures *next, BurnishS
   PetscCall(Edit(r, next->factor));
   Say(r, "next    ");
   if (r->tries_order) Say(r, " elements of second order,");
-  for (int i = 0; r->structured && !r->tries_order && i < r->n_edits - 1; i++)
+  for (int i = 0; r->structured && !r->tries_order && i < r->n_meshing; i++)
     Say(r, " %s,", strchr(r->edit[i], '.') + strlen(".parameters."));
   Say(r, " some %.0f unknowns, error by the mesh %.2g %%, CPU %.2g s\n", next->unknowns, part * next->error,
       next->cpu_s);
