@@ -4,7 +4,6 @@
 #include "document.h"
 #include "scenedefaults.h"
 #include "smooth/smoother.h"
-#include <stdio.h>
 #include <string.h>
 
 /* clang-format would align the table in columns, and is therefore off here. */
@@ -538,6 +537,19 @@ int WordFind(const char *words, const char *apart, const char *text, size_t n)
   return -1;
 }
 
+/* Tells whether a component of a pattern, names with | between them or *, stands for one of a path. np, nt: lengths. */
+static int ComponentMatches(const char *pattern, size_t np, const char *path, size_t nt)
+{
+  if (np == 1 && *pattern == '*') return KeyPathComponentIsIndex(path);
+  for (size_t first = 0, n; first < np; first += n + 1) {
+    const char *bar = memchr(pattern + first, '|', np - first);
+
+    n = bar ? (size_t)(bar - pattern) - first : np - first;
+    if (n == nt && !memcmp(pattern + first, path, n)) return 1;
+  }
+  return 0;
+}
+
 /* Tells whether a path matches the first n characters of a pattern. */
 static int PatternMatches(const char *pattern, size_t n, const char *path)
 {
@@ -545,10 +557,8 @@ static int PatternMatches(const char *pattern, size_t n, const char *path)
 
   while (pattern < end && *path) {
     const size_t np = KeyPathComponent(pattern), nt = KeyPathComponent(path);
-    char         component[80];
 
-    snprintf(component, sizeof component, "%.*s", (int)np, pattern);
-    if (!strcmp(component, "*") ? !KeyPathComponentIsIndex(path) : WordFind(component, "|", path, nt) < 0) return 0;
+    if (!ComponentMatches(pattern, np, path, nt)) return 0;
     pattern += np;
     path += nt;
     if (pattern < end)
