@@ -30,6 +30,9 @@
 /* Power with which a quantity without an estimate is taken to converge: peaks and ends of contact zones follow the size
    of the elements. */
 #define MESHPLAN_ROUGH_RATE 1
+/* A change is forecast where the estimates of two meshes miss no more than this part of what they forecast: as much as
+   what recovered fields give may be off. */
+#define MESHPLAN_FORETOLD 0.5
 /* Power of CPU seconds over unknowns before two meshes show it, and its bounds. A coarse mesh takes hardly more than
    what starts a run, so that the power shows too small; the least one is that of a sparse factor in the plane, and in
    space. */
@@ -139,6 +142,12 @@ static double PartLeft(const MeshChange *c, int order)
 static double Unforecast(const MeshChange *c)
 {
   return fabs(isnan(c->estimate) ? c->change : c->change - (c->before - c->estimate));
+}
+
+/* MeshPlanForetold - says whether the estimates of two meshes have forecast the change of the answer. */
+int MeshPlanForetold(const MeshChange *c)
+{
+  return Unforecast(c) <= MESHPLAN_FORETOLD * fabs(c->before - c->estimate);
 }
 
 /* Do sizes by the shares of the cells stand beside those of a zone in contact? */

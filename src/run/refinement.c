@@ -48,7 +48,8 @@ typedef struct {
   PetscInt  dofs;
   double    factor; /* its elements are smaller by it than those of the first mesh */
   int       order;
-  PetscBool rough; /* there is no estimate of the elements and surfaces, only the change of the answer */
+  PetscBool foretold; /* the change from the mesh before was forecast */
+  PetscBool rough;    /* there is no estimate of the elements and surfaces, only the change of the answer */
 } SolvedMesh;
 
 typedef struct {
@@ -225,6 +226,7 @@ static void Compare(Refinement *r)
   MeshChange        change;
 
   mesh->implied = mesh->unseen = NAN;
+  mesh->foretold               = PETSC_FALSE;
   if (!r->n) return;
   change         = (MeshChange){.change   = (double)(MeshAnswer(mesh) - MeshAnswer(before)),
                                 .before   = (double)MeshPart(&before->error),
@@ -238,6 +240,7 @@ static void Compare(Refinement *r)
                                 .even     = r->even};
   mesh->implied  = (PetscReal)MeshPlanImplied(&change, before->order);
   mesh->unseen   = (PetscReal)MeshPlanUnseen(&change, before->order);
+  mesh->foretold = (PetscBool)MeshPlanForetold(&change);
   mesh->known    = isnan((double)mesh->unseen) ? 0 : before->known + 1;
   figures->error = (double)MeshError(mesh);
   if (!isnan((double)mesh->implied)) last->error = fmax(last->error, (double)mesh->implied + fabs(change.change));
@@ -506,7 +509,7 @@ static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
   if (r->why) PetscFunctionReturn(PETSC_SUCCESS);
   if (r->may_try && !doubted && largest >= REFINEMENT_ORDER_ROOM * present)
     PlanOrder(r, next);
-  else if (doubted && (r->n == 1 || r->structured || !(last->zone.size > 0)))
+  else if (doubted && (r->n == 1 || r->structured || !(last->zone.size > 0 || last->foretold)))
     PetscCall(PlanEven(r, fmin(largest, REFINEMENT_WITNESS * present), next));
   else if (r->structured || r->run->mesh->order != r->order)
     PetscCall(

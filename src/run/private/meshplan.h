@@ -8,7 +8,8 @@
    MeshPlanLargest() gives the factor of the largest mesh that limits of time and memory allow.
 
    Two meshes are witnesses of each other: where the error falls by the part q from one to the next, the change of the
-   answer is (1 - q) / q times what is left. MeshPlanImplied() gives that of the change that the estimates of both
+   answer is (1 - q) / q times what is left. MeshPlanForetold() says whether the estimates have forecast it.
+   MeshPlanImplied() gives that of the change that the estimates of both
    meshes have not forecast, and adds the estimate of the last mesh, both with a factor of safety. Source: Roache,
    Journal of Fluids Engineering 116 (1994), 405.
 
@@ -47,6 +48,7 @@ typedef struct {
 double      MeshPlanFactor(int n, const MeshFigures[], int order, double wanted);
 MeshFigures MeshPlanForecast(int n, const MeshFigures[], int dim, int order, double factor);
 double      MeshPlanLargest(int n, const MeshFigures[], int dim, int order, MeshFigures limit);
+int         MeshPlanForetold(const MeshChange *);
 double      MeshPlanUnseen(const MeshChange *, int order);
 double      MeshPlanImplied(const MeshChange *, int order);
 MeshWish    MeshPlanSplit(double wanted, double bodies, double zone);
