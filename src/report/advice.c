@@ -7,6 +7,8 @@
 /* Estimated error by penetration above which a stiffer penalty is advised, and the error that it is to leave. */
 #define ADVICE_PENALTY        0.01
 #define ADVICE_PENALTY_WANTED 0.003
+/* Stiffer penalties still raise the forces by more than this part of their own factor. */
+#define ADVICE_NO_ROOM 0.5
 /* The facets' own error hides what contact resolves if it is this many penetrations. */
 #define ADVICE_FACETS 10
 /* Part of the slave points that may be on the lower rungs. Free ends and corners of a surface put some points there. */
@@ -102,12 +104,22 @@ static double PenetrationIsDeep(const RunFigures *figures, const PairFigures *pa
   return (double)(error / ADVICE_PENALTY_WANTED);
 }
 
+/* Forces follow the penalty where bodies that keep their volume have no room: they overlap then, however stiff it is. */
+static double ForcesFollowPenalty(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  (void)figures;
+  if (!pair->penalty_stays || !(pair->penalty_error.force > ADVICE_NO_ROOM)) return 0;
+  snprintf(text, ADVICE_TEXT, "%s: penetration leaves about %.2g %% of error, as forces grow with the penalty", pair->name,
+           (double)(100 * pair->penalty_error.force));
+  return 1;
+}
+
 static double PenetrationStays(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   const PetscReal error = ErrorByPenetration(pair);
 
   (void)figures;
-  if (!pair->penalty_stays || !(error > ADVICE_PENALTY)) return 0;
+  if (!pair->penalty_stays || !(error > ADVICE_PENALTY) || pair->penalty_error.force > ADVICE_NO_ROOM) return 0;
   snprintf(text, ADVICE_TEXT, "%s: penetration leaves about %.2g %% of error, which stiffer penalties hardly lower",
            pair->name, (double)(100 * error));
   return 1;
@@ -423,6 +435,7 @@ typedef struct {
 
 static const Situation situations[] = {
   {.pair = PenetrationIsDeep, .changes = {CHANGE_FREE_PENALTY, CHANGE_STIFFER}},
+  {.pair = ForcesFollowPenalty, .changes = {CHANGE_ROOM}},
   {.pair = PenetrationStays, .changes = {CHANGE_FINER_SLAVE}},
   {.pair = SlipIsElastic, .changes = {CHANGE_STICK}},
   {.pair = SlaveHangsOver, .changes = {CHANGE_WHOLE_MASTER}},

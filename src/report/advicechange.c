@@ -34,6 +34,7 @@ typedef enum {
   AXIS_FORMULATION,
   AXIS_SYMMETRY,
   AXIS_ROLES,
+  AXIS_ROOM, /* of the bodies between tools */
   AXIS_SLAVE_MESH,
   AXIS_MASTER_FACES,
   AXIS_MASTER_MESH,
@@ -260,6 +261,12 @@ static int HasMeshedMaster(const ChangePlace *at)
 static void WriteFinerSlave(const ChangePlace *at, char *text, size_t size)
 {
   snprintf(text, size, "a finer mesh at '%s'", PairScene(at)->slave);
+}
+
+static void WriteRoom(const ChangePlace *at, char *text, size_t size)
+{
+  (void)at;
+  snprintf(text, size, "room for bodies that keep their volume, by the motion of a tool or at a wall, or a smaller nu");
 }
 
 static void WriteFinerMaster(const ChangePlace *at, char *text, size_t size)
@@ -555,6 +562,7 @@ static const Change changes[CHANGES] = {
   [CHANGE_DEGREE_2]       = {"contact.*.degree", AXIS_SMOOTHNESS, 1, HasDegree4, WriteDegree2},
   [CHANGE_SYMMETRY]       = {"contact.*.symmetry", AXIS_SYMMETRY, 1, MayHaveSymmetry, WriteSymmetry},
   [CHANGE_ROLES]          = {"contact.*.slave", AXIS_ROLES, 1, MayExchange, WriteRoles},
+  [CHANGE_ROOM]           = {"room", AXIS_ROOM, 1, HasPair, WriteRoom},
   [CHANGE_FINER_SLAVE]    = {"mesh of the slave", AXIS_SLAVE_MESH, 1, HasPair, WriteFinerSlave},
   [CHANGE_FINER_MASTER]   = {"mesh of the master", AXIS_MASTER_MESH, 1, HasMeshedMaster, WriteFinerMaster},
   [CHANGE_WHOLE_MASTER]   = {"faces of the master", AXIS_MASTER_FACES, 1, MasterEnds, WriteWholeMaster},

@@ -76,6 +76,7 @@ typedef struct {
   double        cpu_s; /* spent before the present mesh */
   PetscMPIInt   rank;
   const char   *why; /* it ends without the accuracy */
+  char          reason[256]; /* what that may point to */
 } Refinement;
 
 static void Say(const Refinement *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -495,6 +496,32 @@ static void PlanOrder(Refinement *r, MeshFigures *next)
   r->wanted      = 0;
 }
 
+/* Were penalties of a pair made stiffer without the success that was forecast? */
+static PetscBool PenaltyStays(Model model)
+{
+  for (int p = 0; p < ContactPairs(model->contact); p++)
+    if (ModelPenaltyStays(model, p)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Says that what is left of error does not come from the mesh, but from the cause that leaves most besides it. */
+static void WhyOther(Refinement *r)
+{
+  const QuantityError *error = &Last(r)->error;
+  ErrorCause           worst = ERROR_PENETRATION;
+
+  for (int c = ERROR_SLIP; c < ERROR_CAUSES; c++)
+    if (PetscAbsReal(KnownPart(error, (ErrorCause)c)) > PetscAbsReal(KnownPart(error, worst))) worst = (ErrorCause)c;
+  snprintf(r->reason, sizeof(r->reason), "%.3g %% of error come from %s and not from the mesh%s",
+           100 * (double)PetscAbsReal(KnownPart(error, worst) / Last(r)->value), ErrorCauses[worst],
+           worst != ERROR_PENETRATION ? ""
+           : PenaltyStays(r->run->model)
+             ? ", which stiffer penalties have hardly lowered: surfaces have to overlap, as where a body that keeps its "
+               "volume has no room"
+             : ": penalties that the run may not make stiffer, or not any more");
+  r->why = r->reason;
+}
+
 /* Chooses the next mesh and forecasts it. r->why: there is none. */
 static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
 {
@@ -507,7 +534,7 @@ static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
     r->why = "accuracy.meshes are solved";
   else if (!doubted && MeshError(last) < REFINEMENT_LEAST_SHARE * (MeshError(last) + OtherError(last)) &&
            MeshError(last) < WantedMeshError(r))
-    r->why = "what is left of error does not come from the mesh";
+    WhyOther(r);
   if (r->why) PetscFunctionReturn(PETSC_SUCCESS);
   if (r->may_try && !doubted && largest >= REFINEMENT_ORDER_ROOM * present)
     PlanOrder(r, next);
