@@ -210,53 +210,6 @@ PetscErrorCode ContactZoneFind(Model model, PetscBool *cells, ContactZone *zone)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Bounds the sizes wanted at the corners of faces in contact by those of the cells behind them. */
-static void BoundFaces(Mesh mesh, const MeshGroup *group, const PetscReal *force, PetscReal least,
-                       const PetscReal *size, PetscReal *bound)
-{
-  for (PetscInt f = 0; group && f < group->n_faces; f++) {
-    PetscInt  nodes[FACE_MAX_NODES];
-    PetscReal total;
-    int       corners;
-
-    if (!FaceBears(mesh, group, f, force, least, nodes, &corners, &total)) continue;
-    for (int k = 0; k < corners; k++) bound[nodes[k]] = PetscMin(bound[nodes[k]], size[group->face_cell[f]]);
-  }
-}
-
-/*@
-  ContactZoneBound - bounds the sizes of elements at the corners of faces in contact by those wanted of the cells behind
-  them.
-
-  Collective
-
-  Input Parameters:
-+ model - at its solution
-- size  - wanted at each local cell (length)
-
-  Output Parameter:
-. bound - at each local node by this rank's faces (length); PETSC_MAX_REAL: none
-@*/
-PetscErrorCode ContactZoneBound(Model model, const PetscReal *size, PetscReal *bound)
-{
-  const Mesh mesh = model->mesh;
-  PetscReal  most, *force;
-
-  PetscFunctionBeginUser;
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) bound[n] = PETSC_MAX_REAL;
-  for (int p = 0; p < ContactPairs(model->contact); p++) {
-    ContactSides sides;
-
-    PetscCall(PetscCalloc1(mesh->n_nodes, &force));
-    PetscCall(NodalForces(model, p, force, &most));
-    ContactPairSides(model->contact, p, &sides);
-    BoundFaces(mesh, sides.slave->group, force, ZONE_LEAST_FORCE * most, size, bound);
-    if (sides.master) BoundFaces(mesh, sides.master->group, force, ZONE_LEAST_FORCE * most, size, bound);
-    PetscCall(PetscFree(force));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   ContactZoneOfPair - finds the zone in which the surfaces of one pair are in contact.
 

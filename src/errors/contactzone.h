@@ -19,7 +19,6 @@ typedef struct {
 } ContactZone;
 
 PetscErrorCode ContactZoneFind(Model, PetscBool *cells, ContactZone *);
-PetscErrorCode ContactZoneBound(Model, const PetscReal *size, PetscReal *bound);
 PetscErrorCode ContactZoneOfPair(Model, int pair, ContactZone *);
 PetscReal      ContactZoneLeft(const ContactZone *);
 PetscReal      ContactZoneLayers(PetscReal left);

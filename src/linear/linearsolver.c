@@ -27,7 +27,7 @@
 #define LINEAR_TRANSPOSED 1e-3
 /* A factor that was made for an earlier operator serves for such a solution where refinement with it leaves this
    relative residual, each step of it no more than the second part of what was left before. */
-#define LINEAR_AT_HAND 1e-6
+#define LINEAR_AT_HAND 1e-12
 #define LINEAR_NEAR    0.1
 
 struct _n_LinearSolver {

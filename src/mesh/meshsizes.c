@@ -11,7 +11,7 @@
 /* The bound on growth is passed on from node to node at most so many times along the cells. */
 enum { SIZES_SWEEPS = 50 };
 
-enum { CORNERS = 8, CORNER_WIDTH = 5 /* node, place and bound */, RECORD = 3 + CORNERS * CORNER_WIDTH };
+enum { CORNERS = 8, CORNER_WIDTH = 4 /* node and place */, RECORD = 3 + CORNERS * CORNER_WIDTH };
 
 /*@
   MeshCellSizes - measures the elements.
@@ -39,8 +39,8 @@ void MeshCellSizes(Mesh mesh, PetscReal *size, PetscReal *measure)
   }
 }
 
-/* Describes the local cells: id, corners, wanted size, then node, place and bound of each corner. */
-static void Describe(Mesh mesh, const PetscReal *size, const PetscReal *bound, double *record)
+/* Describes the local cells: id, corners, wanted size, then node and place of each corner. */
+static void Describe(Mesh mesh, const PetscReal *size, double *record)
 {
   for (PetscInt c = 0; c < mesh->n_cells; c++, record += RECORD) {
     const int corners = ElementGet(mesh->cell_type[c])->corners;
@@ -55,13 +55,12 @@ static void Describe(Mesh mesh, const PetscReal *size, const PetscReal *bound, d
       at[0] = (double)mesh->node_id[node];
       for (int i = 0; i < 3; i++)
         at[1 + i] = i < mesh->dim ? (double)(mesh->coords[node * mesh->dim + i] + mesh->centre[i]) : 0;
-      at[4] = (double)bound[node];
     }
   }
 }
 
 /* Gathers the descriptions of all cells on rank 0, in the order of their ids. */
-static PetscErrorCode Gather(Mesh mesh, const PetscReal *size, const PetscReal *bound, double **all)
+static PetscErrorCode Gather(Mesh mesh, const PetscReal *size, double **all)
 {
   PetscMPIInt rank, ranks, *count = NULL, *first = NULL;
   const int   mine = (int)mesh->n_cells * RECORD;
@@ -71,7 +70,7 @@ static PetscErrorCode Gather(Mesh mesh, const PetscReal *size, const PetscReal *
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   PetscCallMPI(MPI_Comm_size(mesh->comm, &ranks));
   PetscCall(PetscCalloc1(mine, &record));
-  Describe(mesh, size, bound, record);
+  Describe(mesh, size, record);
   if (!rank) PetscCall(PetscMalloc3(ranks, &count, ranks + 1, &first, mesh->n_cells_global * RECORD, &found));
   PetscCallMPI(MPI_Gather(&mine, 1, MPI_INT, count, 1, MPI_INT, 0, mesh->comm));
   for (int k = 0; !rank && k < ranks; k++) first[k + 1] = (k ? first[k] : (first[0] = 0)) + count[k];
@@ -86,25 +85,23 @@ static PetscErrorCode Gather(Mesh mesh, const PetscReal *size, const PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the nodes the geometric means of the sizes of their cells, and no more than their bounds. */
+/* Gives the nodes the geometric means of the sizes of their cells. */
 static PetscErrorCode AverageSizes(PetscInt n_cells, const double *cell, PetscInt n_nodes, double *nodal)
 {
-  double *count, *bound;
+  double *count;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(n_nodes, &count, n_nodes, &bound));
-  for (PetscInt n = 0; n < n_nodes; n++) bound[n] = INFINITY;
+  PetscCall(PetscCalloc1(n_nodes, &count));
   for (PetscInt c = 0; c < n_cells; c++, cell += RECORD)
     for (int k = 0; k < (int)cell[1]; k++) {
       const PetscInt node = (PetscInt)cell[3 + CORNER_WIDTH * k];
 
       nodal[node] += log(cell[2]);
       count[node]++;
-      bound[node] = fmin(bound[node], cell[3 + CORNER_WIDTH * k + 4]);
     }
   for (PetscInt n = 0; n < n_nodes; n++)
-    if (count[n] > 0) nodal[n] = fmin(exp(nodal[n] / count[n]), bound[n]);
-  PetscCall(PetscFree2(count, bound));
+    if (count[n] > 0) nodal[n] = exp(nodal[n] / count[n]);
+  PetscCall(PetscFree(count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -164,24 +161,22 @@ static void WriteCells(PetscInt n_cells, const double *cell, int dim, const doub
   Collective
 
   Input Parameters:
-+ mesh  - the mesh
-. size  - wanted size at each local cell
-. bound - on the sizes at each local node, of this rank alone
-. tool  - tool[mesh->n_rigid]: wanted size of a rigid tool's elements; 0: the present ones
-- file  - path of the view (.pos), which rank 0 writes
++ mesh - the mesh
+. size - wanted size at each local cell
+. tool - tool[mesh->n_rigid]: wanted size of a rigid tool's elements; 0: the present ones
+- file - path of the view (.pos), which rank 0 writes
 
   Note:
   Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE.
 @*/
-PetscErrorCode MeshSizesWrite(Mesh mesh, const PetscReal *size, const PetscReal *bound, const PetscReal *tool,
-                              const char *file)
+PetscErrorCode MeshSizesWrite(Mesh mesh, const PetscReal *size, const PetscReal *tool, const char *file)
 {
   PetscMPIInt rank;
   double     *cells = NULL, *nodal;
   FILE       *stream;
 
   PetscFunctionBeginUser;
-  PetscCall(Gather(mesh, size, bound, &cells));
+  PetscCall(Gather(mesh, size, &cells));
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   if (rank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(mesh->n_global, &nodal));

@@ -27,8 +27,6 @@
    the bodies, too, and the change of the answer is to tell something. The zone has this part of its size where nothing
    is known of its error. */
 #define MESHPLAN_PART 0.5
-/* A zone with fewer faces from its end to its middle is not resolved: no power of their size holds. */
-#define MESHPLAN_LEAST_LAYERS 2
 /* Power with which a quantity without an estimate is taken to converge: peaks and ends of contact zones follow the size
    of the elements. */
 #define MESHPLAN_ROUGH_RATE 1
@@ -164,9 +162,7 @@ double MeshPlanUnseen(const MeshChange *c, int order)
 {
   const double left = PartLeft(c, order);
 
-  if (HasZone(c) && (c->layers < MESHPLAN_LEAST_LAYERS ||
-                     Unforecast(c) > fmax(MESHPLAN_TWO_MESHES * c->most, c->allowed)))
-    return NAN;
+  if (HasZone(c) && Unforecast(c) > fmax(MESHPLAN_TWO_MESHES * c->most, c->allowed)) return NAN;
   return Unforecast(c) * left / (1 - left);
 }
 
@@ -192,10 +188,10 @@ MeshWish MeshPlanSplit(double wanted, double bodies, double zone)
   return wish;
 }
 
-/* MeshPlanResolve - gives the part of their size that elements at surfaces in contact are to have where nothing is known
-   of the error of the zone: its end is then to leave no more than is wanted. left: what it may leave (ContactZoneLeft());
-   wanted: error with the factor of safety, over the value. */
-double MeshPlanResolve(double left, double wanted)
+/* MeshPlanResolve - gives the part of their size that elements at surfaces in contact are to have where a first mesh
+   does not resolve the zone: the end is then to leave no more than the error that is asked for. left: what it may leave
+   (ContactZoneLeft()); to: the error over the value. */
+double MeshPlanResolve(double left, double to)
 {
-  return left * MESHPLAN_SAFETY > wanted ? sqrt(wanted / (left * MESHPLAN_SAFETY)) : 1;
+  return left > to ? sqrt(to / left) : 1;
 }

@@ -237,7 +237,6 @@ static void Compare(Refinement *r)
                                 .zone     = mesh->zone.ends ? (double)(before->zone.size / mesh->zone.size) : 0,
                                 .most     = Spread(&before->error) + (before->known ? (double)before->unseen : 0),
                                 .allowed  = (double)(r->wish.to * PetscAbsReal(mesh->value)),
-                                .layers   = (double)before->zone.layers,
                                 .known    = before->known,
                                 .even     = r->even};
   mesh->implied  = (PetscReal)MeshPlanImplied(&change, before->order);
@@ -407,9 +406,8 @@ static MeshWish WishedParts(const Refinement *r)
   if (mesh->rough || !(mesh->zone.size > 0))
     return (MeshWish){.bodies = fmin((double)wanted / r->plan[r->n_plan - 1].error, REFINEMENT_PART), .zone = 1};
   split = MeshPlanSplit((double)wanted, (double)bodies, (double)zone);
-  if (isnan((double)mesh->unseen) && mesh->zone.ends)
-    split.zone = fmin(split.zone, MeshPlanResolve((double)ContactZoneLeft(&mesh->zone),
-                                                  (double)(wanted / PetscAbsReal(mesh->value))));
+  if (r->n == 1 && mesh->zone.ends)
+    split.zone = fmin(split.zone, MeshPlanResolve((double)ContactZoneLeft(&mesh->zone), (double)r->wish.to));
   return split;
 }
 
@@ -552,16 +550,15 @@ static PetscErrorCode Plan(Refinement *r, MeshFigures *next)
 static PetscErrorCode EditSizes(Refinement *r)
 {
   const Mesh mesh = r->run->mesh;
-  PetscReal *tool, *bound;
+  PetscReal *tool;
   char       file[PETSC_MAX_PATH_LEN + 32], full[PETSC_MAX_PATH_LEN] = "";
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(file, sizeof(file), "%s/mesh-%d.pos", r->directory, r->n + 1));
-  PetscCall(PetscMalloc2(mesh->n_rigid, &tool, mesh->n_nodes, &bound));
+  PetscCall(PetscMalloc1(mesh->n_rigid, &tool));
   PetscCall(ToolSizesFind(r->run->model, r->size, tool));
-  PetscCall(ContactZoneBound(r->run->model, r->size, bound));
-  PetscCall(MeshSizesWrite(mesh, r->size, bound, tool, file));
-  PetscCall(PetscFree2(tool, bound));
+  PetscCall(MeshSizesWrite(mesh, r->size, tool, file));
+  PetscCall(PetscFree(tool));
   if (!r->rank) PetscCall(PetscGetFullPath(file, full, sizeof(full)));
   PetscCallMPI(MPI_Bcast(full, sizeof(full), MPI_CHAR, 0, r->run->comm));
   PetscCall(PetscSNPrintf(r->edit[0], EDIT_LENGTH, "mesh.sizes=%s", full));

@@ -84,7 +84,7 @@ static void test_forecast_change(void **state)
    least as what it sees. After one change the factor of safety is 3. */
 static void test_zone(void **state)
 {
-  MeshChange c = {.change = -11, .before = -10, .estimate = -1, .fall = 0.1, .zone = 2, .most = 10, .allowed = 1, .layers = 3};
+  MeshChange c = {.change = -11, .before = -10, .estimate = -1, .fall = 0.1, .zone = 2, .most = 10, .allowed = 1};
 
   (void)state;
   assert_float_equal(MeshPlanUnseen(&c, 2), 2.0 / 3, 1e-12);
@@ -101,16 +101,13 @@ static void test_zone(void **state)
    for. */
 static void test_mesh_that_cannot_tell(void **state)
 {
-  MeshChange c = {.change = -40, .before = -10, .estimate = -1, .fall = 0.1, .zone = 2, .most = 10, .allowed = 1, .layers = 3};
+  MeshChange c = {.change = -40, .before = -10, .estimate = -1, .fall = 0.1, .zone = 2, .most = 10, .allowed = 1};
 
   (void)state;
   assert_true(isnan(MeshPlanUnseen(&c, 2)));
   assert_true(isnan(MeshPlanImplied(&c, 2)));
   c.allowed = 50;
   assert_float_equal(MeshPlanUnseen(&c, 2), 31.0 / 3, 1e-12);
-  c.layers = 1; /* the whole zone was within a face */
-  assert_true(isnan(MeshPlanUnseen(&c, 2)));
-  c.layers  = 3;
   c.allowed = 1;
   c.even    = 1; /* all elements became smaller: they are compared whatever they say */
   assert_float_equal(MeshPlanUnseen(&c, 2), 31.0 / 9, 1e-12);
@@ -150,8 +147,8 @@ static void test_split(void **state)
 static void test_resolve(void **state)
 {
   (void)state;
-  assert_float_equal(MeshPlanResolve(0.3, 0.015), 0.2, 1e-12);
-  assert_float_equal(MeshPlanResolve(0.075, 0.015), 0.4, 1e-12);
+  assert_float_equal(MeshPlanResolve(0.375, 0.015), 0.2, 1e-12);
+  assert_float_equal(MeshPlanResolve(0.09375, 0.015), 0.4, 1e-12);
   assert_float_equal(MeshPlanResolve(0.0046, 0.015), 1, 1e-12);
 }
 

@@ -35,7 +35,6 @@ typedef struct {
   double zone;    /* those at surfaces in contact are smaller by this factor; 0: no zone in contact has an end */
   double most;    /* sum of the magnitudes of all that is known to leave errors on the mesh before */
   double allowed; /* error that is asked for */
-  double layers;  /* of faces from the end of the zone to its middle on the mesh before */
   int    known;   /* changes to the mesh before that have told something, one after the other */
   int    even;    /* all */
 } MeshChange;
@@ -53,4 +52,4 @@ int         MeshPlanForetold(const MeshChange *);
 double      MeshPlanUnseen(const MeshChange *, int order);
 double      MeshPlanImplied(const MeshChange *, int order);
 MeshWish    MeshPlanSplit(double wanted, double bodies, double zone);
-double      MeshPlanResolve(double left, double wanted);
+double      MeshPlanResolve(double left, double to);
