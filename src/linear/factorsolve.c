@@ -181,9 +181,11 @@ PetscErrorCode FactorSolveTransposed(Factor f, Vec b, Vec x)
   const MUMPS_INT plain = f->mumps.ICNTL(9);
 
   PetscFunctionBeginUser;
+  PetscCall(FactorSolutionForget(&f->solution)); /* pivots off the diagonal: it lies as the rows do, not the columns */
   f->mumps.ICNTL(9) = SOLVE_TRANSPOSED;
   PetscCall(FactorSolve(f, b, x));
   f->mumps.ICNTL(9) = plain;
+  PetscCall(FactorSolutionForget(&f->solution));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
