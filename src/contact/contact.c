@@ -95,7 +95,7 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscCall(PetscFree(contact->piece));
   PetscCall(LendOffsets(contact));
   PetscCall(ContactRefuseRepeated(contact));
-  PetscCall(ContactOverride(contact));
+  PetscCall(ContactOverride(contact, elasticity));
   PetscCall(ContactWorkCreate(capacity, dense, workspace, &contact->work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,10 +14,6 @@
    of 60 degrees. */
 #define CONTACT_GLOBAL_COSINE 0.5
 
-/* An edge whose faces differ by feature_angle but for this part of it is sharp: chamfers have 45 degrees, the default,
-   and round-off must not decide whether a fit goes on past them. */
-#define CONTACT_SHARP_FROM (1 - 1e-4)
-
 /* In surface to surface, a slave whose faces are at least this many times coarser than the master's takes a finer
    quadrature, as its points would skip facets. The figure is below 2, so that round-off does not decide on a mesh of
    half the size. */
@@ -259,7 +255,7 @@ static FitSettings PairFitSettings(Scene scene, const ContactPair *pair, int ord
   if (fit.exponent == 0) fit.exponent = scene->dim == 3 && fit.degree == 4 ? 3.5 : 6;
   fit.derivatives   = contact->diffuse_derivatives ? FIT_DIFFUSE : FIT_FULL;
   fit.global_frame  = contact->global_frame ? PETSC_TRUE : PETSC_FALSE;
-  fit.feature_angle = CONTACT_SHARP_FROM * contact->feature_angle * PETSC_PI / 180;
+  fit.feature_angle = SceneSharpAngle(contact);
   return fit;
 }
 

@@ -1,6 +1,7 @@
 /* Physical groups before distribution: faces, marked nodes and the checks of how the scene uses groups. */
 #include "slicegroups.h"
 #include "cellfaces.h"
+#include "slicejoins.h"
 #include "sliceskins.h"
 #include "mesh/meshgroup.h"
 #include "base/exchange.h"
@@ -381,7 +382,7 @@ static PetscErrorCode CountElements(Scene scene, SliceMesh *slice, Mesh mesh)
   Collective
 
   Input Parameters:
-+ scene - says which groups are rigid tools
++ scene - says which groups are rigid tools; its lists have surfaces joined where the mesh shows that they must be
 . file  - name of the mesh, for the complaint
 - slice - after CellFacesCreate()
 
@@ -396,6 +397,7 @@ PetscErrorCode SliceGroupsFind(Scene scene, const char *file, SliceMesh *slice, 
   PetscCall(PetscCalloc1(mesh->n_groups, &slice->interior));
   PetscCall(CollectFaces(scene, file, slice, mesh, complaint));
   PetscCall(SliceSkinsAdd(scene, slice, mesh, slice->gmsh.n_physicals));
+  PetscCall(SliceJoinsAdd(scene, slice, mesh));
   PetscCall(SortFaces(slice));
   PetscCall(MarkHomes(scene, slice, mesh));
   PetscCall(CountElements(scene, slice, mesh));

@@ -96,6 +96,11 @@ typedef struct {
    the mesh, or that of the mesh. */
 typedef enum { MASTER_NORMAL_AUTO, MASTER_NORMAL_FLIP, MASTER_NORMAL_KEEP } MasterNormal;
 
+/* Two surfaces that are parts of those of a pair and do not meet */
+typedef struct {
+  char *slave, *master;
+} SceneApart;
+
 typedef struct {
   char           *path, *name, *slave, *master; /* the master is a physical surface, or NULL if it is analytic */
   AnalyticSurface analytic;                     /* motion.point is a point of the plane or of the axis, or the centre */
@@ -104,6 +109,8 @@ typedef struct {
   /* 1 if the scene lists surfaces and names no slave: any side of the bodies may meet any other. Each entry of such a
      list becomes pairs with names of their own. */
   int                listed;
+  int                n_apart; /* parts of joined surfaces that do not meet, see scenejoins.h */
+  SceneApart        *apart;
   double             share; /* part of the slave's area that counts: 1/2 if its master is a slave of it too, else 1 */
   int                smoother; /* index in Smoothers[] */
   ContactFormulation formulation;
@@ -322,6 +329,7 @@ PetscErrorCode SceneLoadRoutines(Scene, MPI_Comm, PetscBool trust);
 PetscErrorCode SceneDestroy(Scene *);
 PetscBool      SceneSameProblem(const char *a, const char *b);
 const char    *SceneWhere(Scene, const char *path, const char *key);
+PetscErrorCode SceneCheckProbePairs(Scene);
 void           SceneBodySkin(const SceneBody *, char *name, size_t size);
 PetscBool      SceneIsPlastic(Scene);
 PetscBool      SceneHasRoutine(Scene);
@@ -329,6 +337,7 @@ PetscBool      SceneHasFluid(Scene);
 PetscBool      SceneHasFriction(Scene);
 PetscBool      SceneDependsOnPath(Scene);
 PetscBool      SceneContactHasMaster(const SceneContact *, const char *surface);
+PetscReal      SceneSharpAngle(const SceneContact *);
 PetscBool      SceneBreaks(Scene, PetscReal t);
 const char    *SceneStepAt(Scene, PetscReal t);
 int            SceneStepFrom(Scene, PetscReal t);

@@ -319,25 +319,34 @@ PetscErrorCode SceneReadContacts(Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Frees what a pair holds. */
+PetscErrorCode SceneDestroyContact(SceneContact *contact)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < contact->n_symmetry; k++) PetscCall(PetscFree(contact->symmetry[k]));
+  for (int k = 0; k < contact->n_apart; k++) {
+    PetscCall(PetscFree(contact->apart[k].slave));
+    PetscCall(PetscFree(contact->apart[k].master));
+  }
+  PetscCall(PetscFree(contact->apart));
+  PetscCall(ExpressionDestroy(&contact->overlap_expression));
+  PetscCall(ExpressionDestroy(&contact->mu_expression));
+  PetscCall(PetscFree2(contact->presence.t, contact->presence.v));
+  PetscCall(PetscFree2(contact->mu_history.t, contact->mu_history.v));
+  PetscCall(PetscFree2(contact->mu_pressure.t, contact->mu_pressure.v));
+  PetscCall(PetscFree(contact->symmetry));
+  PetscCall(PetscFree(contact->path));
+  PetscCall(PetscFree(contact->name));
+  PetscCall(PetscFree(contact->slave));
+  PetscCall(PetscFree(contact->master));
+  PetscCall(SceneDestroyMotion(&contact->motion));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SceneDestroyContacts(Scene scene)
 {
   PetscFunctionBeginUser;
-  for (int i = 0; i < scene->n_contacts; i++) {
-    SceneContact *contact = &scene->contacts[i];
-
-    for (int k = 0; k < contact->n_symmetry; k++) PetscCall(PetscFree(contact->symmetry[k]));
-    PetscCall(ExpressionDestroy(&contact->overlap_expression));
-    PetscCall(ExpressionDestroy(&contact->mu_expression));
-    PetscCall(PetscFree2(contact->presence.t, contact->presence.v));
-    PetscCall(PetscFree2(contact->mu_history.t, contact->mu_history.v));
-    PetscCall(PetscFree2(contact->mu_pressure.t, contact->mu_pressure.v));
-    PetscCall(PetscFree(contact->symmetry));
-    PetscCall(PetscFree(contact->path));
-    PetscCall(PetscFree(contact->name));
-    PetscCall(PetscFree(contact->slave));
-    PetscCall(PetscFree(contact->master));
-    PetscCall(SceneDestroyMotion(&contact->motion));
-  }
+  for (int i = 0; i < scene->n_contacts; i++) PetscCall(SceneDestroyContact(&scene->contacts[i]));
   PetscCall(PetscFree(scene->contacts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

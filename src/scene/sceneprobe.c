@@ -1,6 +1,7 @@
 /* The reader of the probes of a scene, see sceneprobe.h. */
 #include "sceneprobe.h"
 #include "sceneread.h"
+#include "scene/scenejoins.h"
 #include "scene/stepcolumns.h"
 #include <string.h>
 
@@ -137,6 +138,15 @@ static PetscErrorCode SceneRefuseProbeFriction(Scene scene, SceneProbe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Has a pair the name of a probe's target? */
+static int ProbeHasPair(Scene scene, const SceneProbe *probe)
+{
+  int found = 0;
+
+  for (int i = 0; i < scene->n_contacts; i++) found = found || !strcmp(scene->contacts[i].name, probe->target);
+  return found;
+}
+
 static int ProbeIsTorque(ProbeKind kind)
 {
   return kind == PROBE_REACTION_TORQUE || kind == PROBE_CONTACT_TORQUE || kind == PROBE_FRICTION_TORQUE;
@@ -177,6 +187,24 @@ static PetscErrorCode SceneRefuseProbeTool(Scene scene, SceneProbe *probe)
       PetscCall(SceneRefuse(scene, probe->path, ProbeForms[probe->kind].kind,
                             "has a deformable master; allowed: a pair whose master is a rigid tool", probe->target));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Does a probe ask something of a contact pair? */
+static int ProbeOfPair(ProbeKind kind)
+{
+  return kind != PROBE_DISPLACEMENT && kind != PROBE_DISTANCE && kind < PROBE_FLUID_FRONT && kind != PROBE_BOLT_FORCE &&
+         kind != PROBE_BOLT_SHORTENING && kind != PROBE_REACTION && kind != PROBE_REACTION_TORQUE;
+}
+
+/* Refuses a probe whose target is no pair, or not one of the kind that it needs. */
+static PetscErrorCode SceneRefuseProbePair(Scene scene, SceneProbe *probe)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SceneRefuseProbeTarget(scene, probe));
+  if (probe->kind >= PROBE_FRICTION_FORCE) PetscCall(SceneRefuseProbeFriction(scene, probe));
+  if (probe->kind == PROBE_TOOL_MOTION || probe->kind == PROBE_TOOL_ROTATION)
+    PetscCall(SceneRefuseProbeTool(scene, probe));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -297,12 +325,8 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
       PetscCall(SceneRefuseProbeBolt(scene, probe));
     else if (probe->kind == PROBE_REACTION || probe->kind == PROBE_REACTION_TORQUE)
       PetscCall(SceneRefuseProbeReaction(scene, probe));
-    else
-      PetscCall(SceneRefuseProbeTarget(scene, probe));
-    if (probe->kind >= PROBE_FRICTION_FORCE && probe->kind < PROBE_FLUID_FRONT)
-      PetscCall(SceneRefuseProbeFriction(scene, probe));
-    if (probe->kind == PROBE_TOOL_MOTION || probe->kind == PROBE_TOOL_ROTATION)
-      PetscCall(SceneRefuseProbeTool(scene, probe));
+    else if (ProbeHasPair(scene, probe) || !SceneMayBeJoint(scene, probe->target))
+      PetscCall(SceneRefuseProbePair(scene, probe));
   }
   probe->component = PetscMax(0, SchemaChoice(document, "%s.component", path));
   if (probe->kind == PROBE_TOOL_ROTATION) {
@@ -354,5 +378,24 @@ PetscErrorCode SceneReadProbes(Scene scene)
     PetscCall(SceneReadProbe(scene, &scene->probes[i]));
     PetscCall(SceneCheckProbeName(scene, &scene->probes[i]));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SceneCheckProbePairs - refuses probes of contact pairs that there are not.
+
+  Collective
+
+  Input Parameter:
+. scene - the scene, after the mesh has shown which surfaces of lists are joined (scenejoins.h)
+
+  Note:
+  SceneRead() has refused other names already.
+@*/
+PetscErrorCode SceneCheckProbePairs(Scene scene)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < scene->n_probes; i++)
+    if (ProbeOfPair(scene->probes[i].kind)) PetscCall(SceneRefuseProbePair(scene, &scene->probes[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

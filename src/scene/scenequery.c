@@ -2,6 +2,10 @@
 #include "scene/scene.h"
 #include <string.h>
 
+/* An edge whose faces differ by feature_angle but for this part of it is sharp: chamfers have 45 degrees, the default,
+   and round-off must not decide whether a fit goes on past them. */
+#define SCENE_SHARP_FROM (1 - 1e-4)
+
 /*@
   SceneIsPlastic - tells whether some body has a plastic law.
 
@@ -217,4 +221,20 @@ PetscBool SceneHolds(const SceneSpan *span, PetscInt step)
 PetscReal SceneStepLeft(const SceneStep *step, PetscReal t)
 {
   return PetscMax(0, PetscMin(1, (step->until - t) / (step->until - step->begin)));
+}
+
+/*@
+  SceneSharpAngle - returns the angle from which on the faces of a pair meet at a sharp edge.
+
+  Not collective
+
+  Input Parameter:
+. contact - the pair
+
+  Note:
+  In radians. Fits end at sharp edges.
+@*/
+PetscReal SceneSharpAngle(const SceneContact *contact)
+{
+  return SCENE_SHARP_FROM * contact->feature_angle * PETSC_PI / 180;
 }

@@ -236,7 +236,8 @@ const SchemaKey SchemaKeys[] = {
    .help = "surfaces of deformable bodies, each in contact with itself and with all others, both sides treated alike; "
            "rigid tools among them are masters. all: the outer faces of every body, and every tool. It takes the place "
            "of slave and master. With one surface the pair has the entry's name, else the names are NAME.SLAVE.MASTER, "
-           "with bodies' names for all; entries that name two of these surfaces as slave and master replace their pair"},
+           "with bodies' names for all; entries that name two of these surfaces as slave and master replace their pair. "
+           "Sides of a sharp convex edge of one body are joined: A+B is then the name of one surface"},
   {"contact.*.exclude", LIST, .help = "pairs of surfaces, or of bodies where surfaces is all, that do not meet"},
   {"contact.*.exclude.*", TEXTS, .help = "two names, or one: it does not meet itself"},
   {"contact.*.during", NAME | TEXTS,

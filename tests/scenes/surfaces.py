@@ -321,6 +321,31 @@ def keystone():
         check.near(f"keystone, order {order}, size {size}: thrust of a stiff stone", thrusts[0] / 85.98, 1, 5e-3)
 
 
+def joined():
+    """Sides of sharp edges in one list are one surface: as the skins of all bodies, and as one group that has them. What
+    a list excludes of them stays out, and names of pairs follow."""
+    faces = "left_face, right_face"
+    lists = {"all": "surfaces: all", "group": f"surfaces: [flanks, {faces}]",
+             "two": f"surfaces: [flanks, bottom, {faces}]", "three": f"surfaces: [left_flank, bottom, right_flank, {faces}]",
+             "excluded": f"surfaces: [left_flank, bottom, right_flank, {faces}], exclude: [[bottom, left_face], "
+                         "[bottom, right_face], [bottom], [right_flank, left_flank]]"}
+    finished = {name: run(args, KEYSTONE, out=f"joined_{name}", overrides=[f"contact=[{{name: a, {contact}}}]"])
+                for name, contact in lists.items()}
+    thrust = {name: done.summary()["probes"]["thrust"] for name, done in finished.items()}
+    for name in ("two", "three"):
+        check.near(f"joined, {name}: thrust as of all sides", thrust[name] / thrust["all"], 1, EXACT)
+    check.near("joined, excluded: thrust as of the flanks alone", thrust["excluded"] / thrust["group"], 1, ROLES)
+    check.holds("joined: the first lines name the surfaces",
+                "'left_flank', 'bottom', 'right_flank' meet at sharp edges" in finished["three"].text)
+    check.holds("joined: pairs have names of joined surfaces", "a.left_flank+bottom+right_flank.left_face" in
+                [pair["name"] for pair in finished["three"].summary()["contact"]])
+    for pair in ("flanks.left_face", "flanks+top.left_face"):
+        gone = run(args, KEYSTONE, "-check", out="gone", ranks=1, must=1, overrides=[
+            f"contact=[{{name: a, {lists['two']}}}]", f"probes=[{{name: x, contact_force: a.{pair}, component: x}}]"])
+        check.holds(f"refused: probe of a.{pair}", "there is no contact pair of this name" in gone.text and
+                    "a.flanks+bottom.left_face" in gone.text, gone.text.strip().splitlines()[0])
+
+
 def chamfer():
     """A block on a floor, with corners of feature_angle: fits end there, and do not round the corners off."""
     for order in (1, 2):
@@ -351,10 +376,6 @@ def refusals():
             "{name: a, surfaces: [nowhere]}")
     refused("two lists of one surface", "their forces would add up",
             "{name: a, surfaces: [inner_contact]}, {name: b, surfaces: [inner_contact]}")
-    sides = run(args, KEYSTONE, "-check", out="sides", ranks=1, must=1,
-                overrides=["contact=[{name: a, surfaces: [flanks, bottom, left_face, right_face]}]", "probes=[]"])
-    check.holds("refused: sides of a sharp edge", "which meet at a sharp edge" in sides.text,
-                sides.text.strip().splitlines()[0])
     tool = "master: {plane: {point: [0, 31], normal: [0, -1]}}"
     again = "master: {plane: {point: [4, 31], normal: [0, -2]}}"
     refused("one tool in a list and by slave and master", "meet the same rigid tool: their forces would add up",
@@ -366,7 +387,7 @@ def refusals():
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, refined, mirror, walls, keystone, chamfer, ranks, refusals, override, friction, overlap, bumper, edges, knife, live, still, parts or "
+args = arguments(("case", "frame, refined, mirror, walls, keystone, joined, chamfer, ranks, refusals, override, friction, overlap, bumper, edges, knife, live, still, parts or "
                               "tools"))
 check = Check()
 if args.case == "frame":
@@ -377,7 +398,7 @@ elif args.case == "mirror":
     mirror("node_to_surface")
     mirror("surface_to_surface")
 else:
-    {"walls": walls, "keystone": keystone, "chamfer": chamfer, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
+    {"walls": walls, "keystone": keystone, "joined": joined, "chamfer": chamfer, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
      "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "live": live, "parts": parts, "refined": refined, "still": still,
      "tools": tools}[args.case]()
 check.finish()

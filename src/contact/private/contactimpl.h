@@ -202,7 +202,7 @@ PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const PetscInt 
                                  ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
 /* contactoverride.c */
-PetscErrorCode ContactOverride(Contact);
+PetscErrorCode ContactOverride(Contact, Elasticity);
 /* contactrepeated.c */
 PetscErrorCode ContactRefuseRepeated(Contact);
 /* contactoutside.c */

@@ -3,4 +3,5 @@
 #include "scene/scene.h"
 
 PetscErrorCode SceneReadContacts(Scene);
+PetscErrorCode SceneDestroyContact(SceneContact *);
 PetscErrorCode SceneDestroyContacts(Scene);
