@@ -13,6 +13,10 @@
 /* So far past an end, in faces of the slave, another facet is looked for on which the surface goes on. */
 #define FLANK_SEAM 0.05
 
+/* A slave point lies on a flank of an edge of its master up to this part of feature_angle between their normals. From
+   feature_angle on it does not: the edge stands on the slave. */
+#define FLANK_LIES 0.67
+
 /* An edge that two facets share, as seen from one of them. */
 typedef struct {
   int       edge;
@@ -448,6 +452,44 @@ static PetscReal DeepShare(const Nearest *look, int facing, int n, const int *fo
   return 1 - SmoothStep(depth / (NEIGHBOUR_LISTS_DEEP * look->size) - 1) * (1 - SmoothStep(2 * side / depth - 1));
 }
 
+/* Cosine of the angle between the slave's reversed normal and a facet's. */
+static PetscReal Opposing(const Nearest *look, const Candidate *c)
+{
+  PetscReal cosine = 0;
+
+  for (int d = 0; d < look->lists->dim; d++) cosine -= look->outward[d] * c->normal[d];
+  return cosine;
+}
+
+/* How far a sharp convex edge between two facets that both face the slave point stands on the slave there: 1 where none
+   of them lies on it, and the foot is within half a face of the edge. */
+static PetscReal EdgeStands(const Nearest *look, const Candidate *c, const Candidate *o)
+{
+  const PetscReal stands = PetscCosReal(look->sharp), lies = PetscCosReal(FLANK_LIES * look->sharp);
+  PetscReal       cosine = 0, place[3];
+  FlankEdge       edge;
+
+  for (int d = 0; d < look->lists->dim; d++) cosine += c->normal[d] * o->normal[d];
+  if (cosine >= stands || !SharedEdge(look, c, o, &edge) || !edge.convex) return 0;
+  return SmoothStep((lies - PetscMax(Opposing(look, c), Opposing(look, o))) / (lies - stands)) *
+         (1 - SmoothStep(2 * FootToEdge(look, &edge, place) / look->size - 1));
+}
+
+/* Part of a slave point's area that takes part where an edge of the master stands on the slave. The edge's own terms
+   carry it, where both sides are slaves. A point of the slave that is just behind the edge would be pressed out along
+   one flank of it, square to that, with any force. */
+static PetscReal RidgeShare(const Nearest *look, int facing, const int *found)
+{
+  PetscReal share = 1;
+
+  if (!look->two_sided || Opposing(look, &look->candidates[look->best]) >= PetscCosReal(FLANK_LIES * look->sharp))
+    return share;
+  for (int i = 0; i < facing; i++)
+    for (int k = 0; k < i; k++)
+      share = PetscMin(share, 1 - EdgeStands(look, &look->candidates[found[i]], &look->candidates[found[k]]));
+  return share;
+}
+
 /* Marks the points of the facets that do not face the slave point. */
 static void MarkAversed(const Nearest *look, int facing, int n, const int *found)
 {
@@ -504,6 +546,7 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
     }
   }
   if (n > facing) share *= DeepShare(look, facing, n, found);
+  share *= RidgeShare(look, facing, found);
   return share * NeighbourListsOpposed(look->lists, look->q, look->normal);
 }
 

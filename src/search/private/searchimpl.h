@@ -95,6 +95,8 @@ typedef struct {
   PetscReal        x[3], size, height; /* of the slave's face, and of the element below it (length) */
   PetscReal        outward[3];         /* unit normal out of the slave's body; 0 where it has none */
   PetscBool        listed, one_body;   /* as in the search */
+  PetscBool        two_sided;          /* the master is a slave of this surface too */
+  PetscReal        sharp;              /* facets that differ by more meet at a sharp edge (radians) */
   /* The slave point, and the number of nodes of its own face: a face with one of these nodes is not its master. */
   PetscInt  q, own;
   FaceMarks marks; /* of the slave point */
