@@ -91,7 +91,7 @@ typedef struct {
   int          n_tools;
   MeshTool    *tools;
   Partition    partition;
-  char        *notes; /* on rank 0: what a converter changed, in lines; NULL: nothing */
+  char        *notes; /* on rank 0: what a converter changed and which surfaces of contact, in lines; NULL: nothing */
   /* The fields below are for the files of this folder only. */
   PetscSF    node_sf;     /* from ghost nodes to their owners' nodes, as the DM's between points */
   PetscInt  *global_dofs; /* NULL until MeshSetConstraints() */

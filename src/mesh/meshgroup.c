@@ -203,3 +203,22 @@ ElementType MeshFaceNodes(Mesh mesh, const MeshGroup *group, PetscInt f, PetscIn
     nodes[k] = mesh->cell_nodes[mesh->cell_ptr[cell] + element->face_nodes[group->face_number[f]][k]];
   return face->type;
 }
+
+/*@
+  MeshAddNote - adds a line to what the first lines of a run say of the mesh.
+
+  Not collective, for rank 0
+
+  Input Parameters:
++ mesh - the mesh
+- text - the line
+@*/
+PetscErrorCode MeshAddNote(Mesh mesh, const char *text)
+{
+  const size_t used = mesh->notes ? strlen(mesh->notes) : 0, more = strlen(text) + 2;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc(used + more, &mesh->notes));
+  snprintf(mesh->notes + used, more, "%s\n", text);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -2,6 +2,7 @@
 #include "slicegroups.h"
 #include "cellfaces.h"
 #include "slicejoins.h"
+#include "sliceroles.h"
 #include "sliceskins.h"
 #include "mesh/meshgroup.h"
 #include "base/exchange.h"
@@ -398,6 +399,7 @@ PetscErrorCode SliceGroupsFind(Scene scene, const char *file, SliceMesh *slice, 
   PetscCall(CollectFaces(scene, file, slice, mesh, complaint));
   PetscCall(SliceSkinsAdd(scene, slice, mesh, slice->gmsh.n_physicals));
   PetscCall(SliceJoinsAdd(scene, slice, mesh));
+  PetscCall(SliceRolesChoose(scene, slice, mesh));
   PetscCall(SortFaces(slice));
   PetscCall(MarkHomes(scene, slice, mesh));
   PetscCall(CountElements(scene, slice, mesh));

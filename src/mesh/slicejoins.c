@@ -1,17 +1,10 @@
 /* Groups of joined surfaces, see slicejoins.h. */
 #include "slicejoins.h"
-#include "base/exchange.h"
+#include "slicesides.h"
 #include "base/vectors.h"
 #include "mesh/meshgroup.h"
 #include "scene/scenejoins.h"
 #include <string.h>
-
-/* What a node knows of the faces around it that one group has: the sum of their normals there, with their areas, and of
-   the ways to their centres. */
-typedef struct {
-  PetscInt  id, group;
-  PetscReal normal[3], way[3];
-} NodeSide;
 
 /* The surfaces of one list */
 typedef struct {
@@ -22,80 +15,6 @@ typedef struct {
   PetscBool  *listed;   /* [n_groups] */
   PetscBool  *sharp;    /* [n_groups * n_groups], symmetric: they are sides of a sharp edge */
 } JoinList;
-
-/* Sides */
-
-/* Centre of some nodes of a cell. */
-static void Centre(const SliceMesh *slice, int n, const PetscInt nodes[], PetscReal centre[3])
-{
-  for (int d = 0; d < 3; d++) centre[d] = 0;
-  for (int a = 0; a < n; a++)
-    for (int d = 0; d < 3; d++) centre[d] += slice->coords[3 * nodes[a] + d] / n;
-}
-
-/* Normal of a face at one of its nodes, times area over reference area. */
-static void NodeNormal(const SliceMesh *slice, const Element *face, const PetscInt nodes[], int k, PetscReal normal[3])
-{
-  double    N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 3];
-  PetscReal tangent[2][3] = {{0}, {0, 0, 1}};
-
-  ElementShape(face->type, face->node[k], N, dN, NULL);
-  for (int j = 0; j < face->dim; j++)
-    for (int d = 0; d < 3; d++) {
-      tangent[j][d] = 0;
-      for (int a = 0; a < face->nodes; a++) tangent[j][d] += dN[a * face->dim + j] * slice->coords[3 * nodes[a] + d];
-    }
-  Cross(tangent[0], tangent[1], normal);
-}
-
-/* Lists what the nodes of a face know of it. The normal points away from the centre of the cell. */
-static void AddFace(const SliceMesh *slice, const SliceFace *face, PetscInt *n, NodeSide *sides)
-{
-  const PetscInt  cell    = face->cell - slice->cell_start[slice->rank];
-  const Element  *element = slice->cell_block[cell]->element, *of_face = ElementGet((ElementType)element->face_type);
-  const PetscInt *nodes = SliceMeshCellNodes(slice, cell);
-  PetscInt        of[FACE_MAX_NODES];
-  PetscReal       inside[3], centre[3], out[3];
-
-  for (int k = 0; k < of_face->nodes; k++) of[k] = nodes[element->face_nodes[face->number][k]];
-  Centre(slice, element->corners, nodes, inside);
-  Centre(slice, of_face->corners, of, centre);
-  Minus(centre, inside, out);
-  for (int k = 0; k < of_face->nodes; k++) {
-    NodeSide *side = &sides[(*n)++];
-
-    *side = (NodeSide){.id = slice->id[of[k]], .group = face->group};
-    NodeNormal(slice, of_face, of, k, side->normal);
-    for (int d = 0; d < 3 && Dot(side->normal, out) < 0; d++) side->normal[d] *= -1;
-    Minus(centre, &slice->coords[3 * of[k]], side->way);
-  }
-}
-
-static void PackSide(const void *context, PetscInt i, void *packed)
-{
-  *(NodeSide *)packed = ((const NodeSide *)context)[i];
-}
-
-/* Brings the sides of all listed surfaces to the homes of their nodes. sides: to be freed with PetscFree() */
-static PetscErrorCode GatherSides(const SliceMesh *slice, const PetscBool *listed, PetscInt *n, NodeSide **sides)
-{
-  PetscInt     n_own = 0;
-  NodeSide    *own;
-  PetscMPIInt *to;
-
-  PetscFunctionBeginUser;
-  for (PetscInt f = 0; f < slice->n_faces; f++) n_own += listed[slice->faces[f].group] ? FACE_MAX_NODES : 0;
-  PetscCall(PetscMalloc1(n_own, &own));
-  PetscCall(PetscMalloc1(n_own, &to));
-  n_own = 0;
-  for (PetscInt f = 0; f < slice->n_faces; f++)
-    if (listed[slice->faces[f].group]) AddFace(slice, &slice->faces[f], &n_own, own);
-  for (PetscInt i = 0; i < n_own; i++) to[i] = SliceMeshRankOf(slice, slice->home_start, own[i].id);
-  PetscCall(ExchangeRecords(slice->comm, sizeof(NodeSide), n_own, to, PackSide, own, n, (void **)sides));
-  PetscCall(PetscFree(own));
-  PetscCall(PetscFree(to));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 static int CompareSides(const void *a, const void *b)
 {
@@ -139,7 +58,7 @@ static PetscErrorCode FindSharp(const SliceMesh *slice, JoinList *list)
   NodeSide       *sides;
 
   PetscFunctionBeginUser;
-  PetscCall(GatherSides(slice, list->listed, &n, &sides));
+  PetscCall(SliceSidesGather(slice, list->listed, &n, &sides));
   SumSides(&n, sides);
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = i + 1; j < n && sides[j].id == sides[i].id; j++)
@@ -193,9 +112,8 @@ static PetscErrorCode AddGroup(SliceMesh *slice, Mesh mesh, int n, const int par
 static PetscErrorCode AddNote(const SliceMesh *slice, Mesh mesh, const JoinList *list, int n, const char *const parts[],
                               const char *joint)
 {
-  const size_t used = mesh->notes ? strlen(mesh->notes) : 0;
-  char         text[MESH_TEXT];
-  size_t       length = 0;
+  char   text[MESH_TEXT];
+  size_t length = 0;
 
   PetscFunctionBeginUser;
   if (slice->rank) PetscFunctionReturn(PETSC_SUCCESS);
@@ -204,8 +122,7 @@ static PetscErrorCode AddNote(const SliceMesh *slice, Mesh mesh, const JoinList 
   if (length < sizeof text)
     snprintf(text + length, sizeof text - length, " meet at sharp edges: %s has them as one surface '%s'", list->path,
              joint);
-  PetscCall(PetscRealloc(used + strlen(text) + 2, &mesh->notes));
-  snprintf(mesh->notes + used, strlen(text) + 2, "%s\n", text);
+  PetscCall(MeshAddNote(mesh, text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

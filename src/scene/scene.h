@@ -109,6 +109,7 @@ typedef struct {
   /* 1 if the scene lists surfaces and names no slave: any side of the bodies may meet any other. Each entry of such a
      list becomes pairs with names of their own. */
   int                listed;
+  int                keep_roles; /* 1 if slave and master stay what the scene says, see sceneroles.h */
   int                n_apart; /* parts of joined surfaces that do not meet, see scenejoins.h */
   SceneApart        *apart;
   double             share; /* part of the slave's area that counts: 1/2 if its master is a slave of it too, else 1 */

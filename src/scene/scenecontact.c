@@ -254,6 +254,7 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   Node symmetry = SceneNode(scene, contact->path, "symmetry");
 
   PetscFunctionBeginUser;
+  contact->keep_roles         = SchemaChoice(SceneDocument(scene), "%s.roles", contact->path) == 1;
   contact->master_normal      = (MasterNormal)SchemaChoice(SceneDocument(scene), "%s.master_normal", contact->path);
   contact->law                = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
   contact->smoother           = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);

@@ -8,6 +8,9 @@ CHAMFERED, KEYSTONE = SCENES / "chamfered_block.yaml", SCENES.parent / "jobs/key
 SHRINK, BUMPER = SCENES.parent / "jobs/shrink_fit.yaml", SCENES / "jounce_bumper.yaml"
 SIDES = 4e-3  # of a force of friction: between a list and one role of slave and master, whose points differ
 BEAMS, BLOCK, BLADE = SCENES / "crossed_beams.yaml", SCENES / "patch.yaml", SCENES / "knife.yaml"
+EDGE, SOLID = SCENES / "beam_on_edge.yaml", ["mesh.parameters.solid=1", "mesh.parameters.n=20", "geometry=solid",
+                                             "supports=[{surface: clamp, ux: 0, uy: 0, uz: 0}]",
+                                             "loads=[{surface: base, ux: 0, uy: 1, uz: 0}]"]
 PRESSED = ["supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_min, uz: 0}]",
            "loads=[{surface: y_max, uy: -0.1}]", "contact=[{name: own, surfaces: all}]"]
 PLATE = SCENES / "plate_block.yaml"
@@ -284,6 +287,29 @@ def knife():
             check.near(f"blade, {kind}, order {order}: nodes in contact", moved["contact_nodes"], 0, 0)
 
 
+def edge():
+    """The edge of a wedge under a beam. The run takes the roles the other way round where they are wrong; forces stay
+    those on the master that the scene names. In a list the edge alone holds the beam."""
+    named, swapped = "slave: bottom, master: flanks", "slave: flanks, master: bottom"
+    for kind, order, more in (("plane", 1, []), ("plane", 2, []), ("solid", 1, SOLID), ("solid", 2, SOLID)):
+        name = f"{kind}, order {order}"
+        finished = {key: run(args, EDGE, out=f"edge_{kind}_{order}_{key}", overrides=[
+            f"mesh.order={order}", f"contact=[{{name: tip, {contact}}}]", *more, *(
+                ["probes.2.contact_force=tip.flanks.bottom"] if key == "list" else [])])
+            for key, contact in (("named", named), ("swapped", swapped), ("list", "surfaces: [bottom, flanks]"))}
+        probes = {key: done.summary()["probes"] for key, done in finished.items()}
+        check.near(f"{name}: thrust over that with the roles swapped in the scene",
+                   probes["named"]["thrust"] / probes["swapped"]["thrust"], 1, EXACT)
+        check.near(f"{name}: force on the edge", probes["named"]["on_edge"] / probes["named"]["down"], 1, EXACT)
+        check.near(f"{name}: force on the beam", probes["swapped"]["on_edge"] / probes["named"]["down"], -1, EXACT)
+        check.near(f"{name}: thrust of a list", probes["list"]["thrust"] / probes["swapped"]["thrust"], 1, 5 * ROLES)
+        check.holds(f"{name}: the first lines tell", "'flanks' has a sharp edge that stands on 'bottom'" in
+                    finished["named"].text and "stands on" not in finished["swapped"].text)
+    for name, overrides in (("kept", ["contact.0.roles=keep"]), ("gap", ["probes.2={name: g, gap: tip, at: [8, 0]}"])):
+        kept = run(args, EDGE, "-check", out=f"edge_{name}", overrides=overrides)
+        check.holds(f"roles stay: {name}", "stands on" not in kept.text)
+
+
 def parts():
     """Two parts of one body that share no nodes are partners like two bodies: what overlaps before any load is seen, and
     refused where it is too deep to be."""
@@ -387,7 +413,7 @@ def refusals():
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, refined, mirror, walls, keystone, joined, chamfer, ranks, refusals, override, friction, overlap, bumper, edges, knife, live, still, parts or "
+args = arguments(("case", "frame, refined, mirror, walls, keystone, joined, edge, chamfer, ranks, refusals, override, friction, overlap, bumper, edges, knife, live, still, parts or "
                               "tools"))
 check = Check()
 if args.case == "frame":
@@ -398,7 +424,7 @@ elif args.case == "mirror":
     mirror("node_to_surface")
     mirror("surface_to_surface")
 else:
-    {"walls": walls, "keystone": keystone, "joined": joined, "chamfer": chamfer, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
+    {"walls": walls, "keystone": keystone, "joined": joined, "edge": edge, "chamfer": chamfer, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
      "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "live": live, "parts": parts, "refined": refined, "still": still,
      "tools": tools}[args.case]()
 check.finish()
