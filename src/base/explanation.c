@@ -354,6 +354,13 @@ static const Explanation Warnings[] = {
    "An elastic edge or corner sinks into coarse faces by less than they can see: in surface to surface contact by up to "
    "a third of a face. The results are those of no contact.",
    "Finer faces on both sides there, or `formulation: node_to_surface` with the body of the edge as `slave`."},
+  {"B157",
+   {"forces across the edge are not to be trusted"},
+   "warning: a sharp edge of the master stands between the points of the slave",
+   "Contact is measured at points of the slave. The few of them that are behind the edge are pressed out along its "
+   "sides, so that the edge has a force across it that depends on where they lie.",
+   "Make the body of the edge the slave, list both as `surfaces`, or, under a rigid tool, refine the slave until its "
+   "faces are smaller than the dent, or round the edge of the tool."},
   {"B156",
    {"which no estimated error holds"},
    "warning: a zone of contact has few faces",

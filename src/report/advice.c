@@ -144,12 +144,26 @@ static double SlaveHangsOver(const RunFigures *figures, const PairFigures *pair,
   return 1;
 }
 
+/*@
+  AdviceMasterStands - says whether nodes of a pair's master stand in the slave by more than contact explains.
+
+  Not collective
+
+  Input Parameter:
+. pair - its figures
+@*/
+PetscBool AdviceMasterStands(const PairFigures *pair)
+{
+  return (PetscBool)(pair->master.over_h > ADVICE_STANDS &&
+                     pair->master.depth > ADVICE_STANDS_OVER * pair->quality.max_penetration);
+}
+
 static double MasterStandsIn(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   const NodeDepth *master = &pair->master;
 
   (void)figures;
-  if (master->over_h <= ADVICE_STANDS || master->depth <= ADVICE_STANDS_OVER * pair->quality.max_penetration) return 0;
+  if (!AdviceMasterStands(pair)) return 0;
   snprintf(
     text, ADVICE_TEXT,
     "%s: nodes of '%s' stand up to %.2g of a face deep between the slave's, displacements may be off by %.2g, and "

@@ -1,5 +1,6 @@
 /* Progress and warnings of a run on the terminal, see terminal.h. */
 #include "terminal.h"
+#include "advice.h"
 #include "endreport.h"
 #include "runlength.h"
 #include "units.h"
@@ -477,6 +478,27 @@ static void WarnCrossed(const RunFigures *figures, PetscBool met)
       (double)over_h);
 }
 
+/* The pair in which the edge of a wedge stands between the points of its slave; NULL: none. */
+static const PairFigures *PairOnWedge(const RunFigures *figures)
+{
+  for (int p = 0; p < figures->n_pairs; p++)
+    if (figures->pairs[p].master.wedge && AdviceMasterStands(&figures->pairs[p])) return &figures->pairs[p];
+  return NULL;
+}
+
+/* Warns of the edge of a wedge between the points of a slave: its force has the direction of chance. */
+static void WarnWedge(const RunFigures *figures)
+{
+  const PairFigures *pair = PairOnWedge(figures);
+
+  if (!pair) return;
+  fprintf(stderr,
+          "burnish: warning: contact '%s': a sharp edge of '%s' stands %.2g of a face deep between the points of '%s', "
+          "at (%.6g, %.6g, %.6g), and presses along its sides: forces across the edge are not to be trusted [B157]\n",
+          pair->name, pair->scene->master, (double)pair->master.over_h, pair->scene->slave, (double)pair->master.X[0],
+          (double)pair->master.X[1], (double)pair->master.X[2]);
+}
+
 /* Warns of penetrations of more than a face size, whose results are those of no contact. */
 static void WarnDeep(PetscReal deepest, PetscReal standing)
 {
@@ -578,7 +600,9 @@ static void PrintLast(Terminal terminal, const RunFigures *figures)
     printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n",
            (long long)report->cycles, (long long)report->cycles_cut, report->cycle);
   printf("%s%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status,
-         DampingShare(figures) > TERMINAL_LOST ? ", but damping took more than is stored" : "",
+         DampingShare(figures) > TERMINAL_LOST ? ", but damping took more than is stored"
+         : PairOnWedge(figures)                ? ", but a sharp edge stands in its slave"
+                                               : "",
          (long long)report->steps, (long long)report->steps_failed, (long long)report->steps_repeated,
          (long long)report->newton_iterations, DurationText((double)run->wall_s, text), terminal->directory);
   fflush(stdout);
@@ -615,6 +639,7 @@ PetscErrorCode TerminalEnd(Terminal terminal, const TerminalLast *last)
   PetscCall(WarnUnused());
   WarnDeep(last->deepest, last->standing);
   WarnCrossed(figures, last->met);
+  WarnWedge(figures);
   ProbeErrorsWarn(figures->errors);
   if (terminal->talks && counts->refined)
     printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts->refined,

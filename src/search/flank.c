@@ -461,33 +461,32 @@ static PetscReal Opposing(const Nearest *look, const Candidate *c)
   return cosine;
 }
 
-/* How far a sharp convex edge between two facets that both face the slave point stands on the slave there: 1 where none
-   of them lies on it, and the foot is within half a face of the edge. */
-static PetscReal EdgeStands(const Nearest *look, const Candidate *c, const Candidate *o)
+/* Is the slave point's foot within half a face of a sharp convex edge between two facets that both face it? 1 where it
+   is; fades up to a whole face. */
+static PetscReal NearEdge(const Nearest *look, const Candidate *c, const Candidate *o)
 {
-  const PetscReal stands = PetscCosReal(look->sharp), lies = PetscCosReal(FLANK_LIES * look->sharp);
-  PetscReal       cosine = 0, place[3];
-  FlankEdge       edge;
+  PetscReal cosine = 0, place[3];
+  FlankEdge edge;
 
   for (int d = 0; d < look->lists->dim; d++) cosine += c->normal[d] * o->normal[d];
-  if (cosine >= stands || !SharedEdge(look, c, o, &edge) || !edge.convex) return 0;
-  return SmoothStep((lies - PetscMax(Opposing(look, c), Opposing(look, o))) / (lies - stands)) *
-         (1 - SmoothStep(2 * FootToEdge(look, &edge, place) / look->size - 1));
+  if (cosine >= PetscCosReal(look->sharp) || !SharedEdge(look, c, o, &edge) || !edge.convex) return 0;
+  return 1 - SmoothStep(2 * FootToEdge(look, &edge, place) / look->size - 1);
 }
 
-/* Part of a slave point's area that takes part where an edge of the master stands on the slave. The edge's own terms
-   carry it, where both sides are slaves. A point of the slave that is just behind the edge would be pressed out along
-   one flank of it, square to that, with any force. */
+/* Part of a slave point's area that takes part beside a sharp edge of the master, where both sides are slaves. A point
+   behind the edge whose foot is on a flank that does not lie on the slave would be pressed out along that flank, square
+   to the slave, with any force. The edge's own terms hold the slave there. */
 static PetscReal RidgeShare(const Nearest *look, int facing, const int *found)
 {
-  PetscReal share = 1;
+  const PetscReal stands = PetscCosReal(look->sharp), lies = PetscCosReal(FLANK_LIES * look->sharp);
+  const PetscReal off  = SmoothStep((lies - Opposing(look, &look->candidates[look->best])) / (lies - stands));
+  PetscReal       near = 0;
 
-  if (!look->two_sided || Opposing(look, &look->candidates[look->best]) >= PetscCosReal(FLANK_LIES * look->sharp))
-    return share;
+  if (!look->two_sided || off == 0) return 1;
   for (int i = 0; i < facing; i++)
     for (int k = 0; k < i; k++)
-      share = PetscMin(share, 1 - EdgeStands(look, &look->candidates[found[i]], &look->candidates[found[k]]));
-  return share;
+      near = PetscMax(near, NearEdge(look, &look->candidates[found[i]], &look->candidates[found[k]]));
+  return 1 - off * near;
 }
 
 /* Marks the points of the facets that do not face the slave point. */

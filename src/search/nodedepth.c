@@ -2,6 +2,7 @@
    for masters. */
 #include "search/nodedepth.h"
 #include "searchimpl.h"
+#include "base/vectors.h"
 
 /* A node stands in a face if it is not deeper than this many sizes of the face. The search for masters reaches as far.
    What is deeper may be on the other side of a thin body. */
@@ -11,6 +12,9 @@
 /* A foot counts as on a face up to this part of the face's size past a free edge: the ends of two surfaces that are as
    wide as each other lie over each other up to their motion by round-off and small strains. */
 #define DEPTH_ON_FACE 1e-3
+
+/* Faces on the edge of a wedge are more than a right angle apart: cosine of their normals, less round-off. */
+#define DEPTH_WEDGE (-1e-3)
 
 struct _n_NodeDepths {
   Mesh           mesh;
@@ -312,6 +316,55 @@ static PetscErrorCode MeasureNodes(NodeDepths depths, NeighbourLists lists, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Unit normal of a face of the master in the reference configuration, if the node of a tag is one of its own. */
+static PetscBool NormalAtTag(NodeDepths depths, PetscInt f, PetscInt tag, PetscReal normal[3])
+{
+  const Facet     *face  = &depths->master->faces[f];
+  const MeshRigid *rigid = depths->master->rigid;
+  const PetscInt  *tags  = rigid ? rigid->node_tag : depths->mesh->node_tag;
+  const PetscReal *X     = rigid ? rigid->coords : depths->mesh->coords;
+  const int        dim   = depths->mesh->dim;
+  PetscReal        x[FACE_MAX_NODES * 3];
+  PetscBool        has    = PETSC_FALSE;
+  Candidate        middle = {.facet = *face};
+
+  for (int a = 0; a < ElementGet(face->type)->nodes; a++) {
+    has = (PetscBool)(has || tags[face->nodes[a]] == tag);
+    for (int d = 0; d < dim; d++) x[a * dim + d] = X[face->nodes[a] * dim + d];
+  }
+  if (!has) return PETSC_FALSE;
+  CandidatePlace(dim, x, 0, &middle);
+  for (int d = 0; d < 3; d++) normal[d] = d < dim ? middle.normal[d] : 0;
+  return PETSC_TRUE;
+}
+
+/* Says whether two faces of the master around a node are those of a wedge. */
+static PetscErrorCode FindWedge(NodeDepths depths, PetscInt tag, PetscBool *wedge)
+{
+  const MPI_Comm comm = depths->mesh->comm;
+  PetscMPIInt    n    = 0, rank, size, all, *count, *start;
+  PetscReal     *own, *normal;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc3(3 * depths->master->n_faces, &own, size, &count, size + 1, &start));
+  for (PetscInt f = 0; f < depths->master->n_faces && !(depths->master->rigid && rank); f++)
+    n += NormalAtTag(depths, f, tag, &own[n]) ? 3 : 0; /* a tool has all its faces on every rank */
+  PetscCallMPI(MPI_Allgather(&n, 1, MPI_INT, count, 1, MPI_INT, comm));
+  start[0] = 0;
+  for (PetscMPIInt r = 0; r < size; r++) start[r + 1] = start[r] + count[r];
+  all = start[size];
+  PetscCall(PetscMalloc1(all, &normal));
+  PetscCallMPI(MPI_Allgatherv(own, n, MPIU_REAL, normal, count, start, MPIU_REAL, comm));
+  *wedge = PETSC_FALSE;
+  for (PetscMPIInt i = 0; i < all; i += 3)
+    for (PetscMPIInt k = 0; k < i; k += 3) *wedge = (PetscBool)(*wedge || Dot(&normal[i], &normal[k]) < DEPTH_WEDGE);
+  PetscCall(PetscFree(normal));
+  PetscCall(PetscFree3(own, count, start));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Completes the figures over all ranks. Of nodes whose depths differ by round-off it names the one of lowest tag. */
 static PetscErrorCode Deepest(NodeDepths depths, PetscInt n, const DepthNode *nodes, const PetscReal *depth,
                               NodeDepth *deepest)
@@ -342,6 +395,7 @@ static PetscErrorCode Deepest(NodeDepths depths, PetscInt n, const DepthNode *no
     for (int d = 0; rigid && d < mesh->dim; d++) X[d] = rigid->coords[at * mesh->dim + d] + mesh->centre[d];
   }
   PetscCallMPI(MPI_Allreduce(X, deepest->X, 3, MPIU_REAL, MPIU_MAX, mesh->comm));
+  PetscCall(FindWedge(depths, deepest->tag, &deepest->wedge));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -16,6 +16,7 @@ typedef struct {
   PetscReal over_h; /* largest depth over the size of the slave face that is stood in */
   PetscInt  tag;    /* gmsh's tag of the deepest node, -1: none */
   PetscReal X[3];   /* its reference coordinates */
+  PetscBool wedge;  /* it is on an edge of less than 90 degrees between faces of the master */
 } NodeDepth;
 
 PetscErrorCode NodeDepthsCreate(Mesh, Scene, Loads, ContactSurface slave, ContactSurface master, int n_images,

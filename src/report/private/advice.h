@@ -30,4 +30,5 @@ typedef void (*AdvicePrintFn)(const char *line, void *context);
 
 void AdviceCollect(const RunFigures *, Advice *);
 void AdviceGive(const RunFigures *, AdvicePrintFn print, void *context);
+PetscBool AdviceMasterStands(const PairFigures *);
 void AdviceTry(const RunFigures *, AdvicePrintFn print, void *context);
