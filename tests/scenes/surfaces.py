@@ -8,6 +8,9 @@ CHAMFERED, KEYSTONE = SCENES / "chamfered_block.yaml", SCENES.parent / "jobs/key
 SHRINK, BUMPER = SCENES.parent / "jobs/shrink_fit.yaml", SCENES / "jounce_bumper.yaml"
 SIDES = 4e-3  # of a force of friction: between a list and one role of slave and master, whose points differ
 BEAMS, BLOCK, BLADE = SCENES / "crossed_beams.yaml", SCENES / "patch.yaml", SCENES / "knife.yaml"
+LID = SCENES / "lid_on_wall.yaml"
+LID_WEIGHT = 1e-2  # measured 4.4e-3 and 1.6e-3 of the force
+LID_SIDE = 8e-3  # measured 1e-3 and 5.2e-3; 2.5e-2 where points behind the edges press, and the run ends
 EDGE, SOLID = SCENES / "beam_on_edge.yaml", ["mesh.parameters.solid=1", "mesh.parameters.n=20", "geometry=solid",
                                              "supports=[{surface: clamp, ux: 0, uy: 0, uz: 0}]",
                                              "loads=[{surface: base, ux: 0, uy: 1, uz: 0}]"]
@@ -18,6 +21,7 @@ DISCS = SCENES / "two_parts.yaml"
 PARTS = 1e-2  # of a force: between one and both roles of slave and master on a coarse mesh
 PAD = SCENES / "pad_between_tools.yaml"
 BUMPER_SPREAD = 5e-3  # of its force: the two formulations on its coarse mesh
+MEAN_PENALTY = 1e-5  # of a force: penalties are those of all listed faces in the mean; measured 2e-6
 EXACT = 1e-6  # forces and pressures of the same problem written in another way
 SMOOTHED = 1e-3  # the smooth surface of a bent tip of four faces is not its faces: forces, and the largest pressure
 SMOOTHED_FORCE = 1e-7  # and of one of sixteen faces; measured 1.1e-9
@@ -305,6 +309,12 @@ def edge():
         check.near(f"{name}: thrust of a list", probes["list"]["thrust"] / probes["swapped"]["thrust"], 1, 5 * ROLES)
         check.holds(f"{name}: the first lines tell", "'flanks' has a sharp edge that stands on 'bottom'" in
                     finished["named"].text and "stands on" not in finished["swapped"].text)
+    for order in (1, 2):
+        lid = {name: run(args, LID, out=f"lid_{name}_{order}", overrides=[f"mesh.order={order}", f"contact=[{{name: any, {how}}}]"])
+               .summary()["probes"] for name, how in (("all", "surfaces: all"), ("wall", "slave: wall_sides, master: under"))}
+        check.near(f"lid on a wall, order {order}: weight", lid["all"]["fy"] / lid["wall"]["fy"], 1, LID_WEIGHT)
+        check.near(f"lid on a wall, order {order}: side force over weight",
+                   (lid["all"]["fx"] - lid["wall"]["fx"]) / lid["wall"]["fy"], 0, LID_SIDE)
     for name, overrides in (("kept", ["contact.0.roles=keep"]), ("gap", ["probes.2={name: g, gap: tip, at: [8, 0]}"])):
         kept = run(args, EDGE, "-check", out=f"edge_{name}", overrides=overrides)
         check.holds(f"roles stay: {name}", "stands on" not in kept.text)
@@ -359,7 +369,7 @@ def joined():
                 for name, contact in lists.items()}
     thrust = {name: done.summary()["probes"]["thrust"] for name, done in finished.items()}
     for name in ("two", "three"):
-        check.near(f"joined, {name}: thrust as of all sides", thrust[name] / thrust["all"], 1, EXACT)
+        check.near(f"joined, {name}: thrust as of all sides", thrust[name] / thrust["all"], 1, MEAN_PENALTY)
     check.near("joined, excluded: thrust as of the flanks alone", thrust["excluded"] / thrust["group"], 1, ROLES)
     check.holds("joined: the first lines name the surfaces",
                 "'left_flank', 'bottom', 'right_flank' meet at sharp edges" in finished["three"].text)
