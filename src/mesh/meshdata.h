@@ -33,7 +33,7 @@ typedef struct {
 typedef struct {
   char        *name;
   PetscInt     n_nodes, n_faces, n_given; /* n_given: faces in the file, some of which may be divided */
-  PetscReal   *coords; /* n_nodes*dim, relative to mesh->centre */
+  PetscReal   *coords;                    /* n_nodes*dim, relative to mesh->centre */
   PetscInt    *node_tag;
   ElementType *face_type;
   PetscInt    *face_ptr, *face_nodes, *face_tag; /* CSR */

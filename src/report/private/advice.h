@@ -28,7 +28,7 @@ typedef struct {
 
 typedef void (*AdvicePrintFn)(const char *line, void *context);
 
-void AdviceCollect(const RunFigures *, Advice *);
-void AdviceGive(const RunFigures *, AdvicePrintFn print, void *context);
+void      AdviceCollect(const RunFigures *, Advice *);
+void      AdviceGive(const RunFigures *, AdvicePrintFn print, void *context);
 PetscBool AdviceMasterStands(const PairFigures *);
-void AdviceTry(const RunFigures *, AdvicePrintFn print, void *context);
+void      AdviceTry(const RunFigures *, AdvicePrintFn print, void *context);
