@@ -16,22 +16,13 @@ typedef struct {
   PetscBool  *sharp;    /* [n_groups * n_groups], symmetric: they are sides of a sharp edge */
 } JoinList;
 
-static int CompareSides(const void *a, const void *b)
-{
-  const NodeSide *s = a, *t = b;
-
-  if (s->id != t->id) return s->id < t->id ? -1 : 1;
-  return (s->group > t->group) - (s->group < t->group);
-}
-
 /* Adds up the sides of each node and group. */
 static void SumSides(PetscInt *n, NodeSide *sides)
 {
   PetscInt sums = 0;
 
-  if (*n) qsort(sides, (size_t)*n, sizeof(NodeSide), CompareSides);
   for (PetscInt i = 0; i < *n; i++) {
-    if (!sums || CompareSides(&sides[sums - 1], &sides[i]) != 0) {
+    if (!sums || sides[sums - 1].id != sides[i].id || sides[sums - 1].group != sides[i].group) {
       sides[sums++] = sides[i];
       continue;
     }

@@ -1,7 +1,7 @@
 /* Roles of slave and master by the edges of both, see sliceroles.h. */
 #include "sliceroles.h"
 #include "slicesides.h"
-#include "base/exchange.h"
+#include "base/gathertable.h"
 #include "base/vectors.h"
 #include "mesh/meshgroup.h"
 #include "scene/sceneroles.h"
@@ -18,17 +18,12 @@ typedef struct {
   PetscReal X[3], normal[2][3];
 } WedgeNode;
 
+enum { WEDGE_COLUMNS = sizeof(WedgeNode) / sizeof(PetscReal) };
+
 /* The face nearest to the node of a wedge: distance of their centres (length), and its unit normal. */
 typedef struct {
   PetscReal distance, normal[3];
 } NearFace;
-
-static int CompareIds(const void *a, const void *b)
-{
-  const NodeSide *s = a, *t = b;
-
-  return (s->id > t->id) - (s->id < t->id);
-}
 
 /* Finds the sides of a node that differ most, if they are those of a convex wedge. */
 static PetscBool FindWedge(PetscInt n, const NodeSide sides[], WedgeNode *wedge)
@@ -50,28 +45,18 @@ static PetscBool FindWedge(PetscInt n, const NodeSide sides[], WedgeNode *wedge)
   return (PetscBool)(least < ROLES_WEDGE);
 }
 
-static void PackWedge(const void *context, PetscInt i, void *packed)
+/* Finds the nodes on wedges of a group, all of them on every rank: rows that are WedgeNode. */
+static PetscErrorCode GatherWedges(const SliceMesh *slice, const Mesh mesh, int group, GatherTable *wedges)
 {
-  const WedgeNode *const *wedges = context; /* the first one, and the one behind the last */
-
-  *(WedgeNode *)packed = wedges[0][i % (wedges[1] - wedges[0])];
-}
-
-/* Finds the nodes on wedges of a group, all of them on every rank. wedges: to be freed with PetscFree() */
-static PetscErrorCode GatherWedges(const SliceMesh *slice, const Mesh mesh, int group, PetscInt *n, WedgeNode **wedges)
-{
-  PetscInt         n_sides, n_own = 0;
-  PetscBool       *groups;
-  PetscMPIInt     *to;
-  NodeSide        *sides;
-  WedgeNode       *own;
-  const WedgeNode *range[2];
+  PetscInt   n_sides, n_own = 0;
+  PetscBool *groups;
+  NodeSide  *sides;
+  WedgeNode *own;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_groups, &groups));
   groups[group] = PETSC_TRUE;
   PetscCall(SliceSidesGather(slice, groups, &n_sides, &sides));
-  if (n_sides) qsort(sides, (size_t)n_sides, sizeof(NodeSide), CompareIds);
   PetscCall(PetscMalloc1(n_sides, &own));
   for (PetscInt i = 0, same; i < n_sides; i += same) {
     const PetscInt home = sides[i].id - slice->home_start[slice->rank];
@@ -81,16 +66,10 @@ static PetscErrorCode GatherWedges(const SliceMesh *slice, const Mesh mesh, int 
     for (int d = 0; d < 3; d++) own[n_own].X[d] = slice->gmsh.coords[3 * slice->home[home] + d];
     n_own++;
   }
-  PetscCall(PetscMalloc1(n_own * slice->size, &to));
-  for (PetscInt i = 0; i < n_own * slice->size; i++) to[i] = (PetscMPIInt)(i / n_own);
-  range[0] = own;
-  range[1] = own + n_own;
-  PetscCall(
-    ExchangeRecords(slice->comm, sizeof(WedgeNode), n_own * slice->size, to, PackWedge, range, n, (void **)wedges));
+  PetscCall(GatherTableCreate(slice->comm, WEDGE_COLUMNS, n_own, (const PetscReal *)own, wedges));
   PetscCall(PetscFree(groups));
   PetscCall(PetscFree(sides));
   PetscCall(PetscFree(own));
-  PetscCall(PetscFree(to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,9 +90,9 @@ static PetscErrorCode FindNearest(const SliceMesh *slice, int group, PetscInt n,
     for (PetscInt i = 0; i < n; i++) {
       const PetscReal distance = Distance(centre, wedges[i].X);
 
-      if (distance >= near[i].distance) continue;
+      if (distance > near[i].distance) continue;
+      for (int d = 0; d < 3; d++) near[i].normal[d] = normal[d] + (distance < near[i].distance ? 0 : near[i].normal[d]);
       near[i].distance = distance;
-      for (int d = 0; d < 3; d++) near[i].normal[d] = normal[d];
     }
   }
   for (PetscInt i = 0; i < n; i++) least[i] = near[i].distance;
@@ -145,24 +124,25 @@ static PetscBool Stands(const WedgeNode *wedge, const NearFace *face)
 /* Says whether some edge of a wedge of a group stands on the nearest face of another group. */
 static PetscErrorCode HasStanding(const SliceMesh *slice, const Mesh mesh, int group, int on, PetscBool *stands)
 {
-  PetscInt   n;
-  WedgeNode *wedges;
-  NearFace  *near;
+  GatherTable      table;
+  const WedgeNode *wedges;
+  NearFace        *near;
 
   PetscFunctionBeginUser;
   *stands = PETSC_FALSE;
-  PetscCall(GatherWedges(slice, mesh, group, &n, &wedges));
-  PetscCall(PetscMalloc1(n, &near));
-  if (n) PetscCall(FindNearest(slice, on, n, wedges, near));
-  for (PetscInt i = 0; i < n; i++) *stands = (PetscBool)(*stands || Stands(&wedges[i], &near[i]));
+  PetscCall(GatherWedges(slice, mesh, group, &table));
+  wedges = (const WedgeNode *)table.row;
+  PetscCall(PetscMalloc1(table.n, &near));
+  if (table.n) PetscCall(FindNearest(slice, on, table.n, wedges, near));
+  for (PetscInt i = 0; i < table.n; i++) *stands = (PetscBool)(*stands || Stands(&wedges[i], &near[i]));
   PetscCall(PetscFree(near));
-  PetscCall(PetscFree(wedges));
+  PetscCall(GatherTableDestroy(&table));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
   SliceRolesChoose - swaps slave and master of the pairs whose master has a sharp edge that stands on the slave, and
-whose slave has none that stands on the master.
+  whose slave has none that stands on the master.
 
   Collective
 

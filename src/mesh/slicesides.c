@@ -49,6 +49,20 @@ static int FaceSides(const SliceMesh *slice, const SliceFace *face, NodeSide *si
   return of_face->nodes;
 }
 
+/* Orders records by nodes and groups, and those of one node and group by the rest, whatever rank they came from. */
+static int CompareSides(const void *a, const void *b)
+{
+  const NodeSide *s = a, *t = b;
+
+  if (s->id != t->id) return s->id < t->id ? -1 : 1;
+  if (s->group != t->group) return s->group < t->group ? -1 : 1;
+  for (int d = 0; d < 3; d++)
+    if (s->normal[d] != t->normal[d]) return s->normal[d] < t->normal[d] ? -1 : 1;
+  for (int d = 0; d < 3; d++)
+    if (s->way[d] != t->way[d]) return s->way[d] < t->way[d] ? -1 : 1;
+  return 0;
+}
+
 static void PackSide(const void *context, PetscInt i, void *packed)
 {
   *(NodeSide *)packed = ((const NodeSide *)context)[i];
@@ -65,7 +79,7 @@ static void PackSide(const void *context, PetscInt i, void *packed)
 
   Output Parameters:
 + n     - number of records whose nodes have their home here
-- sides - the records, to be freed with PetscFree()
+- sides - the records, to be freed with PetscFree(); by node and group, in the same order on any number of ranks
 @*/
 PetscErrorCode SliceSidesGather(const SliceMesh *slice, const PetscBool *groups, PetscInt *n, NodeSide **sides)
 {
@@ -82,6 +96,7 @@ PetscErrorCode SliceSidesGather(const SliceMesh *slice, const PetscBool *groups,
     if (groups[slice->faces[f].group]) n_own += FaceSides(slice, &slice->faces[f], &own[n_own]);
   for (PetscInt i = 0; i < n_own; i++) to[i] = SliceMeshRankOf(slice, slice->home_start, own[i].id);
   PetscCall(ExchangeRecords(slice->comm, sizeof(NodeSide), n_own, to, PackSide, own, n, (void **)sides));
+  if (*n) qsort(*sides, (size_t)*n, sizeof(NodeSide), CompareSides);
   PetscCall(PetscFree(own));
   PetscCall(PetscFree(to));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,7 +1,7 @@
 /* What nodes know of the faces of groups around them, before distribution.
 
-   SliceSidesGather() brings it to the homes of the nodes, one record for each node of each face. SliceFaceNormal()
-   gives centre and normal of a face. */
+   SliceSidesGather() brings it to the homes of the nodes, one record for each node of each face, in the same order on
+   any number of ranks. SliceFaceNormal() gives centre and normal of a face. */
 #pragma once
 #include "slicemesh.h"
 
