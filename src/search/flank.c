@@ -478,11 +478,13 @@ static PetscReal NearEdge(const Nearest *look, const Candidate *c, const Candida
    to the slave, with any force. The edge's own terms hold the slave there. */
 static PetscReal RidgeShare(const Nearest *look, int facing, const int *found)
 {
-  const PetscReal stands = PetscCosReal(look->sharp), lies = PetscCosReal(FLANK_LIES * look->sharp);
-  const PetscReal off  = SmoothStep((lies - Opposing(look, &look->candidates[look->best])) / (lies - stands));
-  PetscReal       near = 0;
+  PetscReal stands, lies, off, near = 0;
 
-  if (!look->two_sided || off == 0) return 1;
+  if (!look->two_sided) return 1;
+  stands = PetscCosReal(look->sharp);
+  lies   = PetscCosReal(FLANK_LIES * look->sharp);
+  off    = SmoothStep((lies - Opposing(look, &look->candidates[look->best])) / (lies - stands));
+  if (off == 0) return 1;
   for (int i = 0; i < facing; i++)
     for (int k = 0; k < i; k++)
       near = PetscMax(near, NearEdge(look, &look->candidates[found[i]], &look->candidates[found[k]]));

@@ -2,6 +2,7 @@
    for masters. */
 #include "search/nodedepth.h"
 #include "searchimpl.h"
+#include "base/gathertable.h"
 #include "base/vectors.h"
 
 /* A node stands in a face if it is not deeper than this many sizes of the face. The search for masters reaches as far.
@@ -341,27 +342,24 @@ static PetscBool NormalAtTag(NodeDepths depths, PetscInt f, PetscInt tag, PetscR
 /* Says whether two faces of the master around a node are those of a wedge. */
 static PetscErrorCode FindWedge(NodeDepths depths, PetscInt tag, PetscBool *wedge)
 {
-  const MPI_Comm comm = depths->mesh->comm;
-  PetscMPIInt    n    = 0, rank, size, all, *count, *start;
-  PetscReal     *own, *normal;
+  const ContactSurface master = depths->master;
+  PetscMPIInt          rank;
+  PetscInt             n = 0;
+  PetscReal           *own;
+  GatherTable          normals;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMalloc3(3 * depths->master->n_faces, &own, size, &count, size + 1, &start));
-  for (PetscInt f = 0; f < depths->master->n_faces && !(depths->master->rigid && rank); f++)
-    n += NormalAtTag(depths, f, tag, &own[n]) ? 3 : 0; /* a tool has all its faces on every rank */
-  PetscCallMPI(MPI_Allgather(&n, 1, MPI_INT, count, 1, MPI_INT, comm));
-  start[0] = 0;
-  for (PetscMPIInt r = 0; r < size; r++) start[r + 1] = start[r] + count[r];
-  all = start[size];
-  PetscCall(PetscMalloc1(all, &normal));
-  PetscCallMPI(MPI_Allgatherv(own, n, MPIU_REAL, normal, count, start, MPIU_REAL, comm));
   *wedge = PETSC_FALSE;
-  for (PetscMPIInt i = 0; i < all; i += 3)
-    for (PetscMPIInt k = 0; k < i; k += 3) *wedge = (PetscBool)(*wedge || Dot(&normal[i], &normal[k]) < DEPTH_WEDGE);
-  PetscCall(PetscFree(normal));
-  PetscCall(PetscFree3(own, count, start));
+  PetscCallMPI(MPI_Comm_rank(depths->mesh->comm, &rank));
+  PetscCall(PetscMalloc1(3 * master->n_faces, &own));
+  for (PetscInt f = 0; f < master->n_faces && !(master->rigid && rank); f++)
+    n += NormalAtTag(depths, f, tag, &own[3 * n]); /* a tool has all its faces on every rank */
+  PetscCall(GatherTableCreate(depths->mesh->comm, 3, n, own, &normals));
+  for (PetscInt i = 0; i < normals.n; i++)
+    for (PetscInt k = 0; k < i; k++)
+      *wedge = (PetscBool)(*wedge || Dot(&normals.row[3 * i], &normals.row[3 * k]) < DEPTH_WEDGE);
+  PetscCall(GatherTableDestroy(&normals));
+  PetscCall(PetscFree(own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
