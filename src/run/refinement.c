@@ -64,7 +64,7 @@ typedef struct {
   PetscBool     even;       /* all elements of the next mesh are smaller by the same factor */
   PetscReal    *size;       /* wanted of the next mesh at each local cell of the last one */
   int           n_meshing, n_edits;
-  char        **edit;             /* of each density, or of the file of sizes; of the order; of the penalty of each pair */
+  char        **edit;             /* of each density, or of the file of sizes; of the order; of each entry's penalty */
   PetscBool     tries_order;      /* the next mesh has elements of second order in the place of those of the last one */
   PetscBool     chooses, may_try; /* the order is for the run to choose; it has not tried the second one yet */
   double        wanted;           /* cells that the sizes of the next mesh should give; 0: not by sizes */
@@ -75,7 +75,7 @@ typedef struct {
   SolvedMesh   *mesh;
   double        cpu_s; /* spent before the present mesh */
   PetscMPIInt   rank;
-  const char   *why; /* it ends without the accuracy */
+  const char   *why;         /* it ends without the accuracy */
   char          reason[256]; /* what that may point to */
 } Refinement;
 
@@ -146,6 +146,12 @@ static PetscReal WantedMeshError(const Refinement *r)
   return REFINEMENT_AIM * PetscMax(allowed - OtherError(mesh), REFINEMENT_LEAST_SHARE * allowed);
 }
 
+/* Number of the entry of the scene that a pair stands for. How many pairs a list has may differ from mesh to mesh. */
+static int EntryOf(const SceneContact *pair)
+{
+  return atoi(strrchr(pair->path, '.') + 1);
+}
+
 /* Makes room, and finds out how the mesh can be refined. */
 static PetscErrorCode Begin(Run *run, const RunInput *input, Refinement *r)
 {
@@ -173,7 +179,8 @@ static PetscErrorCode Begin(Run *run, const RunInput *input, Refinement *r)
                           "accuracy.densities",
                           SceneWhere(run->scene, "accuracy", NULL), run->scene->mesh_file));
   r->n_meshing = r->structured ? r->n_densities : 1;
-  r->n_edits   = r->n_meshing + 1 + run->scene->n_contacts;
+  r->n_edits   = r->n_meshing + 1;
+  if (run->scene->n_contacts) r->n_edits += EntryOf(&run->scene->contacts[run->scene->n_contacts - 1]) + 1;
   r->chooses = r->may_try = (PetscBool)(run->scene->order_chosen && r->order == 1);
   r->cells                = run->mesh->n_cells_global;
   PetscCall(PetscCalloc1(r->n_edits, &r->edit));
@@ -510,13 +517,14 @@ static void WhyOther(Refinement *r)
 
   for (int c = ERROR_SLIP; c < ERROR_CAUSES; c++)
     if (PetscAbsReal(KnownPart(error, (ErrorCause)c)) > PetscAbsReal(KnownPart(error, worst))) worst = (ErrorCause)c;
-  snprintf(r->reason, sizeof(r->reason), "%.3g %% of error come from %s and not from the mesh%s",
-           100 * (double)PetscAbsReal(KnownPart(error, worst) / Last(r)->value), ErrorCauses[worst],
-           worst != ERROR_PENETRATION ? ""
-           : PenaltyStays(r->run->model)
-             ? ", which stiffer penalties have hardly lowered: surfaces have to overlap, as where a body that keeps its "
-               "volume has no room"
-             : ": penalties that the run may not make stiffer, or not any more");
+  snprintf(
+    r->reason, sizeof(r->reason), "%.3g %% of error come from %s and not from the mesh%s",
+    100 * (double)PetscAbsReal(KnownPart(error, worst) / Last(r)->value), ErrorCauses[worst],
+    worst != ERROR_PENETRATION ? ""
+    : PenaltyStays(r->run->model)
+      ? ", which stiffer penalties have hardly lowered: surfaces have to overlap, as where a body that keeps its "
+        "volume has no room"
+      : ": penalties that the run may not make stiffer, or not any more");
   r->why = r->reason;
 }
 
@@ -600,10 +608,12 @@ static PetscErrorCode EditPenalty(const Refinement *r, const SceneContact *scene
 /* Makes the edits of the scene that give the next mesh. */
 static PetscErrorCode Edit(Refinement *r, double factor)
 {
-  RunInput *input = &r->input;
-  int       n     = r->n_given;
-  char    **set;
-  char      value[MESH_DENSITY_TEXT];
+  const SceneContact *pair     = r->run->scene->contacts;
+  const int           contacts = r->run->scene->n_contacts;
+  RunInput           *input    = &r->input;
+  int                 n        = r->n_given;
+  char              **set;
+  char                value[MESH_DENSITY_TEXT];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(r->n_given + r->n_edits, &set));
@@ -616,8 +626,7 @@ static PetscErrorCode Edit(Refinement *r, double factor)
   }
   if (!r->structured && !r->tries_order) PetscCall(EditSizes(r));
   if (r->chooses) PetscCall(PetscSNPrintf(r->edit[r->n_meshing], EDIT_LENGTH, "mesh.order=%d", r->order));
-  for (int i = 0; i < r->run->scene->n_contacts; i++)
-    PetscCall(EditPenalty(r, &r->run->scene->contacts[i], r->edit[r->n_meshing + 1 + i]));
+  for (int i = 0; i < contacts; i++) PetscCall(EditPenalty(r, &pair[i], r->edit[r->n_meshing + 1 + EntryOf(&pair[i])]));
   for (int i = 0; i < r->n_edits; i++)
     if (r->edit[i][0]) set[n++] = r->edit[i];
   if (input->n_set > r->n_given) PetscCall(PetscFree(input->set));
