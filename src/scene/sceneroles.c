@@ -13,7 +13,7 @@
 
   Note:
   They stay where the scene says so, where the master is no surface of a body, and where something else names a place on
-  the slave: a probe of its gap, a single reference plane, a fluid between the surfaces.
+  the slave: a probe of its gap or of some of its nodes, a single reference plane, a fluid between the surfaces.
 @*/
 PetscBool SceneMaySwapRoles(Scene scene, const SceneContact *pair)
 {
@@ -21,8 +21,11 @@ PetscBool SceneMaySwapRoles(Scene scene, const SceneContact *pair)
     return PETSC_FALSE;
   for (int b = 0; b < scene->n_bodies; b++)
     if (scene->bodies[b].rigid && !strcmp(scene->bodies[b].name, pair->master)) return PETSC_FALSE;
-  for (int p = 0; p < scene->n_probes; p++)
-    if (scene->probes[p].kind == PROBE_GAP && !strcmp(scene->probes[p].target, pair->name)) return PETSC_FALSE;
+  for (int p = 0; p < scene->n_probes; p++) {
+    const SceneProbe *probe = &scene->probes[p];
+
+    if ((probe->kind == PROBE_GAP || probe->has_at) && !strcmp(probe->target, pair->name)) return PETSC_FALSE;
+  }
   return PETSC_TRUE;
 }
 

@@ -263,7 +263,7 @@ const SchemaKey SchemaKeys[] = {
   MOTION_KEYS("contact.*.master.plane|cylinder|sphere"),
   {"contact.*.roles", CHOICE, .values = "auto | keep", .preset = "auto",
    .help = "auto: where the master is a body with an edge sharper than 90 degrees that stands on the slave at the start, "
-           "and no probe asks for the slave's gap, slave and master are taken the other way round; keep: they stay"},
+           "and no probe asks for a place on the slave, slave and master are taken the other way round; keep: they stay"},
   {"contact.*.master_normal", CHOICE, .values = "auto | flip | keep", .preset = "auto",
    .help = "side of a meshed rigid master on which the slave is; auto: where the slave starts; flip: against the "
            "normals of the mesh; keep: along them"},
