@@ -1,4 +1,4 @@
-"""CPU seconds of Burnish over those of CalculiX at equal accuracy: eight scenes, each with several meshes and numbers
+"""CPU seconds of Burnish over those of CalculiX at equal accuracy: ten scenes, each with several meshes and numbers
 of steps in either code, one after the other in one run. Of each code the table takes the cheapest setting whose answer
 is within the bound of the scene's reference. Scenes that a code does not finish within it are listed and not counted.
     calculix_table.py [--burnish BINARY] [--ccx BINARY] [--repeats N] [--only SCENE ...] [--record FILE] [--print]

@@ -117,7 +117,7 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
 . error - of each; free them with QuantityErrorReset()
 
   Note:
-  The state stays as it is. One tangent is factored for all quantities, and solved with once for each.
+  The state stays as it is. One tangent serves all quantities, see ModelAdjoint().
 @*/
 PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional functional[], QuantityError error[])
 {

@@ -104,13 +104,13 @@ static double PenetrationIsDeep(const RunFigures *figures, const PairFigures *pa
   return (double)(error / ADVICE_PENALTY_WANTED);
 }
 
-/* Forces follow the penalty where bodies that keep their volume have no room: they overlap then, however stiff it is. */
+/* Forces follow the penalty where bodies that keep their volume have no room: they overlap then, stiff as it may be. */
 static double ForcesFollowPenalty(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   (void)figures;
   if (!pair->penalty_stays || !(pair->penalty_error.force > ADVICE_NO_ROOM)) return 0;
-  snprintf(text, ADVICE_TEXT, "%s: penetration leaves about %.2g %% of error, as forces grow with the penalty", pair->name,
-           (double)(100 * pair->penalty_error.force));
+  snprintf(text, ADVICE_TEXT, "%s: penetration leaves about %.2g %% of error, as forces grow with the penalty",
+           pair->name, (double)(100 * pair->penalty_error.force));
   return 1;
 }
 

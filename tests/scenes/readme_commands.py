@@ -149,7 +149,7 @@ FULL = {
     f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix_laws.csv",
     f"{PYTHON} scripts/calculix_table.py --repeats 1 --limit 150 --record runs/records/calculix_ratios.csv":
     printed("calculix_table", "calculix_ratios"),
-    f"{PYTHON} scripts/figures_table.py --record runs/records/figures.csv": printed("figures_table", "figures"),
+    f"{PYTHON} scripts/figures_table.py --repeats 8 --record runs/records/figures.csv": printed("figures_table", "figures"),
     f"{PYTHON} scripts/fit_rubber.py runs/rubber/treloar": None,
     f"{PYTHON} scripts/wish_table.py --record runs/records/wish.csv": printed("wish_table", "wish"),
     f"{PYTHON} scripts/deck_table.py --record runs/records/decks.csv": printed("deck_table", "decks"),

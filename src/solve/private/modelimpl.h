@@ -108,7 +108,7 @@ typedef struct _n_ModelWork {
 
   /* The last tangent */
   PetscInt  tangents;  /* made so far */
-  Vec       tangent_x; /* free displacements (length) at which it is the derivative of the residual; NULL: it need not be */
+  Vec       tangent_x; /* free displacements (length) where it is the derivative of the residual; NULL: unknown */
   PetscReal tangent_t; /* and its load parameter */
 
   /* The accepted state */
