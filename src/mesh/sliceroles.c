@@ -10,6 +10,8 @@
 /* Sides of a wedge are more than a right angle apart: cosine of their normals, less round-off of right-angled edges. */
 #define ROLES_WEDGE (-1e-3)
 
+/* A side that is square to the surface, but for round-off, does not face it: cosine of their normals. */
+#define ROLES_SQUARE 1e-3
 /* An edge stands on a surface where each of its sides is off that by more than this: cosine of 30 degrees. */
 #define ROLES_STANDS 0.866
 
@@ -116,7 +118,7 @@ static PetscBool Stands(const WedgeNode *wedge, const NearFace *face)
   for (int k = 0; k < 2; k++) {
     const PetscReal cosine = -Dot(wedge->normal[k], face->normal);
 
-    if (cosine <= 0 || cosine >= ROLES_STANDS) return PETSC_FALSE;
+    if (cosine <= ROLES_SQUARE || cosine >= ROLES_STANDS) return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }

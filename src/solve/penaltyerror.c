@@ -128,9 +128,10 @@ PetscBool ModelPenaltyStays(Model model, int pair)
   return (PetscBool)(model->work->stiffened_by[pair] < 0);
 }
 
-/* Makes a pair's penalties stiffer in the present state. */
+/* Makes a pair's penalties stiffer in the present state. The last tangent is not that of the new ones. */
 static PetscErrorCode StiffenPair(Model model, PenaltySource source, int p, PetscReal factor)
 {
+  PetscCall(VecDestroy(&model->work->tangent_x));
   return source == BY_SLIP ? ContactStiffenStick(model->contact, p, factor) : ContactStiffen(model->contact, p, factor);
 }
 
