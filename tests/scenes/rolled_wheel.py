@@ -29,9 +29,11 @@ check.holds("advice of a bound", len(lines) == 1, str(fixed.summary()["advice"])
 pressed = run(args, wheel, "-quiet", out="pressed", overrides=["stepping={control: fixed, initial: 0.1}",
                                                                "loads.0.ux=0", "loads.0.uy=-1"])
 surface = run(args, wheel, "-quiet", out="surface", overrides=["contact.0.formulation=surface_to_surface"])
-travel = surface.summary()["contact"][0]["friction"]["travel"]
-# 2.5469 in 200 steps of one length
-check.near("thrust, surface to surface", surface.steps()[-1]["thrust"], -2.547, max(travel, 0.005) * 2.547)
+contact = surface.summary()["contact"][0]
+# 2.5403, 2.5407 and 2.5399 in 100, 200 and 400 steps of one length with stiff penalties. With those of the run, what
+# they leave is told beside the travel.
+told = contact["friction"]["travel"] + contact["penalty"]["error_force"] + contact["friction"]["error_force"]
+check.near("thrust, surface to surface", surface.steps()[-1]["thrust"], -2.540, told * 2.540)
 check.holds("pressed alone: no travel", pressed.summary()["contact"][0]["friction"]["travel"] == 0)
 # Where a load begins, nodes that had next to no force leave as others come in: nothing has travelled.
 begun = run(args, SCENES.parent / "jobs/wedge_clamp.yaml", "-quiet", out="begun",
