@@ -19,13 +19,13 @@ from launch import ROOT, environment, read_records, table_parser
 
 COLUMNS = ("scene", "role", *compare_calculix.COLUMNS[1:], "spooles")
 SURFACE = ("contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface")
-THIN, OTHER = 0.1, 1 / 3  # asked of the ratio
+THIN, OTHER = 0.1, 1 / 3  # targets of the ratio
 
 
 @dataclasses.dataclass
 class Scene:
     """Settings of both codes, the reference, and how far from it answers may be (%)."""
-    asked: float
+    target: float
     bound: float
     settings: list
     reference: object  # a number, or a setting of Burnish
@@ -202,7 +202,7 @@ def measure(args):
 
 
 def print_table(rows):
-    print("| scene | code | setting | steps (failed) | iterations | CPU s | answer | error, % | ratio | asked | |")
+    print("| scene | code | setting | steps (failed) | iterations | CPU s | answer | error, % | ratio | target | |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for name, scene in SCENES.items():
         if not any(row["scene"] == name for row in rows):
@@ -222,7 +222,7 @@ def print_table(rows):
             end = "| | | |"
             if code == "burnish" and best["calculix"]:
                 ratio = cpu / best["calculix"][1]
-                end = f"| {ratio:.2g} | {scene.asked:.2g} | {'held' if ratio <= scene.asked else 'missed'} |"
+                end = f"| {ratio:.2g} | {scene.target:.2g} | {'held' if ratio <= scene.target else 'missed'} |"
             first = runs[0]
             print(f"{head} {first['setting']} | {first['steps']} ({first['steps_failed']}) | "
                   f"{first['iterations']} | {cpu:.2f}{equations} | {float(first['force']):.5g} | {error:+.2f} {end}")

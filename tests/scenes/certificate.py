@@ -14,6 +14,9 @@ check = Check()
 if args.case == "needle":
     film = run(args, SCENES / "film.yaml", out="film", must=2)
     check.holds("the needle is named", re.search(r"cannot be certified; contact 'prick': node \d+ ", film.text))
+    chosen = run(args, SCENES / "film.yaml", out="chosen", overrides=["contact.0.roles=auto"])
+    check.holds("with the roles of a run's own choice it is held", chosen.status == 0 and chosen.summary()["certified"],
+                chosen.text[-200:])
     swapped = run(args, SCENES / "film.yaml", out="swapped", must=2,
                   overrides=["contact.0.slave=flanks", "contact.0.master=top", "contact.0.penalty.scale=1e-3"])
     check.holds("so is one that the film does not resist", "cannot be certified" in swapped.text)
