@@ -1,6 +1,7 @@
 """How time and memory grow: scenes with contact, meshes from 1e4 unknowns on, 1 and 2 ranks, direct and iterative
 solver. Raw records of every run go to a CSV file; tables and a plot are made from there (make bench).
-    scaling.py [--burnish BINARY] [--large] [--largest] [--out DIR] [--record FILE [--add]] [CASE ...]     runs, prints, plots
+    scaling.py [--burnish BINARY] [--large] [--largest] [--out DIR] [--record FILE [--add]] [CASE ...]
+                                                                                     runs, prints and plots
     scaling.py --table FILE                                                          prints and plots only
 --large adds 3e5 unknowns, and 1e6 iterative; --largest the rings with 4e6 unknowns too, which take 16 GB and some 20
 minutes. A CASE is a part of a run's name: "ring_in_ring_3d 30 iterative"; --add
