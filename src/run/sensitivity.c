@@ -100,6 +100,16 @@ static PetscBool MovesMesh(const char *key)
   return (PetscBool)!strncmp(key, "mesh.", strlen("mesh."));
 }
 
+/* Have two scenes the same pairs? The mesh decides which surfaces are joined and which roles are swapped. */
+static PetscBool SamePairs(const Scene one, const Scene other)
+{
+  PetscBool same = (PetscBool)(one->n_contacts == other->n_contacts);
+
+  for (int i = 0; i < one->n_contacts && same; i++)
+    same = (PetscBool)!strcmp(one->contacts[i].slave, other->contacts[i].slave);
+  return same;
+}
+
 /* Makes a twin. */
 static PetscErrorCode TwinCreate(const Sensitivities *all, const char *key, PetscReal value, Twin *twin)
 {
@@ -115,6 +125,11 @@ static PetscErrorCode TwinCreate(const Sensitivities *all, const char *key, Pets
   if (MovesMesh(key) || all->input->restart) /* a restart does not keep the file that its checkpoint has */
     PetscCall(MeshGenerate(run->comm, twin->scene, "out", all->input->trust, file, &seconds));
   PetscCall(MeshCreate(run->comm, twin->scene, file, &twin->mesh));
+  if (!SamePairs(run->scene, twin->scene))
+    PetscCall(RefuseInput(run->comm,
+                          "%s: %s gives contact other pairs when it changes a little; allowed for a sensitivity: "
+                          "parameters that keep which surfaces are joined and which are slaves",
+                          SceneWhere(run->scene, "sensitivity", NULL), key));
   PetscCall(MeshCheckFormulations(twin->mesh, twin->scene));
   PetscCall(ModelCreate(twin->scene, twin->mesh, &twin->model));
   PetscCall(ProbesCreate(twin->model, twin->scene, &twin->probes));
