@@ -138,14 +138,6 @@ typedef struct {
   const SurfaceImage *mirrors;
 } ContactSides;
 
-/* Parts of the usual drift by which offsets may lag behind a solution. */
-typedef struct {
-  PetscReal term, mean; /* of each term; in the mean over the forces of a pair, PETSC_INFINITY: not asked for */
-} ContactLag;
-
-/* That of each term is the usual one. */
-#define CONTACT_USUAL_LAG ((ContactLag){1, PETSC_INFINITY})
-
 typedef struct _n_Contact *Contact;
 
 /* Life and state */
@@ -162,7 +154,7 @@ PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal
 PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
-                                ContactLag lag, PetscBool passing, PetscBool *hold);
+                                PetscReal lag, PetscBool passing, PetscBool *hold);
 PetscErrorCode ContactTakeOffsetsPart(Contact, PetscReal part, PetscBool *any);
 void           ContactForgetLost(Contact);
 void           ContactWatchOuter(Contact, PetscReal *outer);

@@ -624,7 +624,6 @@ typedef struct {
   PetscReal        drift, factor_drift; /* see TermAgrees() */
   PetscReal        area_drift;          /* part of a term's area by which factors that lag may change it */
   PetscReal        t;
-  PetscReal        change[2]; /* of closed terms: areas times what their gaps change by, and their forces */
 } Freshly;
 
 /* By how much the factor that fresh lists ask for at slave point q differs from the one in force, or as far as it is
@@ -689,7 +688,7 @@ static PetscBool PointHolds(const ContactPair *pair, const Freshly *fresh, Petsc
    leave it none: closed gaps are compared with the factors in force. Where all may lag, fresh fits may have other
    frames and points, since they say by how much the gap is wrong. depth is the largest penetration of the pair; where
    the pair is augmented and penetrations go to zero, the bound on them counts instead. */
-static PetscBool TermAgrees(const ContactPair *pair, PetscInt c, Freshly *fresh)
+static PetscBool TermAgrees(const ContactPair *pair, PetscInt c, const Freshly *fresh)
 {
   const PetscReal gap  = ContactTermGap(pair, fresh->factor, fresh->gaps, c, NULL),
                   same = ContactTermGap(pair, pair->factor, fresh->gaps, c, NULL),
@@ -708,10 +707,6 @@ static PetscBool TermAgrees(const ContactPair *pair, PetscInt c, Freshly *fresh)
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && holds; k++)
     if (fitted && old - rest < 0 && !fresh->lags) holds = PointHolds(pair, fresh, pair->term_point[k]);
   if (!holds) return PETSC_FALSE;
-  if (own > 0 && !PetscIsNanReal(same)) {
-    fresh->change[0] += pair->area[c] * PetscAbsReal(same - old);
-    fresh->change[1] += pair->area[c] * own;
-  }
   if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(same - old) <= tolerance);
   return (PetscBool)(!PetscIsNanReal(same) && (!PairDrifts(pair) || PetscAbsReal(same - old) <= drift));
 }
@@ -728,7 +723,7 @@ static PetscBool TermHasGap(const ContactPair *pair, PetscInt c, const PetscReal
 
 /* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. most: largest
    pressure of all pairs. */
-static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, ContactLag lag, PetscReal most,
+static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscReal lag, PetscReal most,
                                      PetscBool passing, PetscBool *agrees)
 {
   const PetscInt n = pair->next->n_slaves;
@@ -738,14 +733,14 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
                           .lags         = (PetscBool)(passing && pair->formulation.lags),
                           .factor       = pair->next_factor,
                           .factor_drift = CONTACT_FACTOR_AGREES,
-                          .area_drift   = PetscMin(lag.term, lag.mean) * CONTACT_OFFSET_AGREES,
+                          .area_drift   = lag * CONTACT_OFFSET_AGREES,
                           .t            = t};
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &fresh.depth, &fresh.pressure));
   fresh.pressure = PetscMax(fresh.pressure, CONTACT_PRESSURE_COUNTS * most);
-  fresh.drift    = PairDrifts(pair) ? lag.term * CONTACT_OFFSET_AGREES * fresh.pressure / pair->automatic : 0;
-  if (pair->friction) fresh.factor_drift = PetscMin(fresh.factor_drift, lag.term * CONTACT_OFFSET_AGREES);
+  fresh.drift    = PairDrifts(pair) ? lag * CONTACT_OFFSET_AGREES * fresh.pressure / pair->automatic : 0;
+  if (pair->friction) fresh.factor_drift = PetscMin(fresh.factor_drift, lag * CONTACT_OFFSET_AGREES);
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc2(n, &gaps, n, &factor));
   for (PetscInt q = 0; q < n; q++) factor[q] = PetscMax(pair->factor[q], pair->next_factor[q]);
@@ -758,10 +753,6 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
     if (TermHasGap(pair, c, gaps)) *agrees = TermAgrees(pair, c, &fresh); /* few have where most have no partner */
   PetscCall(PetscFree2(gaps, factor));
   PetscCall(PetscFree(fresh.holds));
-  if (lag.mean < PETSC_INFINITY && PairDrifts(pair)) {
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fresh.change, 2, MPIU_REAL, MPI_SUM, contact->mesh->comm));
-    if (fresh.change[0] * pair->automatic > lag.mean * CONTACT_OFFSET_AGREES * fresh.change[1]) *agrees = PETSC_FALSE;
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -858,7 +849,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
 . motion         - largest motion since the accepted state (length)
 . next           - motion that the fresh lists must be good for, as ContactGather() may take them for the next step
                    (length)
-. lag            - parts of the usual drift by which offsets may lag
+. lag            - part of the usual drift by which offsets may lag (no unit)
 - passing        - area factors and fits may lag by as much, because no answers are asked for at t
 
   Output Parameter:
@@ -872,7 +863,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
   problem must be solved again.
 @*/
 PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
-                                ContactLag lag, PetscBool passing, PetscBool *hold)
+                                PetscReal lag, PetscBool passing, PetscBool *hold)
 {
   PetscReal most;
   int       agree = 1;

@@ -29,9 +29,8 @@
 #define EQUILIBRIUM_MAX_REST_UPDATES 6
 #define EQUILIBRIUM_LAG_AT_REST      1e-10
 /* With friction surfaces slide, and the dent moves with them: offsets that lag by the usual drift change the forces of
-   a die that slides by three faces in a step by 3 %. With this value in the mean over the forces they agree with those
-   of short steps within 0.2 %. Single terms at the border of the contact may lag by the usual drift, because they carry
-   little. */
+   a die that slides by three faces in a step by 3 %. With this value they agree with those of short steps within
+   0.2 %. */
 #define EQUILIBRIUM_LAG_SLIDING 0.1
 /* What the springs of free bodies hold after a solve may be this part of F_ref. More is relaxed. */
 #define EQUILIBRIUM_SPRINGS 1e-7
@@ -302,20 +301,20 @@ static PetscErrorCode ModelRests(Model model, PetscBool *rests)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Parts of the usual drift by which offsets may lag after the solve and so many updates of them, and gaps with
-   friction. Solutions that are not the last ones of a step need no other than those within the load's way. */
-static PetscErrorCode ModelLag(Model model, PetscInt times, ContactLag *lag)
+/* Part of the usual drift by which offsets may lag after the solve and so many updates of them, and gaps with friction.
+   Solutions that are not the last ones of a step need no other than those within the load's way. */
+static PetscErrorCode ModelLag(Model model, PetscInt times, PetscReal *lag)
 {
   PetscBool rests;
 
   PetscFunctionBeginUser;
-  *lag = (ContactLag){1, ContactHasFriction(model->contact) ? EQUILIBRIUM_LAG_SLIDING : PETSC_INFINITY};
+  *lag = ContactHasFriction(model->contact) ? EQUILIBRIUM_LAG_SLIDING : 1;
   if (model->work->staged) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelRests(model, &rests));
-  if (SceneBreaks(model->scene, model->t)) *lag = (ContactLag){EQUILIBRIUM_LAG_AT_BREAK, PETSC_INFINITY};
-  if (model->t >= 1) *lag = (ContactLag){EQUILIBRIUM_LAG_AT_END, PETSC_INFINITY};
-  if (rests) *lag = (ContactLag){EQUILIBRIUM_LAG_AT_REST, PETSC_INFINITY};
-  if (times >= (rests ? EQUILIBRIUM_MAX_REST_UPDATES : EQUILIBRIUM_MAX_OFFSET_UPDATES)) *lag = CONTACT_USUAL_LAG;
+  if (SceneBreaks(model->scene, model->t)) *lag = EQUILIBRIUM_LAG_AT_BREAK;
+  if (model->t >= 1) *lag = EQUILIBRIUM_LAG_AT_END;
+  if (rests) *lag = EQUILIBRIUM_LAG_AT_REST;
+  if (times >= (rests ? EQUILIBRIUM_MAX_REST_UPDATES : EQUILIBRIUM_MAX_OFFSET_UPDATES)) *lag = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -340,13 +339,13 @@ static PetscBool ModelPasses(Model model, PetscInt times)
 static PetscErrorCode ModelSolvesLoosely(Model model, PetscBool *loosely)
 {
   const ModelWork *work = model->work;
-  ContactLag       lag;
+  PetscReal        lag;
 
   PetscFunctionBeginUser;
   *loosely = PETSC_FALSE;
   if (!ModelLags(model)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelLag(model, 0, &lag));
-  *loosely = (PetscBool)(!work->accepted_held || SceneBreaks(model->scene, work->accepted_t) || lag.term < 1);
+  *loosely = (PetscBool)(!work->accepted_held || SceneBreaks(model->scene, work->accepted_t) || lag < 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -358,7 +357,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
   ModelWork *work = model->work;
   PetscBool  hold = PETSC_FALSE, lost = PETSC_FALSE;
   PetscInt   times = 0, first = 0, before;
-  ContactLag lag;
+  PetscReal  lag = 1;
 
   PetscFunctionBeginUser;
   work->renewed = 0;

@@ -143,7 +143,7 @@ PetscErrorCode ModelRampPenalty(Model model, PetscBool all, SolveReport *report)
     if (model->work->left) {
       model->work->renewed++;
       PetscCall(ProblemRenewLists(model->problem, model->work->accepted_u, model->work->accepted_t, model->t,
-                                  PETSC_TRUE, CONTACT_USUAL_LAG, PETSC_FALSE, &hold));
+                                  PETSC_TRUE, 1, PETSC_FALSE, &hold));
       report->regathered++;
     } else
       PetscCall(ModelChooseSoftness(model, PETSC_FALSE, RAMP_FACTOR * most, full, &most));

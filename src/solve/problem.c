@@ -546,7 +546,7 @@ PetscErrorCode ProblemGatherLists(Problem problem, const PetscReal *u, PetscReal
 . t_0            - load parameter of the accepted state
 . t              - load parameter of the trial displacements
 . left           - the solve ended because a slave point left its lists; new ones are made without a check
-. lag            - parts of the usual drift by which offsets may lag before lists count as ones that do not hold
+. lag            - part of the usual drift by which offsets may lag before lists count as ones that do not hold
 - passing        - no answers are asked for at t, see ContactListsHold()
 
   Output Parameter:
@@ -558,7 +558,7 @@ PetscErrorCode ProblemGatherLists(Problem problem, const PetscReal *u, PetscReal
   for PROBLEM_MOTION_SAFETY times the motion, so that they serve a next step of the same length.
 @*/
 PetscErrorCode ProblemRenewLists(Problem problem, const PetscReal *u_0, PetscReal t_0, PetscReal t, PetscBool left,
-                                 ContactLag lag, PetscBool passing, PetscBool *hold)
+                                 PetscReal lag, PetscBool passing, PetscBool *hold)
 {
   PetscReal motion, next;
 

@@ -93,7 +93,7 @@ PetscErrorCode ProblemInOrder(Problem, const PetscReal *u_0, PetscReal t_0, cons
                               PetscBool *ok);
 PetscErrorCode ProblemGatherLists(Problem, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion);
 PetscErrorCode ProblemRenewLists(Problem, const PetscReal *u_0, PetscReal t_0, PetscReal t, PetscBool left,
-                                 ContactLag lag, PetscBool passing, PetscBool *hold);
+                                 PetscReal lag, PetscBool passing, PetscBool *hold);
 PetscErrorCode ProblemReaction(Problem, const MeshGroup *, PetscReal force[3], PetscReal moment[3]);
 PetscErrorCode ProblemBoltForce(Problem, const char *body, PetscReal *force);
 PetscBool      ProblemIsLinear(Problem);

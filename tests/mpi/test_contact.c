@@ -561,7 +561,7 @@ static void test_at_hand(void **state)
   Lower(-0.01, 0.02);
   (void)Evaluate();
   assert_true(ContactMotionAtHand(contact, least, motion) == motion);
-  OK(ContactListsHold(contact, parts.u, 0, 0, made, CONTACT_USUAL_LAG, PETSC_FALSE, &hold));
+  OK(ContactListsHold(contact, parts.u, 0, 0, made, 1, PETSC_FALSE, &hold));
   assert_true(hold);
   assert_true(ContactMotionAtHand(contact, least, motion) == made);
   assert_true(ContactMotionAtHand(contact, 0.5, motion) == motion);

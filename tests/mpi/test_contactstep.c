@@ -172,7 +172,7 @@ static void CheckLost(double motion, const char *text)
   PetscBool hold, lost;
 
   Evaluate();
-  OK(ContactListsHold(parts.problem->contact, parts.u, 0, motion, motion, CONTACT_USUAL_LAG, PETSC_FALSE, &hold));
+  OK(ContactListsHold(parts.problem->contact, parts.u, 0, motion, motion, 1, PETSC_FALSE, &hold));
   OK(ContactLocateLost(parts.problem->contact, &lost, message, sizeof(message)));
   if (lost != (text != NULL) || (text && !strstr(message, text))) print_error("'%s', not '%s'\n", message, text);
   assert_true(lost == (text != NULL));

@@ -157,17 +157,17 @@ static void test_hold(void **state)
   OK(ContactGather(parts.problem->contact, parts.u, 0, 0, 0));
   ShiftUpper(0.3, -0.15);
   Evaluate();
-  OK(ContactListsHold(parts.problem->contact, parts.u, 0, 0.4, 0, CONTACT_USUAL_LAG, PETSC_FALSE, &hold));
+  OK(ContactListsHold(parts.problem->contact, parts.u, 0, 0.4, 0, 1, PETSC_FALSE, &hold));
   assert_true(hold);
   ShiftUpper(2.5, 0.15); /* to x = 5.8, 6.3 and 6.8: 0.05 below the raised end */
   Evaluate();
-  OK(ContactListsHold(parts.problem->contact, parts.u, 0, 2.6, 0, CONTACT_USUAL_LAG, PETSC_FALSE, &hold));
+  OK(ContactListsHold(parts.problem->contact, parts.u, 0, 2.6, 0, 1, PETSC_FALSE, &hold));
   assert_false(hold);
   Evaluate();
   for (PetscInt c = 0; c < Pair()->n; c++)
     if (parts.mesh->node_tag[Pair()->node[c]] != PartsTag(&parts, UPPER, 0, 0))
       assert_near(Pair()->now.gap[c], -0.05, 1e-13);
-  OK(ContactListsHold(parts.problem->contact, parts.u, 0, 2.6, 0, CONTACT_USUAL_LAG, PETSC_FALSE, &hold));
+  OK(ContactListsHold(parts.problem->contact, parts.u, 0, 2.6, 0, 1, PETSC_FALSE, &hold));
   assert_true(hold);
   PartsDestroy(&parts);
 }
