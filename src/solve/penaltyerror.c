@@ -131,8 +131,10 @@ PetscBool ModelPenaltyStays(Model model, int pair)
 /* Makes a pair's penalties stiffer in the present state. The last tangent is not that of the new ones. */
 static PetscErrorCode StiffenPair(Model model, PenaltySource source, int p, PetscReal factor)
 {
+  PetscFunctionBeginUser;
   PetscCall(VecDestroy(&model->work->tangent_x));
-  return source == BY_SLIP ? ContactStiffenStick(model->contact, p, factor) : ContactStiffen(model->contact, p, factor);
+  PetscCall((source == BY_SLIP ? ContactStiffenStick : ContactStiffen)(model->contact, p, factor));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Makes penalties stiffer by the factors of ModelStiffen() or ModelStiffenDeep(). */
