@@ -45,7 +45,7 @@ petscvariable  = $(shell sed -n 's/^$(1) *= *//p' $(petscconf) 2>/dev/null)
 # -fno-math-errno: no code reads errno after a square root. With errno the compiler cannot vectorise square roots.
 ALL_CFLAGS := -std=gnu11 -march=$(ARCH) $(CFLAGS) -Wall -Wextra -fno-math-errno
 INCLUDES    = -Iinclude -Isrc $(call pkgconfig,--cflags-only-I $(PACKAGES)) $(call petscvariable,HDF5_INCLUDE)
-LIBRARIES   = -lmetis $(call pkgconfig,--libs $(PACKAGES)) $(MUMPS) $(call petscvariable,HDF5_LIB) \
+LIBRARIES   = -lmetis $(call pkgconfig,--libs $(PACKAGES)) $(MUMPS) $(call petscvariable,HDF5_LIB) $(call petscvariable,BLASLAPACK_LIB) \
   -Wl,-rpath,$(call pkgconfig,--variable=libdir PETSc) -ldl -lm
 # The MUMPS that PETSc was built with, with the flags that PETSc's own link line has for it
 PRIVATE     = $(call pkgconfig,--static --libs PETSc)

@@ -468,6 +468,25 @@ PetscErrorCode LinearSolverSetPrediction(LinearSolver solver, PetscBool predicti
 }
 
 /*@
+  LinearSolverOwnFactor - gets the factor of the operator that was solved with last.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. solver - the linear solver
+
+  Output Parameter:
+. factor - borrowed; NULL where there is none: the solver is iterative, or the factor is that of an older operator
+@*/
+PetscErrorCode LinearSolverOwnFactor(LinearSolver solver, Factor *factor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(DirectSolverFactor(solver->ksp, factor));
+  if (*factor && (!FactorExists(*factor) || (solver->kept && !ReusedFactorIsOwn(solver->kept)))) *factor = NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   LinearSolverNegatives - gets the number of negative eigenvalues of the operator that was solved with last.
 
   Not collective, the same on all ranks
@@ -484,11 +503,7 @@ PetscErrorCode LinearSolverNegatives(LinearSolver solver, PetscInt *negatives)
   Factor factor;
 
   PetscFunctionBeginUser;
-  if (solver->kept) {
-    PetscCall(ReusedFactorNegatives(solver->kept, negatives));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(DirectSolverFactor(solver->ksp, &factor));
+  PetscCall(LinearSolverOwnFactor(solver, &factor));
   *negatives = factor ? FactorNegatives(factor) : -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,7 +6,7 @@
    LinearSolverBorders() says so. The other functions tell how precisely to solve, or use the factor for more
    right-hand sides. */
 #pragma once
-#include "linear/borderedfactor.h"
+#include "linear/factor.h"
 #include "linear/reusedfactor.h"
 #include "mesh/mesh.h"
 
@@ -28,6 +28,7 @@ PetscErrorCode LinearSolverDirect(LinearSolver, PetscBool *direct);
 PetscErrorCode LinearSolverColumns(LinearSolver, Mat B, Mat X, PetscBool *able);
 PetscErrorCode LinearSolverSetStart(LinearSolver, PetscReal residual);
 PetscErrorCode LinearSolverSetPrediction(LinearSolver, PetscBool);
+PetscErrorCode LinearSolverOwnFactor(LinearSolver, Factor *);
 PetscErrorCode LinearSolverNegatives(LinearSolver, PetscInt *negatives);
 PetscErrorCode LinearSolverParity(LinearSolver, PetscInt *parity);
 ReusedFactor   LinearSolverKept(LinearSolver);

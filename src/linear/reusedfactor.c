@@ -413,24 +413,16 @@ PetscErrorCode ReusedFactorSolve(ReusedFactor kept, Mat A, Vec b, Vec x, PetscRe
 }
 
 /*@
-  ReusedFactorNegatives - gets the number of negative eigenvalues of the present operator.
+  ReusedFactorIsOwn - tells whether the factor is that of the present operator.
 
   Not collective, the same on all ranks
 
   Input Parameter:
 . kept - the reuse of a factor, after ReusedFactorSolve()
-
-  Output Parameter:
-. negatives - their number; -1 where the factor is that of an older operator, or does not tell
 @*/
-PetscErrorCode ReusedFactorNegatives(ReusedFactor kept, PetscInt *negatives)
+PetscBool ReusedFactorIsOwn(ReusedFactor kept)
 {
-  Factor factor;
-
-  PetscFunctionBeginUser;
-  PetscCall(DirectSolverFactor(kept->ksp, &factor));
-  *negatives = factor && !kept->serves ? FactorNegatives(factor) : -1;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return (PetscBool)!kept->serves;
 }
 
 /*@

@@ -26,5 +26,5 @@ PetscErrorCode ReusedFactorSetEnough(ReusedFactor, PetscReal residual);
 PetscErrorCode ReusedFactorSolve(ReusedFactor, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscReal *norm,
                                  PetscBool *failed);
 PetscErrorCode ReusedFactorOwn(ReusedFactor, PetscBool *failed);
-PetscErrorCode ReusedFactorNegatives(ReusedFactor, PetscInt *negatives);
+PetscBool      ReusedFactorIsOwn(ReusedFactor);
 void           ReusedFactorGetCounts(ReusedFactor, KeptCounts *);

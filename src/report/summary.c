@@ -135,6 +135,17 @@ static void AddJumps(cJSON *json, const StepperReport *way)
     cJSON_AddNullToObject(map, "last");
 }
 
+/* Adds what is known of the stability of accepted states. */
+static void AddStability(cJSON *json, const StepperReport *way)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "stability");
+
+  cJSON_AddNumberToObject(map, "unstable_steps", (double)way->unstable_steps);
+  cJSON_AddNumberToObject(map, "most_negative_eigenvalues", (double)way->most_negatives);
+  cJSON_AddNumberToObject(map, "negative_eigenvalues", (double)way->negatives);
+  AddReal(map, "energy_given", way->gives);
+}
+
 /* Adds what the viscous restraint of steps that failed without it has done. */
 static void AddDamping(cJSON *json, const RunFigures *figures)
 {
@@ -465,6 +476,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   cJSON_AddNumberToObject(json, "restarts", (double)figures->restarts);
   AddCycles(json, run->way);
   AddJumps(json, run->way);
+  AddStability(json, run->way);
   AddDamping(json, figures);
   AddSprings(json, figures);
   AddLinear(json, &figures->linear);

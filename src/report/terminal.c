@@ -16,6 +16,9 @@
 /* Ties that hold more than this part of the forces are told with what lowers that. It is a tenth of the error that a
    run without any settings may have. */
 #define TERMINAL_TIED 1e-3
+/* A state is told to be unstable that gives more than this part of its energy away over a turn by 0.1. Rings that would
+   roll on give less, and where they lie changes no force. */
+#define TERMINAL_GIVES 1e-2
 /* Motions that ties hold are unstable where their stiffness is below 0 by more than this part of their body's. The
    unevenness of meshes gives neutral ones, such as the rolling of a ball, far less. */
 #define TERMINAL_UNSTABLE 1e-2
@@ -585,6 +588,33 @@ static void PrintFreeBodies(const RunFigures *figures)
            (long long)report->relaxed, (double)report->share);
 }
 
+/* Does the last state give much energy away if anything disturbs it? */
+static int EndsUnstable(const StepperReport *report)
+{
+  return report->negatives > 0 && report->gives > TERMINAL_GIVES;
+}
+
+/* Says which accepted states were no stable equilibria, and what leads to those. */
+static void PrintStability(const RunFigures *figures)
+{
+  const StepperReport *report = figures->run->way;
+
+  if (!report->unstable_steps) return;
+  printf("unstable equilibria: at the end of %lld of %lld steps, up to %lld negative eigenvalue%s of the tangent",
+         (long long)report->unstable_steps, (long long)report->steps, (long long)report->most_negatives,
+         report->most_negatives > 1 ? "s" : "");
+  if (report->negatives > 0 && !isinf(report->gives))
+    printf("; in the last state a turn by 0.1 along the unstable motion gives %.2g of the stored energy",
+           (double)report->gives);
+  printf("\n");
+  if (EndsUnstable(report))
+    printf(
+      "         so it is since t = %.6g. Real bodies buckle or snap there; shorter steps (stepping.dt_max), a small "
+      "load that leads one way%s may find a stable state\n",
+      (double)report->unstable_from,
+      figures->scene->stepping.damping == DAMPING_AUTO ? "" : ", or stepping.damping=auto");
+}
+
 static void PrintLast(Terminal terminal, const RunFigures *figures)
 {
   const RunRecord     *run    = figures->run;
@@ -596,12 +626,14 @@ static void PrintLast(Terminal terminal, const RunFigures *figures)
       "jumped to another equilibrium: %lld time%s, the last %s; no equilibrium lies between, and inertia may bring "
       "a real part elsewhere\n",
       (long long)report->jumps, report->jumps > 1 ? "s" : "", report->jump);
+  PrintStability(figures);
   if (report->cycles)
     printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n",
            (long long)report->cycles, (long long)report->cycles_cut, report->cycle);
   printf("%s%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status,
          DampingShare(figures) > TERMINAL_LOST ? ", but damping took more than is stored"
          : PairOnWedge(figures)                ? ", but a sharp edge stands in its slave"
+         : EndsUnstable(report)                ? ", but in an unstable equilibrium"
                                                : "",
          (long long)report->steps, (long long)report->steps_failed, (long long)report->steps_repeated,
          (long long)report->newton_iterations, DurationText((double)run->wall_s, text), terminal->directory);

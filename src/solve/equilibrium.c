@@ -748,6 +748,7 @@ static PetscErrorCode ModelEndSolve(Model model, SolveReport *report)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscArraycpy(model->u, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(ModelFindStability(model, report));
   PetscCall(ModelFindJump(model, report));
   if (report->result != SOLVE_CONVERGED) PetscCall(ModelExplainFailure(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);

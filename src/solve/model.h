@@ -73,18 +73,20 @@ typedef struct {
   PetscReal   left;             /* energy left in the contact springs, over that in elements and contact */
   PetscReal   share;            /* norm of the forces left in the contact springs, over F_ref */
   PetscReal   tied;             /* largest force in a tie, over F_ref */
-  PetscReal   unstable;    /* least stiffness of a tied motion, over that of its body, turned; 0: none is below 0 */
-  PetscReal   friction;    /* coefficient of friction that would hold the soft motions that are held; 0: none is */
-  PetscInt    motions;     /* soft motions that are held */
-  PetscInt    cycles;      /* times that the contact set repeated itself and Newton's steps were shortened */
-  char        cycle[256];  /* the last repetition: its period and nodes, in gmsh's tags */
-  PetscInt    damped;      /* 1: tangents were shifted */
-  PetscBool   indefinite;  /* with friction: a tangent of the last solve was that of no stable state */
-  PetscReal   damping;     /* energy that was taken away then */
-  char        jump[256];   /* the node that jumped to another equilibrium, and how far; empty: none did */
-  PetscReal   facing;      /* SOLVE_FACING: turn of surfaces that lie opposite each other (radians) */
-  PetscReal   far;         /* SOLVE_FAR: turn of cells in the first linear step, over the largest one */
-  PetscReal   excess;      /* SOLVE_UNCERTIFIED: depth over what is allowed; INFINITY: it is no depth */
+  PetscReal   unstable;   /* least stiffness of a tied motion, over that of its body, turned; 0: none is below 0 */
+  PetscReal   friction;   /* coefficient of friction that would hold the soft motions that are held; 0: none is */
+  PetscInt    motions;    /* soft motions that are held */
+  PetscInt    cycles;     /* times that the contact set repeated itself and Newton's steps were shortened */
+  char        cycle[256]; /* the last repetition: its period and nodes, in gmsh's tags */
+  PetscInt    damped;     /* 1: tangents were shifted */
+  PetscBool   indefinite; /* with friction: a tangent of the last solve was that of no stable state */
+  PetscInt    negatives;  /* negative eigenvalues of the tangent at the end, see ModelFindStability(); -1: not known */
+  PetscReal   gives;      /* energy that such a motion gives, over what is stored, see ModeGives(); INFINITY: unknown */
+  PetscReal   damping;    /* energy that was taken away then */
+  char        jump[256];  /* the node that jumped to another equilibrium, and how far; empty: none did */
+  PetscReal   facing;     /* SOLVE_FACING: turn of surfaces that lie opposite each other (radians) */
+  PetscReal   far;        /* SOLVE_FAR: turn of cells in the first linear step, over the largest one */
+  PetscReal   excess;     /* SOLVE_UNCERTIFIED: depth over what is allowed; INFINITY: it is no depth */
   char        detail[256]; /* where a failed solve failed, in gmsh's tags */
   Failure     failure;     /* more about a failed solve */
 } SolveReport;

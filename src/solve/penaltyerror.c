@@ -410,7 +410,7 @@ static PetscReal LargeError(Model model)
 }
 
 /* How many times as stiff penalties become for an estimated error above a large one, where it is 1. */
-static PetscReal Factor(PetscReal error, PetscReal large)
+static PetscReal StiffeningOf(PetscReal error, PetscReal large)
 {
   return PetscMin(PENALTY_MOST_STIFFER,
                   PetscMin(error / (PENALTY_ERROR_WANTED * large), 1 + PENALTY_RISE * (error / large - 1)));
@@ -442,7 +442,7 @@ static PetscErrorCode StiffenSource(Model model, PenaltySource source, const Con
     if (!MayStiffen(ContactPairScene(model->contact, p), source) || !(worst > large) ||
         load[p].force < PENALTY_LIGHT_PAIR * most || large * load[p].force <= left || *by < 0)
       continue;
-    factor[p] = *by = Factor(worst, large);
+    factor[p] = *by = StiffeningOf(worst, large);
     *at             = worst;
     PetscCall(PetscInfo(model->snes, "contact '%s': estimated error %g, penalties%s %g times as stiff\n",
                         ContactPairName(model->contact, p), (double)worst, source == BY_SLIP ? " of what sticks" : "",

@@ -423,6 +423,19 @@ static void PaceAdd(Pace *pace, Model model, PetscReal dt, PetscBool jumped)
   pace->n         = anew ? 0 : PetscMin(PACE_STEPS, pace->n + 1);
 }
 
+/* Notes the stability of the accepted state. Where it is not known, it is taken for that of the state before. */
+static void LoadStepperNoteStability(StepperReport *report, const SolveReport *solve)
+{
+  const PetscInt negatives = solve->negatives;
+
+  if (negatives < 0) return;
+  if (negatives > 0 && report->negatives == 0) report->unstable_from = report->t;
+  report->negatives = negatives;
+  report->gives     = negatives > 0 ? solve->gives : 0;
+  report->unstable_steps += negatives > 0;
+  report->most_negatives = PetscMax(report->most_negatives, negatives);
+}
+
 /* Accepts a converged step of dt: fills its record, lets the control choose the next dt, which is at most `most` and
    which it must not shrink below dt_min, and accepts the state. */
 static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscReal most, PetscBool clipped,
@@ -467,6 +480,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   report->unstable = PetscMax(report->unstable, solve->unstable);
   report->friction = PetscMax(report->friction, solve->friction);
   report->held += solve->friction > 0;
+  LoadStepperNoteStability(report, solve);
   report->motions = PetscMax(report->motions, solve->motions);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -635,8 +649,15 @@ static PetscErrorCode LoadStepperBound(LoadStepper stepper, PetscReal dt, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves for a step of dt to `end`. Where static solves have failed often enough, the next one is damped, and the count
-   starts anew. No shorter static step follows a damped one or one of dt_min, either. */
+/* Says whether a solve ended in an unstable equilibrium, after a state that was not known for one. */
+static PetscBool LosesStability(const StepperReport *report, const SolveReport *solve)
+{
+  return (PetscBool)(solve->negatives > 0 && report->negatives <= 0);
+}
+
+/* Solves for a step of dt to `end`. An unstable equilibrium counts as none where damping may lead to a stable one.
+   Where static solves have failed often enough, the next one is damped, and the count starts anew. No shorter static
+   step follows a damped one or one of dt_min, either. */
 static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscReal dt, PetscInt *failures,
                                      SolveReport *solve)
 {
@@ -654,6 +675,8 @@ static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscRe
     *failures = 0;
   } else {
     PetscCall(ModelSolve(stepper->model, end, solve));
+    if (damping == DAMPING_AUTO && solve->result == SOLVE_CONVERGED && LosesStability(&stepper->report, solve))
+      solve->result = SOLVE_UNSTABLE;
     if (damping != DAMPING_NONE && MayBeUnstable(solve->result))
       *failures += last ? STEPPER_STATIC : damping == DAMPING_AUTO || solve->indefinite;
   }
@@ -843,14 +866,24 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   StepperReport *report  = &stepper->report;
   StepSize       size    = ArchiveLoads(archive) ? stepper->size : stepper->start;
   PetscReal      initial = size.initial, dt = size.dt;
-  PetscReal     *real[]    = {&initial,          &dt,
-                              &size.beta,        &size.together,
-                              &size.shortfall,   &size.planned,
-                              &report->taken,    &report->left,
-                              &report->share,    &report->tied,
-                              &size.last_dt,     &size.last_iterations,
-                              &report->damping,  &size.failed_dt,
-                              &report->unstable, &report->friction};
+  PetscReal     *real[]    = {&initial,
+                              &dt,
+                              &size.beta,
+                              &size.together,
+                              &size.shortfall,
+                              &size.planned,
+                              &report->taken,
+                              &report->left,
+                              &report->share,
+                              &report->tied,
+                              &size.last_dt,
+                              &size.last_iterations,
+                              &report->damping,
+                              &size.failed_dt,
+                              &report->unstable,
+                              &report->friction,
+                              &report->unstable_from,
+                              &report->gives};
   PetscInt      *integer[] = {&report->steps,           &report->steps_failed,
                               &report->steps_repeated,  &report->newton_iterations,
                               &report->newton_accepted, &report->krylov_iterations,
@@ -860,7 +893,8 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                               &report->cycles_cut,      &report->jumps,
                               &report->damped,          &report->held,
                               &stepper->damped,         &size.tied,
-                              &report->motions};
+                              &report->motions,         &report->unstable_steps,
+                              &report->negatives,       &report->most_negatives};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));

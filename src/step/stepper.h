@@ -28,22 +28,27 @@ typedef struct {
   PetscBool stopped;                             /* LoadStepperStop() ended it before */
   PetscInt  steps, steps_failed, steps_repeated; /* repeated: taken back, to touch or move less, or to find a leak */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;
-  PetscInt  relaxed;    /* times that the contact springs were relaxed */
-  PetscReal taken;      /* energy that the contact springs took out of the bodies */
-  PetscReal left;       /* largest part of an accepted state's energy that was left in them */
-  PetscReal share;      /* their forces in the last accepted state, over F_ref */
-  PetscReal tied;       /* largest force of a tie there, over F_ref */
-  PetscReal unstable;   /* how unstable a tied motion was, as a part of its body's stiffness, in the worst step */
-  PetscReal friction;   /* coefficient of friction that would hold what held a soft motion, in the worst step */
-  PetscInt  held;       /* accepted steps in which one was held */
-  PetscInt  motions;    /* most of them that were held at the end of an accepted step */
-  PetscInt  cycles;     /* times that a contact set repeated itself */
-  PetscInt  cycles_cut; /* steps that failed because of that */
-  char      cycle[512]; /* the last repetition: load parameter, period, nodes */
-  PetscInt  jumps;      /* accepted steps that ended in another equilibrium */
-  char      jump[512];  /* the last of them: load parameters, node, distance */
-  PetscInt  damped;     /* accepted steps that needed a viscous restraint */
-  PetscReal damping;    /* energy that it took in them */
+  PetscInt  relaxed;        /* times that the contact springs were relaxed */
+  PetscReal taken;          /* energy that the contact springs took out of the bodies */
+  PetscReal left;           /* largest part of an accepted state's energy that was left in them */
+  PetscReal share;          /* their forces in the last accepted state, over F_ref */
+  PetscReal tied;           /* largest force of a tie there, over F_ref */
+  PetscReal unstable;       /* how unstable a tied motion was, as a part of its body's stiffness, in the worst step */
+  PetscReal friction;       /* coefficient of friction that would hold what held a soft motion, in the worst step */
+  PetscInt  held;           /* accepted steps in which one was held */
+  PetscInt  motions;        /* most of them that were held at the end of an accepted step */
+  PetscInt  unstable_steps; /* accepted steps that ended in an unstable equilibrium, as far as it is known */
+  PetscInt  negatives;      /* negative eigenvalues of the tangent in the last accepted state that they are known of */
+  PetscReal gives;          /* energy that the unstable motion gives there, over what is stored; 0: it is stable */
+  PetscInt  most_negatives; /* most of them */
+  PetscReal unstable_from;  /* load parameter of the first of the accepted states up to the last one that have any */
+  PetscInt  cycles;         /* times that a contact set repeated itself */
+  PetscInt  cycles_cut;     /* steps that failed because of that */
+  char      cycle[512];     /* the last repetition: load parameter, period, nodes */
+  PetscInt  jumps;          /* accepted steps that ended in another equilibrium */
+  char      jump[512];      /* the last of them: load parameters, node, distance */
+  PetscInt  damped;         /* accepted steps that needed a viscous restraint */
+  PetscReal damping;        /* energy that it took in them */
   PetscInt  regathered, adjusted, turned; /* of SolveReport, for all solves */
   PetscInt  wetted;                       /* likewise */
   PetscInt  cuts[CUT_CAUSES];             /* likewise */

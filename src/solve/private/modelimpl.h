@@ -10,7 +10,7 @@
    for contact. newton.c runs SNES once with the present contact lists. prediction.c finds a first iterate,
    penaltyramp.c improves it on softened penalties, dampedsolve.c solves with shifted tangents where Newton's method
    finds no equilibrium. penaltyerror.c estimates what penetration leaves of error and stiffens penalties, jump.c tells
-   an equilibrium that was reached by a jump, adjoint.c weighs errors of a solution. equilibrium.c goes from an accepted
+   an equilibrium that was reached by a jump, stability.c whether it is stable, adjoint.c weighs errors of a solution. equilibrium.c goes from an accepted
    state to the next one. model.c holds the accepted state. Each file calls only those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
@@ -238,6 +238,8 @@ void           ModelChooseObjective(Model, PetscReal residual, PetscReal slope);
 PetscErrorCode ModelLocateEdge(Model, PetscBool *found, ContactPlace *);
 /* jump.c */
 PetscErrorCode ModelFindJump(Model, SolveReport *);
+/* stability.c */
+PetscErrorCode ModelFindStability(Model, SolveReport *);
 /* newton.c */
 PetscErrorCode ModelCreateSNES(Model);
 PetscErrorCode ModelStepFrom(Model, const PetscReal *u);
