@@ -2,8 +2,8 @@
 #pragma once
 #include "linear/factor.h"
 
-/* Relative residual of a solution */
-static PetscErrorCode SolutionMiss(Factor factor, Mat A, PetscReal *miss)
+/* Relative residual of a solution. transposed: that with the transposed matrix */
+static PetscErrorCode SolutionMiss(Factor factor, Mat A, PetscBool transposed, PetscReal *miss)
 {
   PetscReal right;
   Vec       b, x, r;
@@ -12,8 +12,8 @@ static PetscErrorCode SolutionMiss(Factor factor, Mat A, PetscReal *miss)
   PetscCall(MatCreateVecs(A, &x, &b));
   PetscCall(VecDuplicate(b, &r));
   PetscCall(VecSet(b, 1));
-  PetscCall(FactorSolve(factor, b, x));
-  PetscCall(MatMult(A, x, r));
+  PetscCall((transposed ? FactorSolveTransposed : FactorSolve)(factor, b, x));
+  PetscCall((transposed ? MatMultTranspose : MatMult)(A, x, r));
   PetscCall(VecAXPY(r, -1, b));
   PetscCall(VecNorm(r, NORM_2, miss));
   PetscCall(VecNorm(b, NORM_2, &right));

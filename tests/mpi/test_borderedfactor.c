@@ -179,7 +179,7 @@ static PetscErrorCode Miss(Factor factor, Mat A, PetscReal *miss)
   Mat       B, X, R;
 
   PetscFunctionBeginUser;
-  PetscCall(SolutionMiss(factor, A, miss));
+  PetscCall(SolutionMiss(factor, A, PETSC_FALSE, miss));
   PetscCall(MatGetLocalSize(A, &rows, NULL));
   PetscCall(MatCreateDense(PETSC_COMM_WORLD, rows, PETSC_DECIDE, PETSC_DETERMINE, 3, NULL, &B));
   for (PetscInt j = 0; j < 3; j++) PetscCall(MatSetValue(B, 7 + 5 * j, j, 1, INSERT_VALUES));

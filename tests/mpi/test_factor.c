@@ -1,5 +1,5 @@
-/* Factors of grids: each ordering, symmetric or not, other values, other patterns and singular ones; and what
- * dissection costs. */
+/* Factors of grids: each ordering, symmetric or not, other values, other patterns and singular ones; solves with the
+ * transposed matrix; and what dissection costs. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -59,7 +59,7 @@ static void MakeAndSolve(Factor factor, Mat A)
 
   assert_int_equal(FactorMake(factor, A, &reason), 0);
   assert_int_equal(reason, PC_NOERROR);
-  assert_int_equal(SolutionMiss(factor, A, &miss), 0);
+  assert_int_equal(SolutionMiss(factor, A, PETSC_FALSE, &miss), 0);
   assert_true(miss < 1e-11);
 }
 
@@ -110,6 +110,62 @@ static void test_other_values_and_patterns(void **state)
   assert_int_equal(MatDestroy(&other), 0);
 }
 
+/* Turns the rows of each node about, so that the largest entries, which pivots are chosen from, are off the diagonal.
+ */
+static PetscErrorCode TurnRows(Mat *A)
+{
+  PetscInt first, end, *from;
+  IS       rows, columns;
+  Mat      turned;
+  Vec      none;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(*A, &first, &end));
+  PetscCall(PetscMalloc1(end - first, &from));
+  for (PetscInt i = first; i < end; i++) from[i - first] = i % DOFS ? i - 1 : i + 1;
+  PetscCall(ISCreateGeneral(PETSC_COMM_WORLD, end - first, from, PETSC_OWN_POINTER, &rows));
+  PetscCall(ISCreateStride(PETSC_COMM_WORLD, end - first, first, 1, &columns));
+  PetscCall(ISSetPermutation(rows));
+  PetscCall(ISSetPermutation(columns));
+  PetscCall(MatPermute(*A, rows, columns, &turned));
+  PetscCall(MatCreateVecs(turned, &none, NULL));
+  PetscCall(VecSet(none, 0));
+  PetscCall(MatDiagonalSet(turned, none, INSERT_VALUES));
+  PetscCall(VecDestroy(&none));
+  PetscCall(ISDestroy(&rows));
+  PetscCall(ISDestroy(&columns));
+  PetscCall(MatDestroy(A));
+  *A = turned;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal Miss(Factor factor, Mat A, PetscBool transposed)
+{
+  PetscReal miss;
+
+  assert_int_equal(SolutionMiss(factor, A, transposed, &miss), 0);
+  return miss;
+}
+
+/* Solves with the transposed matrix lie where those with the matrix lay, and the other way round, though pivots are off
+   the diagonal. */
+static void test_transposed(void **state)
+{
+  Factor factor;
+  Mat    A;
+
+  (void)state;
+  assert_int_equal(Grid(0.1, 0.3, &A), 0);
+  assert_int_equal(TurnRows(&A), 0);
+  assert_int_equal(FactorCreate(PETSC_COMM_WORLD, PETSC_FALSE, &factor), 0);
+  MakeAndSolve(factor, A);
+  assert_true(Miss(factor, A, PETSC_TRUE) < 1e-11);
+  assert_true(Miss(factor, A, PETSC_FALSE) < 1e-11);
+  assert_true(Miss(factor, A, PETSC_TRUE) < 1e-11);
+  assert_int_equal(FactorDestroy(&factor), 0);
+  assert_int_equal(MatDestroy(&A), 0);
+}
+
 /* A matrix of zeros has no factor: that is told, solutions are infinite, and the next matrix is solved with all the
  * same. */
 static void test_singular(void **state)
@@ -126,7 +182,7 @@ static void test_singular(void **state)
   assert_int_equal(FactorCreate(PETSC_COMM_WORLD, PETSC_TRUE, &factor), 0);
   assert_int_equal(FactorMake(factor, zero, &reason), 0);
   assert_int_not_equal(reason, PC_NOERROR);
-  assert_int_equal(SolutionMiss(factor, zero, &miss), 0);
+  assert_int_equal(SolutionMiss(factor, zero, PETSC_FALSE, &miss), 0);
   assert_true(PetscIsInfOrNanReal(miss));
   MakeAndSolve(factor, A);
   assert_int_equal(FactorDestroy(&factor), 0);
@@ -256,7 +312,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_orderings),      cmocka_unit_test(test_other_values_and_patterns),
     cmocka_unit_test(test_singular),       cmocka_unit_test(test_dissection_costs),
     cmocka_unit_test(test_other_ordering), cmocka_unit_test(test_ranks_without_rows),
-    cmocka_unit_test(test_options)};
+    cmocka_unit_test(test_options),        cmocka_unit_test(test_transposed)};
   int failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
