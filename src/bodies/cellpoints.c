@@ -1,4 +1,4 @@
-/* The points of one cell: their places, displacement gradients and stresses, and how these change. */
+/* The points of cells: their places, displacement gradients and stresses, and how these change. */
 #include "elasticityimpl.h"
 
 /* Part of a cell's size by which its nodes are moved to both sides for a derivative of its displacement gradients. The
@@ -26,47 +26,56 @@ PetscErrorCode ElasticityHas(Elasticity e, Formulation formulation, PetscBool *a
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Elements of a group whose displacement gradients are those of their nodes. */
-static KernelCase NodalCase(const CellGroup *g)
+/* A batch of a group */
+typedef struct {
+  CellGroup *g;
+  PetscInt   batch;
+} Place;
+
+/* Finds a batch by its number among those of all groups. */
+static Place PlaceOf(Elasticity e, PetscInt batch)
 {
-  return (KernelCase){.type        = g->kernel.type,
-                      .geometry    = g->kernel.geometry,
-                      .kinematics  = KINEMATICS_SMALL,
-                      .law         = MATERIAL_LINEAR,
-                      .formulation = FORMULATION_FULL};
+  CellGroup *g = e->groups;
+
+  for (; batch >= g->n_batches; g++) batch -= g->n_batches;
+  return (Place){.g = g, .batch = batch};
 }
 
 /*@
-  ElasticityPointModes - gives the part of displacement gradients, or of their rates, that are not those of nodes: the
-  modes of an enhanced element.
+  ElasticityBatches - counts the batches of cells whose points are evaluated together.
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity
+@*/
+PetscInt ElasticityBatches(Elasticity e)
+{
+  PetscInt n = 0;
+
+  for (int g = 0; g < e->n_groups; g++) n += e->groups[g].n_batches;
+  return n;
+}
+
+/*@
+  ElasticityBatch - gives the cells of a batch, which have one type and law.
 
   Not collective
 
   Input Parameters:
-+ e    - the elasticity
-. cell - a local cell
-- v    - local displacements (length) [n_nodes*dim], or a motion
++ e     - the elasticity
+- batch - less than ElasticityBatches()
 
-  Input/Output Parameter:
-. H - displacement gradient of ElasticityPointStates(), or its rate along v, less that of v itself [points][9]
+  Output Parameters:
++ n    - their number, at most ELASTICITY_BATCH
+- cell - local cells [n]; borrowed
 @*/
-PetscErrorCode ElasticityPointModes(Elasticity e, PetscInt cell, const PetscReal *v, PetscReal *H)
+void ElasticityBatch(Elasticity e, PetscInt batch, int *n, const PetscInt **cell)
 {
-  CellGroup       *g     = &e->groups[e->cell_group[cell]];
-  const KernelCase nodal = NodalCase(g);
-  const int        n     = ElementGet(g->kernel.type)->points * 9;
-  PetscReal        X[MAX_DOFS], cell_v[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES],
-    gradient[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
+  const Place at = PlaceOf(e, batch);
 
-  PetscFunctionBeginUser;
-  if (g->kernel.formulation != FORMULATION_ENHANCED) {
-    PetscCall(PetscArrayzero(H, n));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  ElasticityGatherCell(e, g, e->cell_slot[cell], v, X, cell_v, constants, m);
-  ElementPointState(&nodal, X, cell_v, (PetscReal[]){1, 1}, NULL, gradient, pressure);
-  for (int k = 0; k < n; k++) H[k] -= gradient[k];
-  PetscFunctionReturn(PETSC_SUCCESS);
+  *n    = ElasticityBatchCells(at.g, at.batch);
+  *cell = &at.g->cell[(size_t)at.batch * KERNEL_LANES];
 }
 
 /* The table of the points of a cell. */
@@ -81,21 +90,24 @@ static int Moves(const CellGroup *g, CellPoints set)
   return PointTable(g, set)->points / ElementGet(g->kernel.type)->points;
 }
 
-/* Moves the nodes of an element with one point so that this point stands where the element has a point of products, and
+/* Moves the nodes of elements with one point so that this point stands where the element has a point of products, and
    adds to their values what a linear field changes by: at its point the element then shows the state of that place.
-   values: [n_nodes][dim], coordinates or those of a field; n_nodes: a multiple of the corners, as pressures follow. */
-static void MoveToPoint(const CellGroup *g, CellPoints set, int point, int n_nodes, int dim, PetscReal *values)
+   values: [n_nodes][dim][lanes], coordinates or those of a field; n_nodes: a multiple of the corners, as pressures
+   follow. */
+static void MoveToPoint(const CellGroup *g, CellPoints set, int point, int n_nodes, int dim, int lanes,
+                        PetscReal *values)
 {
   const Element *own = ElementGet(g->kernel.type), *table = PointTable(g, set);
+  const int      stride = dim * lanes;
 
   if (table == own) return;
   for (int first = 0; first < n_nodes; first += own->nodes) {
-    for (int i = 0; i < dim; i++) {
+    for (int i = 0; i < stride; i++) {
       PetscReal change = 0;
 
       for (int a = 0; a < own->nodes; a++)
-        change += (table->N[point][a] - own->N[0][a]) * values[(first + a) * dim + i];
-      for (int a = 0; a < own->nodes; a++) values[(first + a) * dim + i] += change;
+        change += (table->N[point][a] - own->N[0][a]) * values[(first + a) * stride + i];
+      for (int a = 0; a < own->nodes; a++) values[(first + a) * stride + i] += change;
     }
   }
 }
@@ -125,7 +137,7 @@ PetscErrorCode ElasticityPlacePoints(Elasticity e, PetscInt cell, CellPoints set
   ElasticitySlotCoordinates(e, g, e->cell_slot[cell], X);
   for (int m = 0; m < moves; m++) {
     PetscCall(PetscArraycpy(at, X, table->nodes * e->dim));
-    MoveToPoint(g, set, m, table->nodes, e->dim, at);
+    MoveToPoint(g, set, m, table->nodes, e->dim, 1, at);
     ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, at, &volume[m]);
     if (moves > 1) volume[m] /= moves;
   }
@@ -138,123 +150,214 @@ PetscErrorCode ElasticityPlacePoints(Elasticity e, PetscInt cell, CellPoints set
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ElementPointNominal() at all points of a set. P may be NULL. */
-static void MovedStates(Elasticity e, const CellGroup *g, const KernelCase *kernel, CellPoints set, const PetscReal *X,
-                        const PetscReal *u, const PetscReal *constants, const PetscReal *m, PetscReal *H,
-                        PetscReal *pressure, PetscReal *P)
+/* Displacement gradients, stresses and pressures of a batch */
+typedef struct {
+  PetscReal H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], P[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES],
+    pressure[ELEMENT_MAX_POINTS * KERNEL_LANES];
+} BatchStates;
+
+/* ElementBatchNominal() at all points of a set. u: of the batch; stresses: they are wanted. */
+static void MovedStates(Elasticity e, Place at, const KernelCase *kernel, CellPoints set, const PetscReal *u,
+                        const PetscReal *constants, PetscBool stresses, BatchStates *states)
 {
-  const int moves = Moves(g, set);
-  PetscReal X_at[MAX_DOFS], u_at[MAX_DOFS];
+  const CellGroup *g    = at.g;
+  const int        dofs = g->nodes * e->dim * KERNEL_LANES, moves = Moves(g, set);
+  const PetscReal *X = &g->X[(size_t)at.batch * dofs], *m = ElasticityMultipliers(e, g, at.batch);
+  PetscReal        X_at[MAX_DOFS * KERNEL_LANES], u_at[MAX_DOFS * KERNEL_LANES];
 
   for (int k = 0; k < moves; k++) {
-    for (int i = 0; i < g->nodes * e->dim; i++) {
+    for (int i = 0; i < dofs && moves > 1; i++) {
       X_at[i] = X[i];
       u_at[i] = u[i];
     }
-    MoveToPoint(g, set, k, g->nodes, e->dim, X_at);
-    MoveToPoint(g, set, k, g->nodes, e->dim, u_at);
-    ElementPointNominal(kernel, X_at, u_at, constants, m, &H[9 * k], &pressure[k], P ? &P[9 * k] : NULL);
+    MoveToPoint(g, set, k, g->nodes, e->dim, KERNEL_LANES, X_at);
+    MoveToPoint(g, set, k, g->nodes, e->dim, KERNEL_LANES, u_at);
+    ElementBatchNominal(kernel, moves > 1 ? X_at : X, moves > 1 ? u_at : u, constants, m,
+                        &states->H[9 * k * KERNEL_LANES], &states->pressure[k * KERNEL_LANES],
+                        stresses ? &states->P[9 * k * KERNEL_LANES] : NULL);
+  }
+}
+
+static const PetscReal *ConstantsOf(Place at)
+{
+  return &at.g->constants[(size_t)at.batch * at.g->kernel.n_constants * KERNEL_LANES];
+}
+
+/* ElementBatchNominal() without stresses of elements whose displacement gradients are those of their nodes. */
+static void NodalStates(Elasticity e, Place at, CellPoints set, const PetscReal *u, BatchStates *states)
+{
+  const KernelCase nodal = {.type        = at.g->kernel.type,
+                            .geometry    = at.g->kernel.geometry,
+                            .kinematics  = KINEMATICS_SMALL,
+                            .law         = MATERIAL_LINEAR,
+                            .formulation = FORMULATION_FULL};
+  PetscReal        constants[2 * KERNEL_LANES];
+
+  for (int k = 0; k < 2 * KERNEL_LANES; k++) constants[k] = 1;
+  MovedStates(e, at, &nodal, set, u, constants, PETSC_FALSE, states);
+}
+
+/* Takes the points of the cells out of a batch, less those of another one; over: divided by this of each cell, 0: they
+   are 0. */
+static void TakePoints(Place at, CellPoints set, PetscBool stresses, const BatchStates *states, const BatchStates *less,
+                       const PetscReal over[KERNEL_LANES], PointStates *cells)
+{
+  const int points = PointTable(at.g, set)->points;
+
+  for (int lane = 0; lane < ElasticityBatchCells(at.g, at.batch); lane++) {
+    const PetscReal factor = over ? (over[lane] > 0 ? 1 / over[lane] : 0) : 1;
+
+    for (int k = 0; k < 9 * points; k++) {
+      const int from = k * KERNEL_LANES + lane;
+
+      cells[lane].H[k] = factor * (states->H[from] - (less ? less->H[from] : 0));
+      cells[lane].P[k] = stresses ? factor * (states->P[from] - (less ? less->P[from] : 0)) : 0;
+    }
+    for (int p = 0; p < points; p++) {
+      const int from = p * KERNEL_LANES + lane;
+
+      cells[lane].pressure[p] = factor * (states->pressure[from] - (less ? less->pressure[from] : 0));
+    }
   }
 }
 
 /*@
-  ElasticityPointStates - gives displacement gradients and stresses at points of a cell.
+  ElasticityPointModes - gives the part of displacement gradients, or of their rates, that are not those of nodes: the
+  modes of enhanced elements.
 
   Not collective
 
   Input Parameters:
-+ e    - the elasticity; its multipliers and its accepted plastic state are those of the step to u
-. cell - a local cell
-. set  - which points
-- u    - local displacements (length) [n_nodes*dim]
++ e     - the elasticity
+. batch - of cells, see ElasticityBatch()
+- v     - local displacements (length) [n_nodes*dim], or a motion
 
-  Output Parameters:
-+ H          - displacement gradient at 3 i + I, as the element evaluates the law with [points][9]
-. P          - first Piola-Kirchhoff stress, with small strains the stress, at 3 i + I [points][9]
-. pressure   - of a mixed element (stress), 0 of others [points]
-- compliance - of the volume of a mixed element: one over the modulus (one over stress); 0 of others
+  Input/Output Parameter:
+. cells - H: displacement gradients of ElasticityPointStates() or their rates along v, less those of v itself
+          [ELASTICITY_BATCH]
 @*/
-PetscErrorCode ElasticityPointStates(Elasticity e, PetscInt cell, CellPoints set, const PetscReal *u, PetscReal *H,
-                                     PetscReal *P, PetscReal *pressure, PetscReal *compliance)
+PetscErrorCode ElasticityPointModes(Elasticity e, PetscInt batch, const PetscReal *v, PointStates *cells)
 {
-  CellGroup *g = &e->groups[e->cell_group[cell]];
-  PetscReal  X[MAX_DOFS], cell_u[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES];
+  const Place at = PlaceOf(e, batch);
+  const int   n  = 9 * ElementGet(at.g->kernel.type)->points;
+  BatchStates nodal;
 
   PetscFunctionBeginUser;
-  ElasticityGatherCell(e, g, e->cell_slot[cell], u, X, cell_u, constants, m);
-  MovedStates(e, g, &g->kernel, set, X, cell_u, constants, m, H, pressure, P);
-  *compliance = 0;
-  if (g->kernel.formulation == FORMULATION_MIXED) {
-    VolumeModuli moduli;
+  ElasticityGather(e, at.g, at.batch, v, e->u);
+  NodalStates(e, at, POINTS_OF_ELEMENT, e->u, &nodal);
+  for (int lane = 0; lane < ElasticityBatchCells(at.g, at.batch); lane++)
+    for (int k = 0; k < n; k++)
+      cells[lane].H[k] =
+        at.g->kernel.formulation == FORMULATION_ENHANCED ? cells[lane].H[k] - nodal.H[k * KERNEL_LANES + lane] : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    ElementVolumeModuli(&g->kernel, constants, 1, &moduli);
-    *compliance = 1 / moduli.projected;
+/*@
+  ElasticityPointStates - gives displacement gradients and stresses at points of a batch of cells.
+
+  Not collective
+
+  Input Parameters:
++ e     - the elasticity; its multipliers and its accepted plastic state are those of the step to u
+. batch - of cells, see ElasticityBatch()
+. set   - which points
+- u     - local displacements (length) [n_nodes*dim]
+
+  Output Parameter:
+. cells - displacement gradients, as the elements evaluate the law with, stresses and pressures [ELASTICITY_BATCH]
+@*/
+PetscErrorCode ElasticityPointStates(Elasticity e, PetscInt batch, CellPoints set, const PetscReal *u,
+                                     PointStates *cells)
+{
+  const Place at = PlaceOf(e, batch);
+  BatchStates states;
+
+  PetscFunctionBeginUser;
+  ElasticityGather(e, at.g, at.batch, u, e->u);
+  MovedStates(e, at, &at.g->kernel, set, e->u, ConstantsOf(at), PETSC_TRUE, &states);
+  TakePoints(at, set, PETSC_TRUE, &states, NULL, NULL, cells);
+  for (int lane = 0; lane < ElasticityBatchCells(at.g, at.batch); lane++) {
+    VolumeModuli moduli = {.projected = INFINITY};
+
+    if (at.g->kernel.formulation == FORMULATION_MIXED)
+      ElementVolumeModuli(&at.g->kernel, &ConstantsOf(at)[lane], KERNEL_LANES, &moduli);
+    cells[lane].compliance = 1 / moduli.projected;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest difference of the entries of v between two nodes of a cell. */
-static PetscReal LargestDifference(int nodes, int dim, const PetscReal *v)
+/* Largest difference of the entries of a motion between two nodes of a cell of a batch. first: number of the first node
+ */
+static PetscReal LargestDifference(int first, int nodes, int dim, int lane, const PetscReal *v)
 {
   PetscReal most = 0;
 
-  for (int a = 1; a < nodes; a++)
-    for (int i = 0; i < dim; i++) most = PetscMax(most, PetscAbsReal(v[a * dim + i] - v[i]));
+  for (int a = first + 1; a < nodes; a++)
+    for (int i = 0; i < dim; i++)
+      most = PetscMax(
+        most, PetscAbsReal(v[(a * dim + i) * KERNEL_LANES + lane] - v[(first * dim + i) * KERNEL_LANES + lane]));
   return most;
 }
 
+/* The part of a motion by which the nodes of each cell of a batch are moved for derivatives along it, and twice that;
+   0: nothing changes along it. */
+static void ChooseSteps(Elasticity e, Place at, const PetscReal *v, PetscReal step[KERNEL_LANES],
+                        PetscReal twice[KERNEL_LANES])
+{
+  const CellGroup *g     = at.g;
+  const int        nodes = ElementGet(g->kernel.type)->nodes, dim = e->dim;
+
+  for (int lane = 0; lane < KERNEL_LANES; lane++) {
+    const PetscInt slot = PetscMin(at.batch * KERNEL_LANES + lane, g->n_cells - 1);
+    PetscReal      X[MAX_DOFS], most;
+
+    most = PetscMax(LargestDifference(0, nodes, dim, lane, v), LargestDifference(nodes, g->nodes, dim, lane, v));
+    for (int a = 0; a < nodes && g->kernel.geometry == GEOMETRY_AXISYMMETRIC; a++)
+      most = PetscMax(most, PetscAbsReal(v[a * dim * KERNEL_LANES + lane]));
+    ElasticitySlotCoordinates(e, g, slot, X);
+    step[lane]  = most > 0 ? POINT_STEP * CellLength(g->kernel.type, dim, X) / most : 0;
+    twice[lane] = 2 * step[lane];
+  }
+}
+
 /*@
-  ElasticityPointRates - gives how displacement gradients, stresses and pressures at points of a cell change along a
-  motion.
+  ElasticityPointRates - gives how displacement gradients, stresses and pressures at points of a batch of cells change
+  along a motion.
 
   Not collective
 
   Input Parameters:
-+ e    - the elasticity, as for ElasticityPointStates()
-. cell - a local cell
-. set  - which points
-. u    - local displacements (length) [n_nodes*dim]
-- v    - local motion [n_nodes*dim]
++ e        - the elasticity, as for ElasticityPointStates()
+. batch    - of cells, see ElasticityBatch()
+. set      - which points
+. u        - local displacements (length) [n_nodes*dim]
+. v        - local motion [n_nodes*dim]
+- stresses - PETSC_FALSE: those of stresses are not wanted, and are 0
 
-  Output Parameters:
-+ H        - derivative of the displacement gradient along v [points][9]
-. P        - likewise of the stress [points][9]; or NULL
-- pressure - derivative of the pressure of a mixed element, 0 of others [points]
+  Output Parameter:
+. cells - derivatives along v [ELASTICITY_BATCH]
 @*/
-PetscErrorCode ElasticityPointRates(Elasticity e, PetscInt cell, CellPoints set, const PetscReal *u, const PetscReal *v,
-                                    PetscReal *H, PetscReal *P, PetscReal *pressure)
+PetscErrorCode ElasticityPointRates(Elasticity e, PetscInt batch, CellPoints set, const PetscReal *u,
+                                    const PetscReal *v, PetscBool stresses, PointStates *cells)
 {
-  CellGroup *g      = &e->groups[e->cell_group[cell]];
-  const int  points = PointTable(g, set)->points, nodes = ElementGet(g->kernel.type)->nodes;
-  PetscReal  X[MAX_DOFS], at[MAX_DOFS], cell_u[MAX_DOFS], cell_v[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS],
-    m[MIXED_PRESSURES], most, step;
+  const Place at   = PlaceOf(e, batch);
+  const int   dofs = at.g->nodes * e->dim * KERNEL_LANES;
+  PetscReal   step[KERNEL_LANES], twice[KERNEL_LANES], moved[MAX_DOFS * KERNEL_LANES];
+  BatchStates states[2];
 
   PetscFunctionBeginUser;
-  ElasticityGatherCell(e, g, e->cell_slot[cell], v, X, cell_v, constants, m);
-  ElasticityGatherCell(e, g, e->cell_slot[cell], u, X, cell_u, constants, m);
-  if (g->kernel.formulation == FORMULATION_FULL && !P) { /* gradients are linear in displacements */
-    const KernelCase nodal = NodalCase(g);
-
-    MovedStates(e, g, &nodal, set, X, cell_v, (PetscReal[]){1, 1}, NULL, H, pressure, NULL);
+  ElasticityGather(e, at.g, at.batch, v, e->u_0);
+  if (at.g->kernel.formulation == FORMULATION_FULL && !stresses) { /* gradients are linear in displacements */
+    NodalStates(e, at, set, e->u_0, states);
+    TakePoints(at, set, PETSC_FALSE, states, NULL, NULL, cells);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(PetscArrayzero(H, points * 9));
-  if (P) PetscCall(PetscArrayzero(P, points * 9));
-  PetscCall(PetscArrayzero(pressure, points));
-  most = PetscMax(LargestDifference(nodes, e->dim, cell_v),
-                  LargestDifference(g->nodes - nodes, e->dim, &cell_v[nodes * e->dim]));
-  if (g->kernel.geometry == GEOMETRY_AXISYMMETRIC)
-    for (int a = 0; a < nodes; a++) most = PetscMax(most, PetscAbsReal(cell_v[a * e->dim]));
-  if (!(most > 0)) PetscFunctionReturn(PETSC_SUCCESS);
-  step = POINT_STEP * CellLength(g->kernel.type, e->dim, X) / most;
-  for (int side = -1; side <= 1; side += 2) {
-    PetscReal H_at[ELEMENT_MAX_POINTS * 9], P_at[ELEMENT_MAX_POINTS * 9], pressure_at[ELEMENT_MAX_POINTS];
-
-    for (int k = 0; k < g->nodes * e->dim; k++) at[k] = cell_u[k] + side * step * cell_v[k];
-    MovedStates(e, g, &g->kernel, set, X, at, constants, m, H_at, pressure_at, P ? P_at : NULL);
-    for (int k = 0; k < points * 9; k++) H[k] += side * H_at[k] / (2 * step);
-    for (int k = 0; k < points * 9 && P; k++) P[k] += side * P_at[k] / (2 * step);
-    for (int p = 0; p < points; p++) pressure[p] += side * pressure_at[p] / (2 * step);
+  ElasticityGather(e, at.g, at.batch, u, e->u);
+  ChooseSteps(e, at, e->u_0, step, twice);
+  for (int side = 0; side < 2; side++) {
+    for (int k = 0; k < dofs; k++) moved[k] = e->u[k] + (side ? 1 : -1) * step[k % KERNEL_LANES] * e->u_0[k];
+    MovedStates(e, at, &at.g->kernel, set, moved, ConstantsOf(at), stresses, &states[side]);
   }
+  TakePoints(at, set, stresses, &states[1], &states[0], twice, cells);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

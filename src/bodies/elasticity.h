@@ -4,8 +4,8 @@
    block CSR over local nodes, with ghost rows and every dof, supported ones too. It may extrapolate stresses from an
    earlier state (stressreference.h). ElasticityMatrix() passes it on to a parallel AIJ matrix over the free dofs.
    ElasticityMultiplyLocal() multiplies it by local vectors for the prescribed dofs. ElasticityReleaseTangent() frees it
-   until the next tangent. ElasticityNodalStress() gives stresses for output. ElasticityPlacePoints(),
-   ElasticityPointStates() and ElasticityPointRates() show the quadrature points of one cell.
+   until the next tangent. ElasticityNodalStress() gives stresses for output. ElasticityPlacePoints()
+   places the quadrature points of one cell, ElasticityPointStates() and ElasticityPointRates() show those of a batch.
 
    Mixed elements whose volume is kept exactly, or nearly so, have multipliers (volumes.c). ElasticityFollow() changes
    them in an iteration of Newton's method, ElasticityAugment() after a solve until the volume is right.
@@ -17,6 +17,7 @@
    ElasticityAcceptPlastic() alone changes it. ElasticityArchivePlastic() saves and loads it. */
 #pragma once
 #include "files/archive.h"
+#include "kernels/elementkernel.h"
 #include "kernels/stressreference.h"
 #include "mesh/mesh.h"
 
@@ -81,11 +82,22 @@ PetscErrorCode ElasticityHas(Elasticity, Formulation, PetscBool *any);
 /* Points of a cell: the quadrature points of the element, or those of ElementGetProducts() */
 typedef enum { POINTS_OF_ELEMENT, POINTS_OF_PRODUCTS } CellPoints;
 
+enum { ELASTICITY_BATCH = KERNEL_LANES };
+
+/* The points of one cell, or how they change along a motion */
+typedef struct {
+  PetscReal H[ELEMENT_MAX_POINTS * 9];    /* displacement gradients at 3 i + I */
+  PetscReal P[ELEMENT_MAX_POINTS * 9];    /* first Piola-Kirchhoff stresses, with small strains the stresses */
+  PetscReal pressure[ELEMENT_MAX_POINTS]; /* of a mixed element (stress), 0 of others */
+  PetscReal compliance; /* of the volume of a mixed element: one over the modulus (one over stress); 0 of others */
+} PointStates;
+
 PetscErrorCode ElasticityPlacePoints(Elasticity, PetscInt cell, CellPoints, PetscReal *x, PetscReal *volume);
-PetscErrorCode ElasticityPointStates(Elasticity, PetscInt cell, CellPoints, const PetscReal *u, PetscReal *H,
-                                     PetscReal *P, PetscReal *pressure, PetscReal *compliance);
-PetscErrorCode ElasticityPointRates(Elasticity, PetscInt cell, CellPoints, const PetscReal *u, const PetscReal *v,
-                                    PetscReal *H, PetscReal *P, PetscReal *pressure);
-PetscErrorCode ElasticityPointModes(Elasticity, PetscInt cell, const PetscReal *v, PetscReal *H);
+PetscInt       ElasticityBatches(Elasticity);
+void           ElasticityBatch(Elasticity, PetscInt batch, int *n, const PetscInt **cell);
+PetscErrorCode ElasticityPointStates(Elasticity, PetscInt batch, CellPoints, const PetscReal *u, PointStates *);
+PetscErrorCode ElasticityPointRates(Elasticity, PetscInt batch, CellPoints, const PetscReal *u, const PetscReal *v,
+                                    PetscBool stresses, PointStates *);
+PetscErrorCode ElasticityPointModes(Elasticity, PetscInt batch, const PetscReal *v, PointStates *);
 PetscReal      ElasticityCellModulus(Elasticity, PetscInt cell);
 PetscInt       ElasticityInvertedCell(Elasticity, int *fault);

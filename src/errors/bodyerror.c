@@ -59,53 +59,71 @@ static int CountPoints(BodyError b, PetscInt cell, CellPoints set)
   return set == POINTS_OF_PRODUCTS ? ElementGetProducts(type)->points : ElementGet(type)->points;
 }
 
-/* Takes what modes add to displacement gradients of a field v at the quadrature points of a cell [points][9]. */
-static PetscErrorCode CellModes(BodyError b, const PetscReal *v, PetscInt cell, PetscReal *H, PetscReal *modes)
+/* Takes what modes add to displacement gradients of a field v at the quadrature points of a batch of cells. states: of
+   the field; modes: of all cells [points][9]. */
+static PetscErrorCode BatchModes(BodyError b, PetscInt batch, const PetscReal *v, PointStates *states, PetscReal *modes)
 {
-  const PetscInt first = RecoveryPoints(b->recovery, cell, NULL);
+  const PetscInt *cell;
+  int             n;
 
   PetscFunctionBeginUser;
-  PetscCall(ElasticityPointModes(b->elasticity, cell, v, H));
-  PetscCall(PetscArraycpy(&modes[first * 9], H, CountPoints(b, cell, POINTS_OF_ELEMENT) * 9));
+  ElasticityBatch(b->elasticity, batch, &n, &cell);
+  PetscCall(ElasticityPointModes(b->elasticity, batch, v, states));
+  for (int i = 0; i < n; i++)
+    PetscCall(PetscArraycpy(&modes[RecoveryPoints(b->recovery, cell[i], NULL) * 9], states[i].H,
+                            CountPoints(b, cell[i], POINTS_OF_ELEMENT) * 9));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Evaluates the solution at points of a cell: [points][state_width]. modes: of all cells, at the quadrature points;
-   NULL: not wanted. */
-static PetscErrorCode CellState(BodyError b, PetscInt cell, CellPoints set, PetscReal *states, PetscReal *modes)
+/* Evaluates the solution at points of a batch of cells. state: where each cell's go [points][state_width]; modes: what
+   modes add to displacement gradients at the points of all cells, or NULL. */
+static PetscErrorCode BatchState(BodyError b, PetscInt batch, CellPoints set, PetscReal *const state[],
+                                 PetscReal *modes)
 {
-  PetscReal H[ELEMENT_MAX_POINTS * 9], P[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
+  PointStates     states[ELASTICITY_BATCH];
+  const PetscInt *cell;
+  int             n;
 
   PetscFunctionBeginUser;
-  PetscCall(ElasticityPointStates(b->elasticity, cell, set, b->u, H, P, pressure, &b->compliance[cell]));
-  for (int p = 0; p < CountPoints(b, cell, set); p++) {
-    PetscReal *state = &states[p * b->state_width];
+  ElasticityBatch(b->elasticity, batch, &n, &cell);
+  PetscCall(ElasticityPointStates(b->elasticity, batch, set, b->u, states));
+  for (int i = 0; i < n; i++) {
+    PetscReal *to = state[i];
 
-    for (int k = 0; k < b->entries; k++) *state++ = P[9 * p + b->entry[k]];
-    if (!b->mixed) continue;
-    *state++ = pressure[p];
-    *state   = Dilatation(&H[9 * p], b->kinematics);
+    b->compliance[cell[i]] = states[i].compliance;
+    for (int p = 0; p < CountPoints(b, cell[i], set); p++) {
+      for (int k = 0; k < b->entries; k++) *to++ = states[i].P[9 * p + b->entry[k]];
+      if (!b->mixed) continue;
+      *to++ = states[i].pressure[p];
+      *to++ = Dilatation(&states[i].H[9 * p], b->kinematics);
+    }
   }
-  if (modes) PetscCall(CellModes(b, b->u, cell, H, modes));
+  if (modes) PetscCall(BatchModes(b, batch, b->u, states, modes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Evaluates an adjoint solution at points of a cell: [points][rate_width]. modes: as above. */
-static PetscErrorCode CellRate(BodyError b, const PetscReal *y, PetscInt cell, CellPoints set, PetscReal *rates,
-                               PetscReal *modes)
+/* Evaluates an adjoint solution at points of a batch of cells. rate: where each cell's go [points][rate_width]; modes:
+   as above. */
+static PetscErrorCode BatchRate(BodyError b, const PetscReal *y, PetscInt batch, CellPoints set,
+                                PetscReal *const rate[], PetscReal *modes)
 {
-  PetscReal H[ELEMENT_MAX_POINTS * 9], P[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
+  PointStates     rates[ELASTICITY_BATCH];
+  const PetscInt *cell;
+  int             n;
 
   PetscFunctionBeginUser;
-  PetscCall(ElasticityPointRates(b->elasticity, cell, set, b->u, y, H, b->modes ? P : NULL, pressure));
-  for (int p = 0; p < CountPoints(b, cell, set); p++) {
-    PetscReal *rate = &rates[p * b->rate_width];
+  ElasticityBatch(b->elasticity, batch, &n, &cell);
+  PetscCall(ElasticityPointRates(b->elasticity, batch, set, b->u, y, (PetscBool)(b->modes != NULL), rates));
+  for (int i = 0; i < n; i++) {
+    PetscReal *to = rate[i];
 
-    for (int k = 0; k < b->entries; k++) *rate++ = H[9 * p + b->entry[k]];
-    if (b->mixed) *rate++ = pressure[p];
-    for (int k = 0; k < b->entries && b->modes; k++) *rate++ = P[9 * p + b->entry[k]];
+    for (int p = 0; p < CountPoints(b, cell[i], set); p++) {
+      for (int k = 0; k < b->entries; k++) *to++ = rates[i].H[9 * p + b->entry[k]];
+      if (b->mixed) *to++ = rates[i].pressure[p];
+      for (int k = 0; k < b->entries && b->modes; k++) *to++ = rates[i].P[9 * p + b->entry[k]];
+    }
   }
-  if (modes) PetscCall(CellModes(b, y, cell, H, modes));
+  if (modes) PetscCall(BatchModes(b, batch, y, rates, modes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -118,28 +136,72 @@ static void ListEntries(BodyError b)
   if (b->mesh->dim == 2) b->entry[b->entries++] = 8;
 }
 
-/* What recovered fields of the solution differ by from the computed ones at the points of products. */
+/* Evaluates the solution at the points of all cells. */
+static PetscErrorCode FindStates(BodyError b)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < ElasticityBatches(b->elasticity); k++) {
+    PetscReal      *state[ELASTICITY_BATCH];
+    const PetscInt *cell;
+    int             n;
+
+    ElasticityBatch(b->elasticity, k, &n, &cell);
+    for (int i = 0; i < n; i++) state[i] = &b->state[RecoveryPoints(b->recovery, cell[i], NULL) * b->state_width];
+    PetscCall(BatchState(b, k, POINTS_OF_ELEMENT, state, b->modes));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Evaluates an adjoint solution at the points of all cells. */
+static PetscErrorCode FindRates(BodyError b, const PetscReal *y, PointRates *rates)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < ElasticityBatches(b->elasticity); k++) {
+    PetscReal      *rate[ELASTICITY_BATCH];
+    const PetscInt *cell;
+    int             n;
+
+    ElasticityBatch(b->elasticity, k, &n, &cell);
+    for (int i = 0; i < n; i++) rate[i] = &rates->value[RecoveryPoints(b->recovery, cell[i], NULL) * b->rate_width];
+    PetscCall(BatchRate(b, y, k, POINTS_OF_ELEMENT, rate, rates->modes));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What recovered fields of the solution differ by from the computed ones at the points of products of a batch. */
+static PetscErrorCode BatchDefects(BodyError b, PetscInt batch, const PetscReal *patches)
+{
+  PetscReal       more[ELASTICITY_BATCH][ELEMENT_MAX_POINTS * MOST_WIDTH], *computed[ELASTICITY_BATCH];
+  const PetscInt *cell;
+  int             n;
+  PetscBool       same;
+
+  PetscFunctionBeginUser;
+  ElasticityBatch(b->elasticity, batch, &n, &cell);
+  same = SamePoints(b, cell[0]);
+  for (int i = 0; i < n; i++)
+    computed[i] = same ? &b->state[RecoveryPoints(b->recovery, cell[i], NULL) * b->state_width] : more[i];
+  if (!same) PetscCall(BatchState(b, batch, POINTS_OF_PRODUCTS, computed, NULL));
+  for (int i = 0; i < n; i++) {
+    PetscReal *defect = &b->defect[RecoveryProducts(b->recovery, cell[i], NULL) * b->state_width];
+
+    for (int p = 0; p < CountPoints(b, cell[i], POINTS_OF_PRODUCTS); p++, defect += b->state_width) {
+      RecoveryEvaluate(b->recovery, b->state_width, patches, cell[i], p, defect);
+      for (int k = 0; k < b->state_width; k++) defect[k] -= computed[i][p * b->state_width + k];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Likewise of all cells. */
 static PetscErrorCode FindDefects(BodyError b)
 {
-  const Mesh mesh = b->mesh;
-  PetscReal *patches, more[ELEMENT_MAX_POINTS * MOST_WIDTH];
-  PetscInt   n = 0;
+  PetscReal *patches;
 
   PetscFunctionBeginUser;
   PetscCall(RecoveryFit(b->recovery, b->state_width, b->state, &patches));
-  PetscCall(PetscMalloc1(RecoveryProducts(b->recovery, mesh->n_cells, NULL) * b->state_width, &b->defect));
-  for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const PetscReal *computed = &b->state[RecoveryPoints(b->recovery, c, NULL) * b->state_width];
-
-    if (!SamePoints(b, c)) {
-      PetscCall(CellState(b, c, POINTS_OF_PRODUCTS, more, NULL));
-      computed = more;
-    }
-    for (int p = 0; p < CountPoints(b, c, POINTS_OF_PRODUCTS); p++) {
-      RecoveryEvaluate(b->recovery, b->state_width, patches, c, p, &b->defect[n]);
-      for (int k = 0; k < b->state_width; k++) b->defect[n++] -= computed[p * b->state_width + k];
-    }
-  }
+  PetscCall(PetscMalloc1(RecoveryProducts(b->recovery, b->mesh->n_cells, NULL) * b->state_width, &b->defect));
+  for (PetscInt k = 0; k < ElasticityBatches(b->elasticity); k++) PetscCall(BatchDefects(b, k, patches));
   PetscCall(PetscFree(patches));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -180,9 +242,7 @@ PetscErrorCode BodyErrorCreate(Mesh mesh, Elasticity elasticity, Kinematics kine
   points = RecoveryPoints(b->recovery, mesh->n_cells, NULL);
   PetscCall(PetscMalloc2(points * b->state_width, &b->state, mesh->n_cells, &b->compliance));
   if (enhanced) PetscCall(PetscMalloc1(points * 9, &b->modes));
-  for (PetscInt c = 0; c < mesh->n_cells; c++)
-    PetscCall(
-      CellState(b, c, POINTS_OF_ELEMENT, &b->state[RecoveryPoints(b->recovery, c, NULL) * b->state_width], b->modes));
+  PetscCall(FindStates(b));
   PetscCall(FindDefects(b));
   *error = b;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -238,22 +298,14 @@ static PetscReal ModesWork(BodyError b, const PointRates *rates)
   return sum;
 }
 
-/* The part of a cell. y: the adjoint solution. */
-static PetscErrorCode CellError(BodyError b, PetscInt cell, const PetscReal *y, const PointRates *rates,
-                                PetscReal *error)
+/* The part of a cell. computed: the adjoint solution at its points of products. */
+static PetscReal CellError(BodyError b, PetscInt cell, const PetscReal *computed, const PointRates *rates)
 {
   const PetscInt   first = RecoveryPoints(b->recovery, cell, NULL);
-  const PetscReal *volume, *computed = &rates->value[first * b->rate_width];
-  const PetscReal *defect = &b->defect[RecoveryProducts(b->recovery, cell, &volume) * b->state_width];
-  const PetscBool  same   = SamePoints(b, cell);
-  PetscReal        more[ELEMENT_MAX_POINTS * MOST_WIDTH];
+  const PetscReal *volume, *defect = &b->defect[RecoveryProducts(b->recovery, cell, &volume) * b->state_width];
+  const PetscBool  same  = SamePoints(b, cell);
+  PetscReal        error = 0;
 
-  PetscFunctionBeginUser;
-  *error = 0;
-  if (!same) {
-    PetscCall(CellRate(b, y, cell, POINTS_OF_PRODUCTS, more, NULL));
-    computed = more;
-  }
   for (int p = 0; p < CountPoints(b, cell, POINTS_OF_PRODUCTS); p++, defect += b->state_width) {
     PetscReal rate[MOST_WIDTH], product = 0;
 
@@ -263,8 +315,27 @@ static PetscErrorCode CellError(BodyError b, PetscInt cell, const PetscReal *y, 
     if (b->compliance[cell] > 0)
       product += (rate[b->entries] - computed[p * b->rate_width + b->entries]) *
                  (defect[b->entries + 1] - b->compliance[cell] * defect[b->entries]);
-    *error -= volume[p] * product;
+    error -= volume[p] * product;
   }
+  return error;
+}
+
+/* The parts of the cells of a batch. y: the adjoint solution; cells: of all. */
+static PetscErrorCode BatchErrors(BodyError b, PetscInt batch, const PetscReal *y, const PointRates *rates,
+                                  PetscReal *cells)
+{
+  PetscReal       more[ELASTICITY_BATCH][ELEMENT_MAX_POINTS * MOST_WIDTH], *computed[ELASTICITY_BATCH];
+  const PetscInt *cell;
+  int             n;
+  PetscBool       same;
+
+  PetscFunctionBeginUser;
+  ElasticityBatch(b->elasticity, batch, &n, &cell);
+  same = SamePoints(b, cell[0]);
+  for (int i = 0; i < n; i++)
+    computed[i] = same ? &rates->value[RecoveryPoints(b->recovery, cell[i], NULL) * b->rate_width] : more[i];
+  if (!same) PetscCall(BatchRate(b, y, batch, POINTS_OF_PRODUCTS, computed, NULL));
+  for (int i = 0; i < n; i++) cells[cell[i]] = CellError(b, cell[i], computed[i], rates);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -290,12 +361,10 @@ PetscErrorCode BodyErrorEvaluate(BodyError b, const PetscReal *y, PetscReal *cel
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(points * b->rate_width, &rates.value));
   if (b->modes) PetscCall(PetscMalloc1(points * 9, &rates.modes));
-  for (PetscInt c = 0; c < b->mesh->n_cells; c++)
-    PetscCall(CellRate(b, y, c, POINTS_OF_ELEMENT, &rates.value[RecoveryPoints(b->recovery, c, NULL) * b->rate_width],
-                       rates.modes));
+  PetscCall(FindRates(b, y, &rates));
   PetscCall(RecoveryFit(b->recovery, b->rate_width, rates.value, &rates.patches));
+  for (PetscInt k = 0; k < ElasticityBatches(b->elasticity); k++) PetscCall(BatchErrors(b, k, y, &rates, cells));
   for (PetscInt c = 0; c < b->mesh->n_cells; c++) {
-    PetscCall(CellError(b, c, y, &rates, &cells[c]));
     sum[0] += cells[c];
     sum[1] += PetscAbsReal(cells[c]);
   }

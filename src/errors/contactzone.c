@@ -219,18 +219,33 @@ PetscErrorCode ContactZoneFind(Model model, PetscBool *cells, ContactZone *zone)
 + model - at its solution
 - pair  - number of the pair
 
-  Output Parameter:
-. zone - the same on all ranks
+  Output Parameters:
++ cells - for each local cell: a face of it is in contact
+- zone  - the same on all ranks
 @*/
-PetscErrorCode ContactZoneOfPair(Model model, int pair, ContactZone *zone)
+PetscErrorCode ContactZoneOfPair(Model model, int pair, PetscBool *cells, ContactZone *zone)
 {
   PetscFunctionBeginUser;
-  PetscCall(FindZone(model, pair, pair + 1, NULL, zone));
+  PetscCall(PetscArrayzero(cells, model->mesh->n_cells));
+  PetscCall(FindZone(model, pair, pair + 1, cells, zone));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ContactZoneLeft - gives what the end of a zone may leave of error, over its forces: it is off by half a face at most.
+  ContactZoneOff - gives how far the end of a zone may be off, over the extent of the zone: by half a face.
+
+  Not collective
+
+  Input Parameter:
+. zone - of ContactZoneFind() or ContactZoneOfPair()
+@*/
+PetscReal ContactZoneOff(const ContactZone *zone)
+{
+  return zone->layers > 0 ? 0.5 / zone->layers : 0;
+}
+
+/*@
+  ContactZoneLeft - gives what the end of a zone may leave of error, over its forces, see ContactZoneOff().
 
   Not collective
 
@@ -239,7 +254,7 @@ PetscErrorCode ContactZoneOfPair(Model model, int pair, ContactZone *zone)
 @*/
 PetscReal ContactZoneLeft(const ContactZone *zone)
 {
-  return zone->layers > 0 ? ZONE_SPHERE * PetscSqr(0.5 / zone->layers) : 0;
+  return ZONE_SPHERE * PetscSqr(ContactZoneOff(zone));
 }
 
 /*@

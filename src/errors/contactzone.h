@@ -19,6 +19,7 @@ typedef struct {
 } ContactZone;
 
 PetscErrorCode ContactZoneFind(Model, PetscBool *cells, ContactZone *);
-PetscErrorCode ContactZoneOfPair(Model, int pair, ContactZone *);
+PetscErrorCode ContactZoneOfPair(Model, int pair, PetscBool *cells, ContactZone *);
+PetscReal      ContactZoneOff(const ContactZone *);
 PetscReal      ContactZoneLeft(const ContactZone *);
 PetscReal      ContactZoneLayers(PetscReal left);

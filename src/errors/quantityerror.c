@@ -28,14 +28,13 @@ PetscBool ModelDependsOnPath(Model model)
 /* Adds up the known parts. */
 static void Total(QuantityError *error)
 {
-  const ErrorCause recovered[] = {ERROR_GEOMETRY, ERROR_FACES};
+  const ErrorCause of_gaps[] = {ERROR_GEOMETRY, ERROR_FACES};
+  PetscReal        gaps      = 0;
 
   error->sum = error->magnitude = 0;
-  error->uncertain              = QUANTITYERROR_DOUBT * error->spread;
-  for (int k = 0; k < 2; k++) {
-    if (!isnan((double)error->part[recovered[k]]))
-      error->uncertain += QUANTITYERROR_DOUBT * PetscAbsReal(error->part[recovered[k]]);
-  }
+  for (int k = 0; k < 2; k++)
+    if (!isnan((double)error->part[of_gaps[k]])) gaps += error->part[of_gaps[k]];
+  error->uncertain = QUANTITYERROR_DOUBT * (error->spread + PetscAbsReal(gaps)) + error->end;
   for (int c = 0; c < ERROR_CAUSES; c++) {
     if (isnan((double)error->part[c])) continue;
     error->sum += error->part[c];
@@ -74,22 +73,35 @@ PetscBool QuantityErrorCancels(const QuantityError *error)
   return (PetscBool)(error->uncertain > PetscAbsReal(error->sum));
 }
 
-/* Joins the parts of one quantity. shape: that of the masters; faces: that of contact within faces. */
+/* Sums up the magnitudes of the cells' shares, each times what it is off by. */
+static PetscErrorCode SumOff(Mesh mesh, const PetscReal *cells, const PetscReal off[], PetscReal *sum)
+{
+  PetscFunctionBeginUser;
+  *sum = 0;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) *sum += off[c] * PetscAbsReal(cells[c]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Joins the parts of one quantity. shape: that of the masters; faces: that of contact within faces; off: of the cells.
+ */
 static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint, PetscReal shape, PetscReal faces,
-                           QuantityError *error)
+                           const PetscReal off[], QuantityError *error)
 {
   BodyErrorSums sums;
 
   PetscFunctionBeginUser;
   error->why = adjoint->known ? NULL : "the transposed tangent cannot be solved with";
-  error->sum = error->magnitude = error->uncertain = error->spread = 0;
-  error->shared                                 = PETSC_FALSE;
-  error->cells                                  = NULL;
+  error->sum = error->magnitude = error->uncertain = 0;
+  error->spread = error->end = 0;
+  error->shared              = PETSC_FALSE;
+  error->cells               = NULL;
   for (int c = 0; c < ERROR_CAUSES; c++) error->part[c] = NAN;
   if (error->why) PetscFunctionReturn(PETSC_SUCCESS);
   error->shared = PETSC_TRUE;
   PetscCall(PetscMalloc1(model->mesh->n_cells, &error->cells));
   PetscCall(BodyErrorEvaluate(bodies, adjoint->y, error->cells, &sums));
+  PetscCall(SumOff(model->mesh, error->cells, off, &error->end));
   error->part[ERROR_BODIES] = sums.error;
   error->spread             = sums.spread;
   if (!sums.holds) error->why = "enhanced elements (bodies.*.formulation) turn too much within themselves";
@@ -111,7 +123,8 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
   Input Parameters:
 + model      - after ModelSolve() has found a solution, before ModelAccept()
 . n          - number of quantities
-- functional - their first variations
+. functional - their first variations
+- off        - of each local cell: by how much of itself its share may be off, as a zone of contact ends elsewhere
 
   Output Parameter:
 . error - of each; free them with QuantityErrorReset()
@@ -119,7 +132,8 @@ static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint
   Note:
   The state stays as it is. One tangent serves all quantities, see ModelAdjoint().
 @*/
-PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional functional[], QuantityError error[])
+PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional functional[], const PetscReal off[],
+                                      QuantityError error[])
 {
   const PetscInt dofs = model->mesh->n_nodes * model->mesh->dim;
   BodyError      bodies;
@@ -135,7 +149,7 @@ PetscErrorCode QuantityErrorsEstimate(Model model, int n, const Functional funct
   PetscCall(ModelWithinFaces(model, n, functional, adjoint, faces));
   PetscCall(
     BodyErrorCreate(model->mesh, model->problem->elasticity, model->scene->kinematics, model->problem->trial, &bodies));
-  for (int i = 0; i < n; i++) PetscCall(Join(model, bodies, &adjoint[i], shape[i], faces[i], &error[i]));
+  for (int i = 0; i < n; i++) PetscCall(Join(model, bodies, &adjoint[i], shape[i], faces[i], off, &error[i]));
   PetscCall(BodyErrorDestroy(&bodies));
   for (int i = 0; i < n; i++) PetscCall(PetscFree(adjoint[i].y));
   PetscCall(PetscFree3(adjoint, shape, faces));

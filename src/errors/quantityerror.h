@@ -12,8 +12,11 @@
    analytic, all of a slave is in contact. That straight edges of elements stand for curved boundaries is in no part.
 
    What is estimated by recovered fields is known to a factor of two: cells, contact surfaces, contact within faces. Half
-   of their magnitudes is what the sum may be off by. Where that is more than the sum, the parts cancel, and the error
-   may be as large with either sign (QuantityErrorCancels()).
+   of their magnitudes is what the sum may be off by. The last two correct the same gaps and count together: nodes of a
+   master that yield in waves under nodal forces are in both, with opposite signs. Behind a zone of contact the fields
+   are off besides by as much of themselves as the end of the zone is off by, over its extent (ContactZoneOff()). Where
+   all that is more than the sum, the parts cancel, and the error may be as large with either sign
+   (QuantityErrorCancels()).
 
    QuantityErrorShares() serves quantities without a first variation, such as a peak or the end of a contact zone: it
    says where elements are to become smaller, but not how large the error is. */
@@ -37,13 +40,14 @@ typedef struct {
   PetscReal   part[ERROR_CAUSES];
   PetscReal   sum;       /* of the known parts */
   PetscReal   magnitude; /* sum of their absolute values */
-  PetscReal   uncertain; /* of the sum: half of what is estimated by recovered fields */
+  PetscReal   uncertain; /* what the sum may be off by */
+  PetscReal   end;       /* what cells behind zones of contact may be off by, as the ends of these are off */
   PetscReal   spread;    /* sum of the magnitudes of the cells' shares in that of the bodies */
   PetscBool   shared;    /* the cells' shares are known; the same on all ranks */
   PetscReal  *cells;     /* share of each local cell in that of the bodies; NULL on a rank without cells, too */
 } QuantityError;
 
-PetscErrorCode QuantityErrorsEstimate(Model, int n, const Functional[], QuantityError[]);
+PetscErrorCode QuantityErrorsEstimate(Model, int n, const Functional[], const PetscReal off[], QuantityError[]);
 PetscErrorCode QuantityErrorShares(Model, QuantityError *);
 void           QuantityErrorScale(PetscReal value, QuantityError *);
 PetscBool      ModelDependsOnPath(Model);

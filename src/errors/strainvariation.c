@@ -59,19 +59,18 @@ static PetscReal Product(const PointPair *pair)
 }
 
 /* Adds the two integrals over a cell: sum[0] of what varies, sum[1] of all. */
-static PetscErrorCode AddCell(Mesh mesh, Scene scene, Elasticity elasticity, PetscInt cell, const PetscReal *u,
+static PetscErrorCode AddCell(Mesh mesh, Scene scene, Elasticity elasticity, PetscInt cell, const PointStates *states,
                               PetscReal sum[2])
 {
   const int points = ElementGet(mesh->cell_type[cell])->points;
-  PetscReal H[ELEMENT_MAX_POINTS * 9], P[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS], compliance,
-    x[ELEMENT_MAX_POINTS * 3], volume[ELEMENT_MAX_POINTS], whole = 0, all = 0;
+  PetscReal x[ELEMENT_MAX_POINTS * 3], volume[ELEMENT_MAX_POINTS], whole = 0, all = 0;
   PointPair mean = {{0}, {0}};
 
   PetscFunctionBeginUser;
   PetscCall(ElasticityPlacePoints(elasticity, cell, POINTS_OF_ELEMENT, x, volume));
-  PetscCall(ElasticityPointStates(elasticity, cell, POINTS_OF_ELEMENT, u, H, P, pressure, &compliance));
   for (int p = 0; p < points; p++) {
-    const PointPair pair = Pair((PetscBool)(scene->kinematics == KINEMATICS_FINITE), &H[9 * p], &P[9 * p]);
+    const PointPair pair =
+      Pair((PetscBool)(scene->kinematics == KINEMATICS_FINITE), &states->H[9 * p], &states->P[9 * p]);
 
     for (int c = 0; c < 6; c++) {
       mean.strain[c] += volume[p] * pair.strain[c];
@@ -94,6 +93,24 @@ static PetscBool Counts(Mesh mesh, Scene scene, PetscInt cell)
 
   return (PetscBool)(type->order == 1 && type->points > 1 && body->formulation == FORMULATION_FULL &&
                      !MaterialGetLaw(law)->plastic && law != MATERIAL_UMAT);
+}
+
+/* Adds the cells of a batch that count to the sums of their bodies. */
+static PetscErrorCode AddBatch(Mesh mesh, Scene scene, Elasticity elasticity, PetscInt batch, const PetscReal *u,
+                               PetscReal *sum)
+{
+  PointStates     states[ELASTICITY_BATCH];
+  const PetscInt *cell;
+  int             n, counts = 0;
+
+  PetscFunctionBeginUser;
+  ElasticityBatch(elasticity, batch, &n, &cell);
+  for (int i = 0; i < n; i++) counts += Counts(mesh, scene, cell[i]);
+  if (counts) PetscCall(ElasticityPointStates(elasticity, batch, POINTS_OF_ELEMENT, u, states));
+  for (int i = 0; i < n && counts; i++)
+    if (Counts(mesh, scene, cell[i]))
+      PetscCall(AddCell(mesh, scene, elasticity, cell[i], &states[i], &sum[2 * mesh->cell_body[cell[i]]]));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -120,8 +137,7 @@ PetscErrorCode StrainVariation(Mesh mesh, Scene scene, Elasticity elasticity, co
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(2 * scene->n_bodies, &sum));
-  for (PetscInt c = 0; c < mesh->n_cells; c++)
-    if (Counts(mesh, scene, c)) PetscCall(AddCell(mesh, scene, elasticity, c, u, &sum[2 * mesh->cell_body[c]]));
+  for (PetscInt k = 0; k < ElasticityBatches(elasticity); k++) PetscCall(AddBatch(mesh, scene, elasticity, k, u, sum));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2 * scene->n_bodies, MPIU_REAL, MPIU_SUM, mesh->comm));
   for (int b = 0; b < scene->n_bodies; b++) share[b] = sum[2 * b + 1] > 0 ? sum[2 * b] / sum[2 * b + 1] : 0;
   PetscCall(PetscFree(sum));

@@ -165,36 +165,91 @@ static void AddPressureStress(const double H[9], double pressure, int finite, do
   }
 }
 
+/* First Piola-Kirchhoff stresses of the law at point p of LANES elements of a batch, without the pressure of mixed
+   elements. */
+static void PartStress(const KernelCase *kernel, int part, const double *constants, int p, const double *H, double *P)
+{
+  const PlasticBatch *plastic = kernel->plastic;
+  const ElasticLaw   *law     = MaterialGetLaw(kernel->law);
+  const int           n       = kernel->n_constants ? kernel->n_constants : law->constants;
+  Lanes               lanes_H[9], lanes_P[9], used[MATERIAL_MAX_CONSTANTS], state[PLASTIC_MAX_STATE], dilatation;
+
+  for (int r = 0; r < 9; r++) lanes_H[r] = CONST_LANE(H + part, 9 * p + r);
+  for (int k = 0; k < n; k++) used[k] = CONST_LANE(constants + part, k);
+  if (kernel->formulation == FORMULATION_MIXED) used[0] = (Lanes){0};
+  MaterialDilatation(lanes_H, &dilatation);
+  if (plastic) {
+    const int states = ElementStates(kernel), at = ElementStatePoints(kernel) - ElementGet(kernel->type)->points + p;
+
+    for (int k = 0; k < states; k++) state[k] = CONST_LANE(plastic->state + part, at * states + k);
+    VonMisesLaw(kernel->kinematics == KINEMATICS_FINITE, lanes_H, &dilatation, &used[0], &used[1], plastic->hardening,
+                plastic->dt, state, NULL, lanes_P, NULL, NULL);
+  } else
+    law->evaluate(lanes_H, &dilatation, n, used, NULL, lanes_P, NULL);
+  for (int r = 0; r < 9; r++) LANE(P + part, 9 * p + r) = lanes_P[r];
+}
+
+/* Likewise of a routine of the user, one element after the other. */
+static void RoutineStress(const KernelCase *kernel, const double *X, const double *u, int p, const double *H, double *P)
+{
+  const PlasticBatch *plastic = kernel->plastic;
+  const int           states  = ElementStates(kernel);
+  const int           at      = ElementStatePoints(kernel) - ElementGet(kernel->type)->points + p;
+
+  for (int lane = 0; lane < KERNEL_LANES; lane++) {
+    const UmatPlace place = UmatPlaceAt(ElementGet(kernel->type), kernel->kinematics == KINEMATICS_FINITE, plastic,
+                                        lane, p, X + lane, u + lane, KERNEL_LANES);
+    double          H_at[9], P_at[9], W;
+
+    for (int r = 0; r < 9; r++) H_at[r] = H[(9 * p + r) * KERNEL_LANES + lane];
+    (void)UmatPoint(plastic->umat, &place, H_at, &plastic->state[at * states * KERNEL_LANES + lane], KERNEL_LANES, &W,
+                    P_at, NULL, NULL, NULL, NULL);
+    for (int r = 0; r < 9; r++) P[(9 * p + r) * KERNEL_LANES + lane] = P_at[r];
+  }
+}
+
+/* Adds the stress pressure F^-T of mixed elements, with small strains pressure 1, at point p. */
+static void AddPressureStresses(int finite, int p, const double *H, const double *pressure, double *P)
+{
+  for (int lane = 0; lane < KERNEL_LANES; lane++) {
+    double H_at[9], P_at[9] = {0};
+
+    for (int r = 0; r < 9; r++) H_at[r] = H[(9 * p + r) * KERNEL_LANES + lane];
+    AddPressureStress(H_at, pressure[p * KERNEL_LANES + lane], finite, P_at);
+    for (int r = 0; r < 9; r++) P[(9 * p + r) * KERNEL_LANES + lane] += P_at[r];
+  }
+}
+
 /*@
-  ElementPointNominal - computes displacement gradients and first Piola-Kirchhoff stresses at the quadrature points of
-  one element.
+  ElementBatchNominal - computes displacement gradients and first Piola-Kirchhoff stresses at the quadrature points of a
+  batch of KERNEL_LANES elements.
 
   Not collective
 
   Input Parameters:
-+ kernel    - element type, geometry, kinematics and law
-. X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
-. u         - displacements (length) [nodes][dim]
-. constants  - of the law [n_constants]
-- multiplier - of a mixed element (stress times root of volume) [pressures]; NULL: they are 0
++ kernel     - element type, geometry, kinematics, law and formulation of the batch
+. X          - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
+. u          - displacements (length) [nodes][dim][lanes]
+. constants  - of the law [n_constants][lanes]
+- multiplier - of mixed elements (stress times root of volume) [pressures][lanes]; NULL: they are 0
 
   Output Parameters:
-+ H        - as of ElementPointState() [points][9]
-. pressure - likewise [points]
-- P        - at 3 i + I, with the pressure of a mixed element; with small strains the stress [points][9]; or NULL
++ H        - as of ElementBatchStates() [points][9][lanes]
+. pressure - likewise [points][lanes]
+- P        - at 3 i + I, with the pressure of a mixed element; with small strains the stress [points][9][lanes]; or NULL
 @*/
-void ElementPointNominal(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+void ElementBatchNominal(const KernelCase *kernel, const double *X, const double *u, const double *constants,
                          const double *multiplier, double *H, double *pressure, double *P)
 {
-  const Element *e      = ElementGet(kernel->type);
-  const int      finite = kernel->kinematics == KINEMATICS_FINITE;
-  double         used[MATERIAL_MAX_CONSTANTS];
-  const int      n = ElementLawConstants(kernel, constants, used);
+  const int finite = kernel->kinematics == KINEMATICS_FINITE;
 
-  ElementPointState(kernel, X, u, constants, multiplier, H, pressure);
-  for (int p = 0; p < e->points && P; p++) {
-    LawStress(kernel, X, u, n, used, p, &H[9 * p], &P[9 * p]);
-    if (kernel->formulation == FORMULATION_MIXED) AddPressureStress(&H[9 * p], pressure[p], finite, &P[9 * p]);
+  ElementBatchStates(kernel, X, u, constants, multiplier, H, pressure);
+  for (int p = 0; p < ElementGet(kernel->type)->points && P; p++) {
+    if (kernel->plastic && kernel->plastic->umat)
+      RoutineStress(kernel, X, u, p, H, P);
+    else
+      for (int part = 0; part < KERNEL_LANES; part += LANES) PartStress(kernel, part, constants, p, H, P);
+    if (kernel->formulation == FORMULATION_MIXED) AddPressureStresses(finite, p, H, pressure, P);
   }
 }
 

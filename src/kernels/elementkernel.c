@@ -653,3 +653,41 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
   for (int k = 0; k < call.e->points * 9; k++) H[k] = lanes_H[k * KERNEL_LANES];
   for (int q = 0; q < call.e->points; q++) pressure[q] = lanes_pressure[q * KERNEL_LANES];
 }
+
+/*@
+  ElementBatchStates - computes for a batch of KERNEL_LANES elements what ElementPointState() does for one.
+
+  Not collective
+
+  Input Parameters:
++ kernel     - element type, geometry, kinematics, law and formulation of the batch
+. X          - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
+. u          - displacements (length) [nodes][dim][lanes]
+. constants  - of the law [n_constants][lanes]
+- multiplier - of mixed elements (stress times root of volume) [pressures][lanes]; NULL: they are 0
+
+  Output Parameters:
++ H        - F - 1 at 3 i + I (i: space, I: reference) [points][9][lanes]
+- pressure - derivative of the energy of the volume by ln J (stress) [points][lanes]; 0 unless mixed
+@*/
+void ElementBatchStates(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+                        const double *multiplier, double *H, double *pressure)
+{
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS] = {{0}};
+  BatchCall call = StartCall(kernel, lanes_constants);
+  double    J[LANES];
+
+  call.J = J;
+  for (int k = 0; k < call.e->points * KERNEL_LANES; k++) pressure[k] = 0;
+  for (int part = 0; part < KERNEL_LANES; part += LANES) {
+    SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
+    call.part       = part;
+    call.X          = X + part;
+    call.u          = u + part;
+    call.multiplier = multiplier ? multiplier + part : NULL;
+    call.state      = kernel->plastic ? kernel->plastic->state + part : NULL;
+    call.H          = H + part;
+    call.pressure   = pressure + part;
+    GetBatch(kernel)(&call);
+  }
+}

@@ -5,8 +5,9 @@
    arrays are [node][dim][lane], so that the inner loops vectorise. A short batch repeats its last element.
    ElementAcceptState() takes the plastic state on to given displacements; ElementStatePoints() counts its points,
    ElementStates() the numbers of each, and ElementStateVolumes() gives their volumes. ElementKernelExists() tells
-   whether there is a kernel for a case. The other functions treat one cell or one face: ElementPointState(),
-   ElementPointStress(), ElementPointNominal(), ElementStress() and ElementVolumeEnergy() evaluate a state,
+   whether there is a kernel for a case. ElementBatchStates() and ElementBatchNominal() evaluate a state. The other
+   functions treat one cell or one face: ElementPointState(), ElementPointStress(), ElementStress() and
+   ElementVolumeEnergy() evaluate a state,
    ElementQuality(), CellVolume() and CellLength() a shape, FaceLoadKernel() and BodyForceKernel() the loads,
    FaceAreaKernel() the areas of a face's nodes, FaceMassKernel() what springs on a face need.
 
@@ -79,7 +80,9 @@ void   ElementPointState(const KernelCase *, const double *X, const double *u, c
                          const double *multiplier, double *H, double *pressure);
 void   ElementPointStress(const KernelCase *, const double *X, const double *u, const double *constants,
                           const double *multiplier, double *stress, double *volume);
-void   ElementPointNominal(const KernelCase *, const double *X, const double *u, const double *constants,
+void   ElementBatchStates(const KernelCase *, const double *X, const double *u, const double *constants,
+                          const double *multiplier, double *H, double *pressure);
+void   ElementBatchNominal(const KernelCase *, const double *X, const double *u, const double *constants,
                            const double *multiplier, double *H, double *pressure, double *P);
 void   ElementStress(const KernelCase *, const double *X, const double *u, const double *constants,
                      const double *multiplier, double stress[6], double *volume);

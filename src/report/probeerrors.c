@@ -74,8 +74,25 @@ PetscErrorCode ProbeErrorsDestroy(ProbeErrors *errors)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds the zones of contact, and by how much of itself the share of each cell may be off as they end elsewhere. */
+static PetscErrorCode FindZones(ProbeErrors errors, PetscReal *off)
+{
+  const Mesh mesh = errors->model->mesh;
+  PetscBool *behind;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(mesh->n_cells, &behind));
+  for (int p = 0; p < ContactPairs(errors->model->contact); p++) {
+    PetscCall(ContactZoneOfPair(errors->model, p, behind, &errors->zone[p]));
+    for (PetscInt c = 0; c < mesh->n_cells; c++)
+      if (behind[c]) off[c] = PetscMax(off[c], ContactZoneOff(&errors->zone[p]));
+  }
+  PetscCall(PetscFree(behind));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Estimates the errors of those probes that have a first variation. */
-static PetscErrorCode Estimate(ProbeErrors errors, Functional *functional)
+static PetscErrorCode Estimate(ProbeErrors errors, const PetscReal *off, Functional *functional)
 {
   const int      all = errors->scene->n_probes;
   int            n   = 0, *probe;
@@ -89,7 +106,7 @@ static PetscErrorCode Estimate(ProbeErrors errors, Functional *functional)
     probe[n] = i;
     n += !errors->why[i];
   }
-  PetscCall(QuantityErrorsEstimate(errors->model, n, functional, error));
+  PetscCall(QuantityErrorsEstimate(errors->model, n, functional, off, error));
   for (int k = 0; k < n; k++) {
     errors->error[probe[k]] = error[k];
     errors->why[probe[k]]   = error[k].why;
@@ -114,6 +131,7 @@ PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
 {
   const int   wanted = errors ? errors->scene->accuracy.probe : -1;
   Functional *functional;
+  PetscReal  *off;
   Model       model;
   PetscBool   ok;
 
@@ -124,14 +142,14 @@ PetscErrorCode ProbeErrorsEstimate(ProbeErrors errors)
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
   PetscCall(ProbesEvaluate(errors->probes, errors->value)); /* first variations take their signs from here */
-  for (int p = 0; p < ContactPairs(model->contact); p++) PetscCall(ContactZoneOfPair(model, p, &errors->zone[p]));
-  PetscCall(PetscCalloc1(errors->scene->n_probes, &functional));
-  PetscCall(Estimate(errors, functional));
+  PetscCall(PetscCalloc2(errors->scene->n_probes, &functional, model->mesh->n_cells, &off));
+  PetscCall(FindZones(errors, off));
+  PetscCall(Estimate(errors, off, functional));
   if (wanted >= 0 && errors->why[wanted]) {
     PetscCall(QuantityErrorReset(&errors->error[wanted]));
     PetscCall(QuantityErrorShares(model, &errors->error[wanted]));
   }
-  PetscCall(PetscFree(functional));
+  PetscCall(PetscFree2(functional, off));
   errors->estimated = PETSC_TRUE;
   PetscCall(PetscLogEventEnd(errors->event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -228,12 +246,18 @@ PetscReal ProbeErrorsHistorySeconds(ProbeErrors errors)
   return errors->history_s;
 }
 
-/* Prints one probe: the sum, then its parts. */
+/* Prints one probe: the sum, then its parts. Where these cancel, what the error may be stands first. */
 static void PrintError(const char *name, PetscReal value, const QuantityError *error, FILE *stream)
 {
   const double part = value != 0 ? 100 / fabs((double)value) : NAN;
 
-  fprintf(stream, "error    %s: %+.3g", name, (double)error->sum);
+  fprintf(stream, "error    %s: ", name);
+  if (QuantityErrorCancels(error)) {
+    fprintf(stream, "up to +-%.3g", (double)error->uncertain);
+    if (isfinite(part)) fprintf(stream, " (%.2g %%)", part * (double)error->uncertain);
+    fprintf(stream, ", with either sign, as its parts cancel: ");
+  }
+  fprintf(stream, "%+.3g", (double)error->sum);
   if (isfinite(part)) fprintf(stream, " (%+.2g %%)", part * (double)error->sum);
   fprintf(stream, " =");
   for (int c = 0; c < ERROR_CAUSES; c++) {
@@ -246,9 +270,7 @@ static void PrintError(const char *name, PetscReal value, const QuantityError *e
   }
   fprintf(stream, "\n");
   if (!QuantityErrorCancels(error)) return;
-  fprintf(stream, "         its parts cancel: the error may be %.3g", (double)error->uncertain);
-  if (isfinite(part)) fprintf(stream, " (%.2g %%)", part * (double)error->uncertain);
-  fprintf(stream, " with either sign; the shares of the elements have a magnitude of %.3g", (double)error->spread);
+  fprintf(stream, "         the shares of the elements have a magnitude of %.3g", (double)error->spread);
   if (isfinite(part)) fprintf(stream, " (%.2g %%)", part * (double)error->spread);
   fprintf(stream, "\n");
 }

@@ -250,6 +250,7 @@ static void AddErrors(cJSON *json, const RunFigures *figures)
     AddReal(probe, "sum", error->sum);
     AddReal(probe, "magnitude", error->magnitude);
     AddReal(probe, "uncertain", error->uncertain);
+    cJSON_AddBoolToObject(probe, "cancels", QuantityErrorCancels(error));
     AddReal(probe, "spread", error->spread);
     AddReal(probe, "per_cent", value != 0 ? 100 * error->sum / PetscAbsReal(value) : NAN);
     parts = cJSON_AddObjectToObject(probe, "causes");
