@@ -26,9 +26,12 @@
    estimate, for which three digits are enough. */
 #define LINEAR_TRANSPOSED 1e-3
 /* A factor that was made for an earlier operator serves for such a solution where refinement with it leaves this
-   relative residual, each step of it no more than the second part of what was left before. */
-#define LINEAR_AT_HAND 1e-12
-#define LINEAR_NEAR    0.1
+   relative residual, each step of it no more than the second part of what was left before. Where the operator is that
+   of bodies that keep their volume, round-off leaves more, and no factor of its own would leave less: a residual is
+   round-off that is below the last part of the operator's norm times that of the solution (measured: a fifth of it). */
+#define LINEAR_AT_HAND   1e-12
+#define LINEAR_NEAR      0.1
+#define LINEAR_ROUND_OFF (0.5 * PETSC_MACHINE_EPSILON)
 
 struct _n_LinearSolver {
   KSP          ksp;
@@ -273,7 +276,7 @@ static PetscErrorCode TransposedResidual(LinearSolver solver, Mat A, Vec b, Vec 
    space. *solved: there is a factor, and it is near enough. */
 static PetscErrorCode RefineTransposed(LinearSolver solver, Mat A, Vec b, Vec x, Vec r, PetscBool *solved)
 {
-  PetscReal right, left, before;
+  PetscReal right, left, before, most, norm;
   Factor    factor;
   Vec       d;
 
@@ -282,6 +285,7 @@ static PetscErrorCode RefineTransposed(LinearSolver solver, Mat A, Vec b, Vec x,
   PetscCall(DirectSolverFactor(solver->ksp, &factor));
   if (!factor || !FactorExists(factor)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecNorm(b, NORM_2, &right));
+  PetscCall(MatNorm(A, NORM_INFINITY, &most));
   PetscCall(VecDuplicate(x, &d));
   PetscCall(VecSet(x, 0));
   PetscCall(VecCopy(b, r));
@@ -291,7 +295,8 @@ static PetscErrorCode RefineTransposed(LinearSolver solver, Mat A, Vec b, Vec x,
     PetscCall((solver->symmetric ? FactorSolve : FactorSolveTransposed)(factor, r, d));
     PetscCall(VecAXPY(x, 1, d));
     PetscCall(TransposedResidual(solver, A, b, x, r, &left));
-    *solved = (PetscBool)(left <= LINEAR_AT_HAND * right);
+    PetscCall(VecNorm(x, NORM_2, &norm));
+    *solved = (PetscBool)(left <= LINEAR_AT_HAND * right || left <= LINEAR_ROUND_OFF * most * norm);
   } while (!*solved && left <= LINEAR_NEAR * before);
   PetscCall(VecDestroy(&d));
   PetscFunctionReturn(PETSC_SUCCESS);
