@@ -3,9 +3,10 @@ output.error, against a reference of the same scene on a finer mesh, or a known 
 wish_table.py and adaptive_table.py. Leaves one record per probe and mesh and prints the
 table; --print tables an existing record, --only runs some scenes.
     python scripts/error_table.py [--burnish BINARY] [--record FILE] [--only NAME ...]
-Effectivity is the true error over the estimated one. Where the parts cancel, the run says that the error may be so large
-as what the sum is uncertain by, with either sign; these rows are marked as +-. Rows whose true error is below 0.05 %, or
-below four times that of the reference as estimated, are listed apart: they say nothing of the estimate."""
+Effectivity is the true error over what the run states: the estimated one with its sign, or where parts cancel, how
+large the error may be with either sign; these rows are marked as +-, and their effectivity has no sign. Rows whose true
+error is below 0.05 %, or below four times that of the reference as estimated, are listed apart: they say nothing of the
+estimate. The last line says, too, what the signed sums alone would be worth."""
 import shutil
 import subprocess
 
@@ -153,9 +154,20 @@ def cancels(row):
     return float(row["uncertain"]) > abs(float(row["estimate"]))
 
 
-def effectivity(row):
-    """The true error over the estimated one."""
+def signed(row):
+    """The true error over the sum of the parts."""
     return true_error(row) / float(row["estimate"])
+
+
+def effectivity(row):
+    """The true error over what the run states."""
+    return abs(true_error(row)) / float(row["uncertain"]) if cancels(row) else signed(row)
+
+
+def count(ratios):
+    """How many are within a factor of two; further off than a factor of four; of the wrong sign."""
+    return (sum(0.5 <= ratio <= 2 for ratio in ratios),
+            sum(not 0.25 <= ratio <= 4 for ratio in ratios if ratio > 0), sum(ratio <= 0 for ratio in ratios))
 
 
 def besides(row):
@@ -173,16 +185,16 @@ def table(rows):
         ratio = "apart" if apart(row) else f"{effectivity(row):.2f}{' +-' if cancels(row) else ''}"
         estimate = f"{100 * float(row['estimate']) / abs(value):+.3g}"
         if cancels(row):
-            estimate += f", up to +-{100 * float(row['uncertain']) / abs(value):.3g}"
+            estimate = f"+-{100 * float(row['uncertain']) / abs(value):.3g} (sum {estimate})"
         print(f"| {row['scene']} | {row['order']} | {row['dofs']} | {row['probe']} | {float(row['value']):.5g} "
               f"| {100 * true / abs(value):+.3g} | {estimate} "
               f"| {100 * besides(row) / abs(value):.2g} | {ratio} |")
     ratios = [effectivity(row) for row in judged]
-    good, low = sum(0.5 <= ratio <= 2 for ratio in ratios), [row for row in judged if effectivity(row) < 0.25]
-    told = sum(cancels(row) and abs(true_error(row)) <= 2 * float(row["uncertain"]) for row in low)
-    print(f"\n{good} of {len(ratios)} between 0.5 and 2, {len(low)} below 0.25, the least {min(ratios, default=0):.2f}, "
-          f"the largest {max(ratios, default=0):.2f}; {len(rows) - len(judged)} apart. Of those below 0.25 the parts "
-          f"cancel in {told}, whose error is at most twice what the run says that the sum is uncertain by")
+    (good, far, wrong), sums = count(ratios), count([signed(row) for row in judged])
+    print(f"\n{good} of {len(ratios)} between 0.5 and 2, {far} off by more than a factor of 4, {wrong} of the wrong "
+          f"sign, the least {min(ratios, default=0):.2f}, the largest {max(ratios, default=0):.2f}; "
+          f"{len(rows) - len(judged)} apart. Parts cancel in {sum(cancels(row) for row in judged)}. The signed sums "
+          f"alone: {sums[0]} between 0.5 and 2, {sums[1]} off by more than a factor of 4, {sums[2]} of the wrong sign")
 
 
 if __name__ == "__main__":
