@@ -6,7 +6,7 @@ struct _n_Recovery {
   int        dim, degree, terms;
   PetscInt  *point_ptr;   /* first point of each local cell */
   PetscReal *x, *volume;  /* of the points: reference coordinates (length), reference volume */
-  PetscInt  *product_ptr; /* the same of the points of products */
+  PetscInt  *product_ptr; /* the same of the points of products, or that itself */
   PetscReal *product_x, *product_volume;
   PetscReal (*N)[ELEMENT_MAX_POINTS][ELEMENT_MAX_NODES]; /* of each type of cells: linear shape functions there */
   PetscReal *size;                                       /* of the patch of each node (length) */
@@ -40,6 +40,22 @@ static PetscErrorCode PlacePoints(Mesh mesh, Elasticity elasticity, CellPoints s
   PetscCall(PetscMalloc2(n * mesh->dim, x, n, volume));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
     PetscCall(ElasticityPlacePoints(elasticity, c, set, &(*x)[(*ptr)[c] * mesh->dim], &(*volume)[(*ptr)[c]]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Places the points of products, which are the quadrature points unless some element has others. */
+static PetscErrorCode PlaceProducts(Recovery r, Elasticity elasticity)
+{
+  PetscBool same = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < r->mesh->n_cells; c++)
+    same = (PetscBool)(same && ElementGet(r->mesh->cell_type[c]) == ElementGetProducts(r->mesh->cell_type[c]));
+  r->product_ptr    = r->point_ptr;
+  r->product_x      = r->x;
+  r->product_volume = r->volume;
+  if (!same)
+    PetscCall(PlacePoints(r->mesh, elasticity, POINTS_OF_PRODUCTS, &r->product_ptr, &r->product_x, &r->product_volume));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -141,7 +157,7 @@ PetscErrorCode RecoveryCreate(Mesh mesh, Elasticity elasticity, Recovery *recove
   PetscCall(PetscCalloc4(mesh->n_nodes, &r->size, mesh->n_nodes, &r->patch_degree, mesh->n_nodes, &r->variance,
                          mesh->n_nodes * r->entries, &r->factor));
   PetscCall(PlacePoints(mesh, elasticity, POINTS_OF_ELEMENT, &r->point_ptr, &r->x, &r->volume));
-  PetscCall(PlacePoints(mesh, elasticity, POINTS_OF_PRODUCTS, &r->product_ptr, &r->product_x, &r->product_volume));
+  PetscCall(PlaceProducts(r, elasticity));
   PetscCall(ShapePoints(r));
   PetscCall(SizePatches(r));
   PetscCall(FactorPatches(r));
@@ -162,10 +178,12 @@ PetscErrorCode RecoveryDestroy(Recovery *recovery)
   PetscFunctionBeginUser;
   if (!*recovery) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree4((*recovery)->size, (*recovery)->patch_degree, (*recovery)->variance, (*recovery)->factor));
+  if ((*recovery)->product_ptr != (*recovery)->point_ptr) {
+    PetscCall(PetscFree2((*recovery)->product_x, (*recovery)->product_volume));
+    PetscCall(PetscFree((*recovery)->product_ptr));
+  }
   PetscCall(PetscFree2((*recovery)->x, (*recovery)->volume));
   PetscCall(PetscFree((*recovery)->point_ptr));
-  PetscCall(PetscFree2((*recovery)->product_x, (*recovery)->product_volume));
-  PetscCall(PetscFree((*recovery)->product_ptr));
   PetscCall(PetscFree((*recovery)->N));
   PetscCall(PetscFree(*recovery));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -23,29 +23,6 @@ int RecoveryTerms(int dim, int degree)
 }
 
 /*@
-  RecoveryBasis - evaluates the terms of a polynomial.
-
-  Not collective
-
-  Input Parameters:
-+ dim    - number of coordinates, 2 or 3
-. degree - at most RECOVERY_DEGREE
-- x      - the point, from the node of the patch and over the size of the patch [dim]
-
-  Output Parameter:
-. terms - 1, x_i, x_i x_j for i <= j [RecoveryTerms()]
-@*/
-void RecoveryBasis(int dim, int degree, const double *x, double *terms)
-{
-  int n = 0;
-
-  terms[n++] = 1;
-  for (int i = 0; i < dim && degree > 0; i++) terms[n++] = x[i];
-  for (int i = 0; i < dim && degree > 1; i++)
-    for (int j = i; j < dim; j++) terms[n++] = x[i] * x[j];
-}
-
-/*@
   RecoveryAdd - adds a point to the matrix of a patch.
 
   Not collective

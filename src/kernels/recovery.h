@@ -21,8 +21,30 @@ enum {
   RECOVERY_MATRIX = RECOVERY_TERMS * (RECOVERY_TERMS + 1) / 2, /* entries of the lower triangle, row by row */
 };
 
-int    RecoveryTerms(int dim, int degree);
-void   RecoveryBasis(int dim, int degree, const double *x, double *terms);
-void   RecoveryAdd(int n, const double *terms, double *matrix);
-int    RecoveryFactor(int dim, int degree, double *matrix, double *variance);
-void   RecoverySolve(int n, const double *factor, int stride, double *sums);
+int  RecoveryTerms(int dim, int degree);
+void RecoveryAdd(int n, const double *terms, double *matrix);
+int  RecoveryFactor(int dim, int degree, double *matrix, double *variance);
+void RecoverySolve(int n, const double *factor, int stride, double *sums);
+
+/*@
+  RecoveryBasis - evaluates the terms of a polynomial.
+
+  Not collective
+
+  Input Parameters:
++ dim    - number of coordinates, 2 or 3
+. degree - at most RECOVERY_DEGREE
+- x      - the point, from the node of the patch and over the size of the patch [dim]
+
+  Output Parameter:
+. terms - 1, x_i, x_i x_j for i <= j [RecoveryTerms()]
+@*/
+static inline void RecoveryBasis(int dim, int degree, const double *x, double *terms)
+{
+  int n = 0;
+
+  terms[n++] = 1;
+  for (int i = 0; i < dim && degree > 0; i++) terms[n++] = x[i];
+  for (int i = 0; i < dim && degree > 1; i++)
+    for (int j = i; j < dim; j++) terms[n++] = x[i] * x[j];
+}
