@@ -71,7 +71,7 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   contact->mesh    = mesh;
   contact->scene   = scene;
   contact->loads   = loads;
-  contact->n_pairs = scene->n_contacts;
+  contact->n_pairs = contact->n_scene = scene->n_contacts;
   PetscCall(PetscLogEventRegister("ContactSearch", SNES_CLASSID, &contact->event_search));
   PetscCall(PetscLogEventRegister("ContactProject", SNES_CLASSID, &contact->event_project));
   PetscCall(PetscLogEventRegister("ContactResidual", SNES_CLASSID, &contact->event_residual));
@@ -81,7 +81,7 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscCall(PetscLogEventRegister("ContactAdjust", SNES_CLASSID, &contact->event_adjust));
   PetscCall(PetscLogEventRegister("ContactTouch", SNES_CLASSID, &contact->event_touch));
   PetscCall(BlockMatrixCreate(mesh->comm, mesh->dim, &contact->blocks));
-  PetscCall(PetscCalloc1(contact->n_pairs, &contact->pairs));
+  PetscCall(PetscCalloc1(2 * contact->n_pairs, &contact->pairs)); /* with room for those of sharp edges */
   PetscCall(FindPieces(mesh, scene, &contact->piece));
   for (int p = 0; p < contact->n_pairs; p++) {
     PetscCall(
@@ -96,6 +96,8 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscCall(LendOffsets(contact));
   PetscCall(ContactRefuseRepeated(contact));
   PetscCall(ContactOverride(contact, elasticity));
+  PetscCall(ContactRidgesAdd(contact, elasticity));
+  for (int p = contact->n_scene; p < contact->n_pairs; p++) contact->pairs[p].work = &contact->work;
   PetscCall(ContactWorkCreate(capacity, dense, workspace, &contact->work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

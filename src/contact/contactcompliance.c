@@ -233,6 +233,7 @@ PetscErrorCode ContactPairStifferForces(Contact contact, int p, PenaltySource so
   PetscCall(PointChanges(pair, source, NULL, &change));
   PetscCall(AddForces(pair, &change, f));
   PetscCall(PairChangeDestroy(&change));
+  if (pair->ridge) PetscCall(ContactPairStifferForces(contact, pair->ridge, source, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -251,7 +252,7 @@ PetscErrorCode ContactPairStifferForces(Contact contact, int p, PenaltySource so
 PetscErrorCode ContactStifferForces(Contact contact, PenaltySource source, PetscReal *f)
 {
   PetscFunctionBeginUser;
-  for (int p = 0; p < contact->n_pairs; p++) PetscCall(ContactPairStifferForces(contact, p, source, f));
+  for (int p = 0; p < contact->n_scene; p++) PetscCall(ContactPairStifferForces(contact, p, source, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -367,12 +368,12 @@ PetscErrorCode ContactLoadChanges(Contact contact, PenaltySource source, const P
   PairChange *pairs;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(contact->n_pairs, &pairs));
-  for (int p = 0; p < contact->n_pairs; p++) {
+  PetscCall(PetscMalloc1(contact->n_scene, &pairs));
+  for (int p = 0; p < contact->n_scene; p++) {
     PetscCall(PairChangeCreate(&contact->pairs[p], &pairs[p]));
     PetscCall(PairForcesAlong(contact, &contact->pairs[p], source, v, &pairs[p]));
   }
-  for (int p = 0; p < contact->n_pairs; p++) {
+  for (int p = 0; p < contact->n_scene; p++) {
     const int          partner = ContactPairPartner(contact, p);
     const ContactPair *pair    = &contact->pairs[p];
     PetscReal         *pressure, *area;
@@ -386,7 +387,7 @@ PetscErrorCode ContactLoadChanges(Contact contact, PenaltySource source, const P
     PetscCall(SumChanges(pair, &nodes, &pairs[p], pressure, &change[p]));
     PetscCall(PetscFree2(pressure, area));
   }
-  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairChangeDestroy(&pairs[p]));
+  for (int p = 0; p < contact->n_scene; p++) PetscCall(PairChangeDestroy(&pairs[p]));
   PetscCall(PetscFree(pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -190,7 +190,7 @@ static PetscErrorCode GatherChanges(ContactCycle cycle, PetscInt period, GatherT
       if (!Changes(cycle, period, i)) continue;
       rows[2 * n]       = 2 * p + (face ? 1 : 0);
       rows[2 * n++ + 1] = face ? (PetscReal)pair->slaves->faces[pair->face[c - pair->n_sides]].tag
-                               : (PetscReal)contact->mesh->node_tag[pair->node[c]];
+                               : (PetscReal)ContactTermTag(pair, c);
     }
   }
   PetscCall(GatherTableCreate(contact->mesh->comm, 2, n, rows, table));

@@ -6,7 +6,7 @@
 static PetscErrorCode PairNormals(const ContactPair *pair, const PetscReal *u, PetscReal *normal)
 {
   PetscFunctionBeginUser;
-  PetscCall(SlavePointsMove(pair->slaves, u));
+  PetscCall(SlavePointsMove(pair->slaves, u, pair->t));
   PetscCall(SlavePointsNormals(pair->slaves, pair->n_images, pair->images, u, NULL, normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

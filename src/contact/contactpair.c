@@ -1,6 +1,7 @@
 /* Pairs: surfaces, terms, slave points, offsets and search of each, and what the scene says of it. */
 #include "contactimpl.h"
 #include "search/nodegeometry.h"
+#include "search/ridgepoints.h"
 #include "search/toolside.h"
 #include "penaltyrule.h"
 #include "base/refusal.h"
@@ -84,6 +85,24 @@ static PetscErrorCode PairIsOneBody(Mesh mesh, Scene scene, const ContactPair *p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Has each point on the edges of a tool carry a term. */
+static PetscErrorCode PairChooseRidge(ContactPair *pair)
+{
+  const SlavePoints slaves = pair->slaves;
+
+  PetscFunctionBeginUser;
+  pair->n = pair->n_nodes = pair->n_sides = slaves->n;
+  PetscCall(PetscMalloc4(pair->n, &pair->node, pair->n, &pair->area, pair->n, &pair->size, pair->n, &pair->turn));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    pair->node[c] = slaves->nodes[c].id;
+    pair->area[c] = pair->slave->ridge.point[pair->node[c]].area;
+    pair->size[c] = slaves->size[c];
+    pair->turn[c] = 0;
+  }
+  PetscCall(ContactCornersAdd(pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Chooses the slave nodes that carry a term: those with area that this rank owns. Faces with terms follow. */
 static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
 {
@@ -141,7 +160,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
   PetscCall(PetscMalloc1(slaves->n_nodes, &term)); /* of each node that the points are made of; -1: none */
   for (PetscInt i = 0; i < slaves->n_nodes; i++) term[i] = -1;
   for (PetscInt c = 0; c < pair->n_nodes; c++)
-    term[NodeKeysFind(slaves->n_nodes, slaves->nodes, mesh->node_id[pair->node[c]])] = c;
+    term[NodeKeysFind(slaves->n_nodes, slaves->nodes, ContactTermId(pair, c))] = c;
   PetscCall(PetscMalloc1(slaves->ptr[slaves->n], &of));
   for (PetscInt k = 0; k < slaves->ptr[slaves->n]; k++) of[k] = slaves->hat[k] == 0 ? -1 : term[slaves->node[k]];
   PetscCall(PetscFree(term));
@@ -216,7 +235,10 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
   const int finer = PairRule(scene, pair);
 
   PetscFunctionBeginUser;
-  if (pair->formulation.surface) {
+  if (ContactIsRidge(pair)) {
+    PetscCall(SlavePointsCreateRidge(pair->slave, loads, &pair->slaves));
+    PetscCall(PairChooseRidge(pair));
+  } else if (pair->formulation.surface) {
     PetscCall(ContactEndsFind(pair, scene));
     PetscCall(SlavePointsCreateQuadrature(pair->slave, scene->geometry, finer, HasLevers(pair), &pair->slaves));
     PetscCall(PairChooseNodes(mesh, scene, pair));
@@ -344,6 +366,43 @@ static PetscErrorCode PairCreateMixing(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Creates points, terms, state and search of a pair, whose surfaces and images are known. */
+static PetscErrorCode PairComplete(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
+{
+  const SceneContact  *contact    = pair->scene;
+  const ContactSurface deformable = ContactIsRidge(pair) ? pair->master : pair->slave;
+  const PetscBool      friction   = (PetscBool)contact->friction;
+  PetscReal            penalty;
+
+  PetscFunctionBeginUser;
+  if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
+  if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
+  PetscCall(PairCreatePoints(mesh, scene, loads, pair));
+  PetscCall(SurfaceFindFreeEdges(pair->slave, pair->n_images, pair->images));
+  pair->automatic =
+    PenaltyAutomatic(deformable->stiffness, pair->master && !ContactIsRidge(pair) ? pair->master->stiffness : 0);
+  pair->most = pair->predicted_most = PETSC_MAX_REAL;
+  penalty       = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
+  pair->initial = penalty;
+  PetscCall(ContactStateCreate(pair->n, penalty, friction, &pair->now));
+  PetscCall(ContactStateCreate(pair->n, penalty, friction, &pair->accepted));
+  PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images,
+                         &pair->fit, pair->slaves, pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL,
+                         pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL, &pair->search));
+  SearchSetTool(pair->search, pair->tool);
+  SearchSetRungs(pair->search, pair->first_rung);
+  SearchSetFrames(pair->search, pair->frame_kept);
+  PetscCall(
+    PetscCalloc4(pair->n, &pair->held, pair->n, &pair->predicted, pair->n, &pair->expected, pair->n, &pair->arrived));
+  PetscCall(PetscCalloc1(pair->n, &pair->balanced));
+  PetscCall(PetscMalloc1(pair->n, &pair->foreseen));
+  for (PetscInt c = 0; c < pair->n; c++) pair->foreseen[c] = NAN;
+  if (friction) PetscCall(FrictionCreate(pair));
+  if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
+  if (contact->augment) PetscCall(PairCreateMixing(pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactPairCreate - creates surfaces, terms, state and search of one pair of the scene, without lists.
 
@@ -366,12 +425,10 @@ static PetscErrorCode PairCreateMixing(ContactPair *pair)
 PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads, const PetscInt piece[],
                                  const SceneContact *contact, ContactPair *pair)
 {
-  const PetscBool friction = (PetscBool)contact->friction;
-  PetscReal       penalty;
-
   PetscFunctionBeginUser;
   pair->mesh     = mesh;
   pair->scene    = contact;
+  pair->tool     = ToolOfPair(mesh, scene, (int)(contact - scene->contacts));
   pair->facets   = &Smoother_Facet;
   pair->smoother = Smoothers[contact->smoother];
   pair->law      = Laws[contact->law];
@@ -397,33 +454,64 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
     PetscCall(
       SurfaceImagesFromSupports(mesh, scene, pair->slave, pair->master, PETSC_TRUE, &pair->n_images, pair->images));
   PetscCall(PairMirrors(mesh, scene, pair));
-  if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
-  if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
-  PetscCall(PairCreatePoints(mesh, scene, loads, pair));
-  PetscCall(SurfaceFindFreeEdges(pair->slave, pair->n_images, pair->images));
-  pair->automatic = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
-  pair->most = pair->predicted_most = PETSC_MAX_REAL;
-  penalty       = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
-  pair->initial = penalty;
-  PetscCall(ContactStateCreate(pair->n, penalty, friction, &pair->now));
-  PetscCall(ContactStateCreate(pair->n, penalty, friction, &pair->accepted));
-  PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images,
-                         &pair->fit, pair->slaves, pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL,
-                         pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL, &pair->search));
+  PetscCall(PairComplete(mesh, scene, loads, pair));
   if (contact->listed) SearchAllSides(pair->search, pair->one_body);
   if (contact->share < 1) PetscCall(MeshCreateLocal(mesh, mesh->dim, &pair->reaction));
-  pair->tool = ToolOfPair(mesh, scene, (int)(contact - scene->contacts));
-  SearchSetTool(pair->search, pair->tool);
-  SearchSetRungs(pair->search, pair->first_rung);
-  SearchSetFrames(pair->search, pair->frame_kept);
-  PetscCall(
-    PetscCalloc4(pair->n, &pair->held, pair->n, &pair->predicted, pair->n, &pair->expected, pair->n, &pair->arrived));
-  PetscCall(PetscCalloc1(pair->n, &pair->balanced));
-  PetscCall(PetscMalloc1(pair->n, &pair->foreseen));
-  for (PetscInt c = 0; c < pair->n; c++) pair->foreseen[c] = NAN;
-  if (friction) PetscCall(FrictionCreate(pair));
-  if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
-  if (contact->augment) PetscCall(PairCreateMixing(pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the scene would say of a pair whose slave is the sharp edges of the master of another one. */
+static SceneContact RidgeScene(const SceneContact *of)
+{
+  SceneContact ridge = *of;
+
+  ridge.slave       = of->master;
+  ridge.master      = of->slave;
+  ridge.formulation = CONTACT_NODE_TO_SURFACE;
+  ridge.share       = 1;
+  return ridge;
+}
+
+/*@
+  ContactPairCreateRidge - creates a pair of the sharp edges of a tool and the slave of the tool's pair, without lists.
+
+  Collective
+
+  Input Parameters:
++ contact    - the contact, with that pair
+. elasticity - the bodies, for the automatic penalty
+- of         - number of the pair, whose master is a meshed rigid tool
+
+  Output Parameter:
+. pair - the pair; all members must be zero before the call; it has no slave where the tool has no such edge
+@*/
+PetscErrorCode ContactPairCreateRidge(Contact contact, Elasticity elasticity, int of, ContactPair *pair)
+{
+  const Mesh         mesh  = contact->mesh;
+  const Scene        scene = contact->scene;
+  const ContactPair *tool  = &contact->pairs[of];
+
+  PetscFunctionBeginUser;
+  PetscCall(RidgeSurfaceCreate(tool->master, tool->slave, scene->geometry, tool->fit.feature_angle, tool->n_mirrors,
+                               tool->mirrors, &pair->slave));
+  if (!pair->slave) PetscFunctionReturn(PETSC_SUCCESS);
+  pair->of        = of;
+  pair->said      = RidgeScene(tool->scene);
+  pair->mesh      = mesh;
+  pair->scene     = &pair->said;
+  pair->tool      = tool->tool;
+  pair->facets    = &Smoother_Facet;
+  pair->smoother  = Smoothers[pair->said.smoother];
+  pair->law       = tool->law;
+  pair->geometry  = scene->geometry;
+  pair->n_images  = tool->n_images;
+  pair->n_mirrors = tool->n_mirrors;
+  PetscCall(PetscArraycpy(pair->images, tool->images, SURFACE_MAX_IMAGES));
+  PetscCall(PetscArraycpy(pair->mirrors, tool->mirrors, SURFACE_MAX_IMAGES));
+  PairSetFormulation(scene, mesh->order, pair);
+  pair->fit = PairFitSettings(scene, pair, mesh->order);
+  PetscCall(SurfaceCreate(mesh, scene, elasticity, pair->said.path, "slave", pair->said.master, &pair->master));
+  PetscCall(PairComplete(mesh, scene, contact->loads, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -480,7 +568,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
 }
 
 /*@
-  ContactPairs - returns the number of pairs, 0 for NULL.
+  ContactPairs - returns the number of pairs of the scene, 0 for NULL.
 
   Not collective
 
@@ -489,7 +577,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
 @*/
 int ContactPairs(Contact contact)
 {
-  return contact ? contact->n_pairs : 0;
+  return contact ? contact->n_scene : 0;
 }
 
 /*@
@@ -550,7 +638,7 @@ int ContactPairPartner(Contact contact, int pair)
 {
   const SceneContact *of = contact->pairs[pair].scene;
 
-  for (int p = 0; p < contact->n_pairs && of->share < 1; p++) {
+  for (int p = 0; p < contact->n_scene && of->share < 1; p++) {
     const SceneContact *other = contact->pairs[p].scene;
 
     if (other->share < 1 && !strcmp(other->path, of->path) && !strcmp(other->slave, of->master) &&

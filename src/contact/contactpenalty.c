@@ -362,7 +362,7 @@ PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
 
       if (!outside || factor <= outermost) continue;
       outermost = factor;
-      worst[0]  = contact->mesh->node_tag[pair->node[c]];
+      worst[0]  = (PetscReal)ContactTermTag(pair, c);
       worst[1]  = penetration;
       worst[2]  = pair->now.penalty[c];
       worst[3]  = p;

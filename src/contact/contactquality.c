@@ -310,7 +310,7 @@ PetscReal ContactNodeGap(Contact contact, PetscInt node)
 {
   PetscReal gap = NAN;
 
-  for (int p = 0; p < contact->n_pairs; p++)
+  for (int p = 0; p < contact->n_scene; p++)
     for (PetscInt c = 0; c < contact->pairs[p].n_nodes; c++)
       if (contact->pairs[p].node[c] == node) gap = fmin(gap, contact->pairs[p].now.gap[c]);
   return gap;
@@ -366,7 +366,7 @@ static PetscErrorCode PairCheckFinite(Contact contact, const ContactPair *pair, 
         Complain(&complaint,
                  "%s: the expression has no finite value at node %" PetscInt_FMT
                  " at t = %g; allowed: an expression that is finite on the slave",
-                 SceneWhere(contact->scene, pair->scene->path, key), contact->mesh->node_tag[pair->node[c]], (double)t);
+                 SceneWhere(contact->scene, pair->scene->path, key), ContactTermTag(pair, c), (double)t);
     }
   }
   PetscCall(ComplaintRefuse(contact->mesh->comm, &complaint));
@@ -411,9 +411,9 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
     } mine = {0, 0}, least;
     char complaint[512];
 
-    if (pair->master && !pair->scene->listed) PetscCall(PairCheckFacing(contact, pair));
+    if (pair->master && !pair->scene->listed && !ContactIsRidge(pair)) PetscCall(PairCheckFacing(contact, pair));
     PetscCall(PairCheckValues(contact, pair));
-    PetscCall(ContactRefuseImmersed(contact, p));
+    if (!ContactIsRidge(pair)) PetscCall(ContactRefuseImmersed(contact, p));
     for (PetscInt c = 0; c < pair->n; c++) {
       if (pair->scene->initial_overlap == OVERLAP_RAMP || pair->scene->initial_overlap == OVERLAP_IGNORE)
         pair->now.offset[c] = pair->now.gap[c] < 0 ? pair->now.gap[c] : 0;
@@ -433,7 +433,7 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
                               " lies %g behind the master before any load; allowed: surfaces that touch or are apart, "
                               "or initial_overlap: resolve, ramp or ignore",
                               SceneWhere(contact->scene, pair->scene->path, "initial_overlap"), pair->scene->name,
-                              mesh->node_tag[pair->node[at]], (double)-worst));
+                              ContactTermTag(pair, at), (double)-worst));
     }
     PetscCall(RefuseInputAnywhere(mesh->comm, at >= 0 && least.rank == mine.rank ? complaint : NULL));
   }

@@ -146,7 +146,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
       most[1] = PetscMax(most[1], pair->now.penalty[c]);
       most[2] = PetscMax(most[2], ContactTermForce(pair, c));
     }
-    for (int d = 0; d < 3; d++) total[d] += pair->total[d];
+    for (int d = 0; d < 3; d++) total[d] += ContactIsRidge(pair) ? -pair->total[d] : pair->total[d];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 3, MPIU_REAL, MPI_MAX, contact->mesh->comm));
@@ -344,9 +344,32 @@ PetscErrorCode ContactMasterForce(Contact contact, int p, PetscReal force[3])
   const ContactPair *pair = &contact->pairs[p];
 
   PetscFunctionBeginUser;
-  for (int d = 0; d < 3; d++) force[d] = -pair->total[d];
+  for (int d = 0; d < 3; d++) force[d] = -pair->total[d] + (pair->ridge ? contact->pairs[pair->ridge].total[d] : 0);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 3, MPIU_REAL, MPI_SUM, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the moment of this rank's normal forces on the slave points of a pair, times a factor. */
+static void AddMoment(const ContactPair *pair, PetscReal factor, PetscReal moment[3])
+{
+  const NeighbourLists lists = pair->lists;
+  const int            dim   = pair->mesh->dim;
+
+  for (PetscInt q = 0; q < lists->n_slaves; q++) {
+    if (pair->point_force[q] == 0 || pair->variations->first[q] == pair->variations->end[q]) continue;
+    for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++) {
+      const PetscInt node = lists->slave_node[k];
+      PetscReal      x[3] = {0, 0, 0}, force[3] = {0, 0, 0}, part[3];
+
+      for (int d = 0; d < dim; d++) {
+        x[d]     = lists->X[node * dim + d] + lists->u[node * dim + d] + pair->mesh->centre[d];
+        force[d] = factor * pair->point_force[q] * lists->slave_S[k] * pair->images[lists->slave_side[k]].sign[d] *
+                   pair->variations->own[q * dim + d];
+      }
+      Cross(x, force, part);
+      for (int d = 0; d < 3; d++) moment[d] += part[d];
+    }
+  }
 }
 
 /*@
@@ -367,28 +390,13 @@ PetscErrorCode ContactMasterForce(Contact contact, int p, PetscReal force[3])
 @*/
 PetscErrorCode ContactMasterMoment(Contact contact, int p, PetscReal moment[3])
 {
-  const ContactPair   *pair  = &contact->pairs[p];
-  const NeighbourLists lists = pair->lists;
-  const int            dim   = contact->mesh->dim;
-  ContactFriction      friction;
+  const ContactPair *pair = &contact->pairs[p];
+  ContactFriction    friction;
 
   PetscFunctionBeginUser;
   moment[0] = moment[1] = moment[2] = 0;
-  for (PetscInt q = 0; q < lists->n_slaves; q++) {
-    if (pair->point_force[q] == 0 || pair->variations->first[q] == pair->variations->end[q]) continue;
-    for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++) {
-      const PetscInt node = lists->slave_node[k];
-      PetscReal      x[3] = {0, 0, 0}, force[3] = {0, 0, 0}, part[3];
-
-      for (int d = 0; d < dim; d++) {
-        x[d]     = lists->X[node * dim + d] + lists->u[node * dim + d] + contact->mesh->centre[d];
-        force[d] = -pair->point_force[q] * lists->slave_S[k] * pair->images[lists->slave_side[k]].sign[d] *
-                   pair->variations->own[q * dim + d];
-      }
-      Cross(x, force, part);
-      for (int d = 0; d < 3; d++) moment[d] += part[d];
-    }
-  }
+  AddMoment(pair, -1, moment);
+  if (pair->ridge) AddMoment(&contact->pairs[pair->ridge], 1, moment);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, moment, 3, MPIU_REAL, MPI_SUM, contact->mesh->comm));
   if (!pair->friction) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactPairFriction(contact, p, &friction));

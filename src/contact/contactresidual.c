@@ -133,7 +133,13 @@ PetscErrorCode ContactNodalForces(const ContactPair *pair, const PetscReal *poin
 /* Do forces from outside act in a pair, of a tool or of mirror images? */
 static PetscBool HasOuter(const ContactPair *pair)
 {
-  return (PetscBool)(!pair->master || pair->master->rigid || pair->n_images > 1);
+  return (PetscBool)(!pair->master || pair->master->rigid || pair->slave->rigid || pair->n_images > 1);
+}
+
+/* Number of the scene's pair to which a pair belongs. */
+static ptrdiff_t PairOf(Contact contact, const ContactPair *pair)
+{
+  return ContactIsRidge(pair) ? pair->of : pair - contact->pairs;
 }
 
 /* Forces, energy and squared forces of one pair. */
@@ -157,6 +163,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
     pair->now.status[c] = value.stiffness > 0 ? CONTACT_CLOSED : CONTACT_OPEN;
     ContactTermPress(pair, c, value.pressure, pair->point_force);
     TermNormal(pair, c);
+    if (ContactIsRidge(pair) && getenv("RIDGE_DEBUG")) fprintf(stderr,"t %g tip %d gap %g factor %g share %g p %g n %g %g pen %g area %g facets %d side %g %g %g %g nrm %g %g\n", t, (int)c, gap, pair->factor[c], pair->lists->share[c], value.pressure, pair->point_normal[3*c], pair->point_normal[3*c+1], pair->now.penalty[c], area, (int)(pair->lists->facet_ptr[c+1]-pair->lists->facet_ptr[c]), pair->slaves->sides[6*c], pair->slaves->sides[6*c+1], pair->slaves->sides[6*c+3], pair->slaves->sides[6*c+4], pair->lists->slave_normal[3*c], pair->lists->slave_normal[3*c+1]);
   }
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
   pair->t = t;
@@ -167,7 +174,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   if (pair->friction) PetscCall(FrictionResidual(pair, t, values));
   if (pair->tool) PetscCall(ContactToolForces(pair, values));
   if (contact->hold)
-    ContactPairHold(contact, pair, t, values, &contact->hold[(pair - contact->pairs) * MOTION_COMPONENTS]);
+    ContactPairHold(contact, pair, t, values, &contact->hold[PairOf(contact, pair) * MOTION_COMPONENTS]);
   PetscCall(NeighbourListsReduce(pair->lists, values, f));
   if (contact->outer && HasOuter(pair)) PetscCall(NeighbourListsReduce(pair->lists, values, contact->outer));
   PetscCall(ContactNodalForces(pair, pair->point_force, pair->force));

@@ -33,7 +33,7 @@ PetscReal ContactTermAddedOverlap(const ContactPair *pair, PetscInt c, PetscReal
 
   if (scene->initial_overlap != OVERLAP_ADD) return 0;
   if (!scene->overlap_expression) return part * scene->added_overlap;
-  MeshNodePlace(pair->mesh, pair->node[c], X);
+  ContactTermPlace(pair, c, X);
   return part * ExpressionValue(scene->overlap_expression, X, t);
 }
 

@@ -124,7 +124,7 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
       beta = TouchStepBeta(gap[0], gap[1], CONTACT_RESTING * pair->size[c]);
       if (PetscIsNanReal(beta) || (still_open && !(gap[1] > 0))) continue;
       rows[3 * count]     = beta;
-      rows[3 * count + 1] = (PetscReal)contact->mesh->node_id[pair->node[c]] * contact->n_pairs + p;
+      rows[3 * count + 1] = (PetscReal)(ContactIsRidge(pair) ? ContactTermId(pair, c) : contact->mesh->node_id[pair->node[c]]) * contact->n_pairs + p;
       rows[3 * count + 2] = by_area ? pair->area[c] : 1;
       count++;
     }

@@ -78,7 +78,7 @@ static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, Pets
   const NeighbourLists next   = pair->next;
   const PetscReal      offset = ContactTermOffset(pair, c, t);
 
-  *lost = (ContactLost){offset - ReachedGap(pair, q, gaps), NAN, pair->size[c], pair->node[c]};
+  *lost = (ContactLost){offset - ReachedGap(pair, q, gaps), NAN, pair->size[c], ContactTermTag(pair, c)};
   if (!(lost->depth > DepthThatCounts(pair, c, q))) return PETSC_FALSE;
   if (pair->master && next->facet_ptr[q] == next->facet_ptr[q + 1]) return PETSC_TRUE;
   if (pair->next_factor[q] == 0) return PETSC_FALSE;
@@ -149,7 +149,7 @@ static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q,
 
   if (!(pair->point_gap[q] - offset >= 0)) return PETSC_FALSE;
   NearestGap(pair, q, gaps);
-  *lost = (ContactLost){offset - gaps->gap[q], pair->point_gap[q] - offset, pair->size[c], pair->node[c]};
+  *lost = (ContactLost){offset - gaps->gap[q], pair->point_gap[q] - offset, pair->size[c], ContactTermTag(pair, c)};
   return (PetscBool)(gaps->past[q] <= LOST_ON_FACET * lost->size && lost->depth > DepthThatCounts(pair, c, q));
 }
 
@@ -204,7 +204,7 @@ void ContactNoteJumps(ContactPair *pair, PetscReal motion)
   if (!pair->master) return;
   for (PetscInt c = 0; c < pair->n_sides; c++) {
     const PetscReal   jump = pair->now.gap[c] - pair->accepted.gap[c];
-    const ContactLost lost = {-pair->accepted.gap[c], pair->now.gap[c], pair->size[c], pair->node[c]};
+    const ContactLost lost = {-pair->accepted.gap[c], pair->now.gap[c], pair->size[c], ContactTermTag(pair, c)};
 
     if (pair->accepted.status[c] == CONTACT_CLOSED && pair->now.status[c] == CONTACT_OPEN &&
         jump > 2 * motion + lost.size)
@@ -256,7 +256,7 @@ PetscErrorCode ContactLocateLost(Contact contact, PetscBool *lost, char *text, s
     worst[0] = here->depth;
     worst[1] = here->gap;
     worst[2] = here->size;
-    worst[3] = contact->mesh->node_tag[here->node];
+    worst[3] = (PetscReal)here->tag;
     worst[4] = p;
   }
   PetscCall(LargestOfRanks(contact->mesh->comm, worst[0], &most, &rank, NULL));
@@ -268,6 +268,6 @@ PetscErrorCode ContactLocateLost(Contact contact, PetscBool *lost, char *text, s
   PetscCall(PetscSNPrintf(
     text, size,
     "contact '%s': node %.0f was %.3g behind its master and is found %s (face size %.3g): is the penalty too soft?",
-    ContactPairName(contact, (int)worst[4]), (double)worst[3], (double)worst[0], now, (double)worst[2]));
+    contact->pairs[(int)worst[4]].scene->name, (double)worst[3], (double)worst[0], now, (double)worst[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

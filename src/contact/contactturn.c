@@ -9,7 +9,7 @@
 
 /* Finds the point of a pair whose normal turns most from u to u_ahead, among those that its term's pressure acts on. */
 static PetscErrorCode PairTurn(Contact contact, ContactPair *pair, const PetscReal *u, const PetscReal *u_ahead,
-                               PetscReal t, PetscReal *most, PetscInt *node)
+                               PetscReal t, PetscReal *most, ContactPlace *place)
 {
   const NeighbourLists lists = pair->lists;
   PetscReal           *before;
@@ -27,7 +27,8 @@ static PetscErrorCode PairTurn(Contact contact, ContactPair *pair, const PetscRe
       for (int d = 0; d < 3; d++) turn += PetscSqr(pair->point_normal[3 * q + d] - before[3 * q + d]);
       if (pair->point_force[q] == 0 || !(PetscSqrtReal(turn) > *most)) continue;
       *most = PetscSqrtReal(turn);
-      *node = pair->node[c];
+      place->tag = ContactTermTag(pair, c);
+      ContactTermPlace(pair, c, place->X);
     }
   }
   PetscCall(PetscFree(before));
@@ -55,7 +56,7 @@ PetscErrorCode ContactLocateTurn(Contact contact, const PetscReal *u, const Pets
 {
   Mesh        mesh      = contact->mesh;
   PetscReal   values[4] = {0}, mine = TURN_AT_ONCE, most;
-  PetscInt    node = -1;
+  ContactPlace at = {.tag = -1};
   PetscMPIInt rank;
   PetscBool   here;
 
@@ -63,13 +64,13 @@ PetscErrorCode ContactLocateTurn(Contact contact, const PetscReal *u, const Pets
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
-    if (pair->master && !pair->fit.fitted) PetscCall(PairTurn(contact, pair, u, u_ahead, t, &mine, &node));
+    if (pair->master && !pair->fit.fitted) PetscCall(PairTurn(contact, pair, u, u_ahead, t, &mine, &at));
   }
   PetscCall(LargestOfRanks(mesh->comm, mine, &most, &rank, &here));
   *found = most > TURN_AT_ONCE ? PETSC_TRUE : PETSC_FALSE;
   if (*found && here) {
-    values[0] = (PetscReal)mesh->node_tag[node];
-    MeshNodePlace(mesh, node, &values[1]);
+    values[0] = (PetscReal)at.tag;
+    PetscCall(PetscArraycpy(&values[1], at.X, 3));
   }
   PetscCallMPI(MPI_Bcast(values, 4, MPIU_REAL, rank, mesh->comm));
   *place = (ContactPlace){.tag = (PetscInt)values[0], .X = {values[1], values[2], values[3]}};

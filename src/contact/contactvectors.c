@@ -213,7 +213,8 @@ PetscErrorCode ContactGetBorder(Contact contact, Border *out)
         if (acts) PetscCall(AddShared(border, pair, c, scale));
         continue;
       }
-      PetscCall(AddZeros(contact, pair->node[c], &n));
+      n = 0; /* points on edges of a tool are in no pattern */
+      if (!ContactIsRidge(pair)) PetscCall(AddZeros(contact, pair->node[c], &n));
       if (acts) PetscCall(n ? FillTerm(contact, pair, c, scale) : ContactVectorsAdd(border, pair, c, scale));
     }
   }

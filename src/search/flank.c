@@ -2,6 +2,7 @@
 #include "flank.h"
 #include "ownbody.h"
 #include "base/smoothstep.h"
+#include "base/vectors.h"
 
 /* A facet is below the plane of its neighbour if its centre is, by this part of the slave's face size. */
 #define FLANK_BELOW 1e-6
@@ -491,6 +492,20 @@ static PetscReal RidgeShare(const Nearest *look, int facing, const int *found)
   return 1 - off * near;
 }
 
+/* Part of a point on a sharp edge of a tool that presses: 1 where no side of the edge lies on the master there. */
+static PetscReal EdgeShare(const Nearest *look)
+{
+  const PetscReal stands = PetscCosReal(look->sharp), lies = PetscCosReal(FLANK_LIES * look->sharp);
+  PetscReal       share = 1;
+
+  for (int k = 0; k < 2 && look->slaves->sides; k++) {
+    const PetscReal cosine = -Dot(&look->slaves->sides[6 * look->q + 3 * k], look->normal);
+
+    share = PetscMin(share, SmoothStep((lies - cosine) / (lies - stands)));
+  }
+  return share;
+}
+
 /* Marks the points of the facets that do not face the slave point. */
 static void MarkAversed(const Nearest *look, int facing, int n, const int *found)
 {
@@ -547,7 +562,7 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
     }
   }
   if (n > facing) share *= DeepShare(look, facing, n, found);
-  share *= RidgeShare(look, facing, found);
+  share *= RidgeShare(look, facing, found) * EdgeShare(look);
   return share * NeighbourListsOpposed(look->lists, look->q, look->normal);
 }
 

@@ -77,7 +77,7 @@ PetscErrorCode SearchLeastDistance(ContactSearch s, const PetscReal *u, PetscRea
 
   PetscFunctionBeginUser;
   ToolsPlace(s->mesh, u, t);
-  PetscCall(SlavePointsMove(s->slaves, u));
+  PetscCall(SlavePointsMove(s->slaves, u, t));
   PetscCall(GatherPoints(s, &n, &points));
   PetscCall(PetscMalloc3(n_nodes * dim, &x, master->n_faces * dim, &lower, master->n_faces * dim, &upper));
   for (PetscInt i = 0; i < n_nodes; i++) {

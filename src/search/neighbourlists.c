@@ -12,7 +12,7 @@
 #define OPPOSED_FULLY 0.30
 
 /* Keys of all contact nodes, each once and in ascending order: nodes of deformable bodies, then nodes of a rigid
-   tool. */
+   tool or points on its edges. */
 typedef struct {
   PetscInt n, n_rigid;
   NodeKey *keys, *tool;
@@ -49,6 +49,7 @@ static PetscInt MarkSlaveNodes(ContactSearch s, NeighbourLists lists, char *mark
 static PetscErrorCode CollectKeys(ContactSearch s, const SearchField *field, NeighbourLists lists, ContactKeys *all)
 {
   const PetscBool rigid     = (PetscBool)(s->master && s->master->rigid);
+  const PetscBool ridge     = (PetscBool)(s->slaves && s->slaves->sides);
   const PetscInt  n_records = field->n_records, n_nodes = s->slaves ? s->slaves->n_nodes : 0;
   const FaceMaps  none = {0}, *maps[] = {&field->maps, s->slaves ? &s->slaves->maps : &none};
   PetscInt        n = 0, n_slaves, n_rigid = 0, n_mapped = 0, n_tool = s->tool ? TOOL_NODES : 0;
@@ -59,9 +60,9 @@ static PetscErrorCode CollectKeys(ContactSearch s, const SearchField *field, Nei
   n_slaves = MarkSlaveNodes(s, lists, marks);
   for (int m = 0; m < 2; m++) n_mapped += maps[m]->n ? maps[m]->ptr[maps[m]->n] : 0;
   PetscCall(PetscMalloc2(n_slaves + n_mapped + n_tool + FACE_MAX_NODES * n_records, &all->keys,
-                         FACE_MAX_NODES * n_records, &all->tool));
+                         n_slaves + FACE_MAX_NODES * n_records, &all->tool));
   for (PetscInt i = 0; i < n_nodes; i++)
-    if (marks[i]) all->keys[n++] = s->slaves->nodes[i];
+    if (marks[i]) *(ridge ? &all->tool[n_rigid++] : &all->keys[n++]) = s->slaves->nodes[i];
   PetscCall(PetscFree(marks));
   for (PetscInt r = 0; r < n_records; r++) {
     PetscInt *count = rigid ? &n_rigid : &n;
@@ -142,9 +143,12 @@ PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, Ne
     for (int d = 0; d < dim; d++) lists->X[i * dim + d] = all.keys[i].X[d];
   }
   for (PetscInt i = 0, k = all.n; i < all.n_rigid; i++, k++) {
+    PetscReal X[3];
+
     lists->node_id[k] = all.tool[i].id;
+    SearchRigidPlace(s, all.tool[i].id, X);
     for (int d = 0; d < dim; d++) {
-      lists->X[k * dim + d]   = s->master->rigid->coords[all.tool[i].id * dim + d];
+      lists->X[k * dim + d]   = X[d];
       lists->dof[k * dim + d] = -1;
     }
   }
@@ -673,7 +677,8 @@ void NeighbourListsPointGeometry(ContactSearch s, NeighbourLists lists, const Se
 static PetscErrorCode TakeSlaveShapes(NeighbourLists lists, SlavePoints slaves, PetscBool first)
 {
   const PetscInt entries = slaves->ptr[slaves->n];
-  PetscInt      *number;
+  const PetscInt from = slaves->sides ? lists->n_deformable : 0, end = slaves->sides ? lists->n_nodes : lists->n_deformable;
+  PetscInt      *number; /* of each node of the points, from `from` on */
 
   PetscFunctionBeginUser;
   if (first) {
@@ -692,8 +697,8 @@ static PetscErrorCode TakeSlaveShapes(NeighbourLists lists, SlavePoints slaves, 
       PetscInt *known = &number[slaves->node[k]];
 
       if (*known < 0)
-        PetscCall(PetscFindInt(slaves->nodes[slaves->node[k]].id, lists->n_deformable, lists->node_id, known));
-      lists->slave_node[k] = *known;
+        PetscCall(PetscFindInt(slaves->nodes[slaves->node[k]].id, end - from, &lists->node_id[from], known));
+      lists->slave_node[k] = from + *known;
     }
   }
   PetscCall(PetscFree(number));

@@ -701,7 +701,7 @@ PetscErrorCode SearchFindsNothing(ContactSearch s, const PetscReal *u, PetscReal
   *nothing = PETSC_FALSE;
   if (!SearchHasPartners(s)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(3 * s->slaves->n, &normals));
-  PetscCall(SlavePointsMove(s->slaves, u));
+  PetscCall(SlavePointsMove(s->slaves, u, t));
   PetscCall(SearchPartners(s, u, t, motion, normals));
   PetscCall(PetscFree(normals));
   *nothing = (PetscBool)!s->partners.any;
@@ -735,7 +735,7 @@ PetscErrorCode SearchPartnersFaces(ContactSearch s, const PetscReal *u, PetscRea
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(faces, points->surface->n_faces));
-  PetscCall(SlavePointsMove(points, u));
+  PetscCall(SlavePointsMove(points, u, t));
   PetscCall(PetscMalloc2(points->n, &possible, 3 * points->n, &normal));
   PetscCall(SearchPartners(s, u, t, motion, normal));
   PetscCall(Normalise(points->n, s->partners.possible, normal));

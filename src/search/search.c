@@ -269,7 +269,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                            .height     = s->slaves->height[q],
                            .listed     = s->listed,
                            .one_body   = s->one_body,
-                           .two_sided  = (PetscBool)(s->listed && s->master && !s->master->rigid),
+                           .two_sided  = (PetscBool)(s->ridges || (s->listed && s->master && !s->master->rigid)),
                            .sharp      = s->fit->feature_angle,
                            .marks      = s->marks ? s->marks[q] : 0,
                            .best       = -1,
@@ -340,6 +340,19 @@ void SearchAllSides(ContactSearch s, PetscBool one_body)
 {
   s->listed   = PETSC_TRUE;
   s->one_body = one_body;
+}
+
+/*@
+  SearchHasRidges - has the area of slave points fade beside sharp edges of the master, whose own points press there.
+
+  Not collective
+
+  Input Parameter:
+. s - the search, whose master is a rigid tool
+@*/
+void SearchHasRidges(ContactSearch s)
+{
+  s->ridges = PETSC_TRUE;
 }
 
 /*@
@@ -431,7 +444,8 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&lists));
   lists->t = NAN; /* not updated yet */
-  PetscCall(SlavePointsMove(s->slaves, u));
+  ToolsPlace(s->mesh, u, t);
+  PetscCall(SlavePointsMove(s->slaves, u, t));
   PetscCall(PetscMalloc1(3 * s->slaves->n, &normals));
   if (partners) PetscCall(SearchPartners(s, u, t, motion, normals));
   lists->empty = (PetscBool)(partners && !s->partners.any);

@@ -2,13 +2,37 @@
 #include "searchimpl.h"
 
 /*@
+  SearchRigidPlace - gives the reference place of a node of the rigid tool.
+
+  Not collective
+
+  Input Parameters:
++ s - the search, whose master is a tool, or whose slave is the edges of one
+- n - node of the tool, or point on its edges
+
+  Output Parameter:
+. X - position relative to the mesh's centre (length)
+@*/
+void SearchRigidPlace(ContactSearch s, PetscInt n, PetscReal X[3])
+{
+  const int dim = s->mesh->dim;
+
+  for (int d = 0; d < 3; d++) {
+    if (s->master->rigid)
+      X[d] = d < dim ? s->master->rigid->coords[n * dim + d] : 0;
+    else
+      X[d] = s->slaves->surface->ridge.point[n].X[d];
+  }
+}
+
+/*@
   SearchRigidPosition - computes the position of a node of the rigid tool at load parameter t.
 
   Not collective
 
   Input Parameters:
-+ s - the search
-. n - node of the tool
++ s - the search, as for SearchRigidPlace()
+. n - node of the tool, or point on its edges
 - t - load parameter
 
   Output Parameter:
@@ -16,11 +40,11 @@
 @*/
 void SearchRigidPosition(ContactSearch s, PetscInt n, PetscReal t, PetscReal x[3])
 {
-  const int dim  = s->mesh->dim;
-  PetscReal X[3] = {0, 0, 0};
+  const int body = s->master->rigid ? s->master->body : s->slaves->surface->body;
+  PetscReal X[3];
 
-  for (int d = 0; d < dim; d++) X[d] = s->master->rigid->coords[n * dim + d];
-  LoadsRigidMotion(s->loads, s->master->body, t, X, x);
+  SearchRigidPlace(s, n, X);
+  LoadsRigidMotion(s->loads, body, t, X, x);
 }
 
 /* The position of a node of the tool, which is kept between SearchStateBegin() and SearchStateEnd(). */

@@ -3,18 +3,19 @@
 #include "search/surfaceends.h"
 #include "slavelevers.h"
 
-/* Makes the star forest from the owners to the nodes, whose keys are complete. */
+/* Makes the star forest from the owners to the nodes, whose keys are complete. Nodes of a tool have no owner. */
 static PetscErrorCode CreateForest(SlavePoints points)
 {
   PetscSFNode *remote;
-  const int    dim = points->mesh->dim;
+  const int      dim    = points->mesh->dim;
+  const PetscInt leaves = points->surface->ridge.n ? 0 : points->n_nodes;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(points->n_nodes, &remote));
-  for (PetscInt i = 0; i < points->n_nodes; i++)
+  PetscCall(PetscMalloc1(leaves, &remote));
+  for (PetscInt i = 0; i < leaves; i++)
     remote[i] = (PetscSFNode){points->nodes[i].owner, points->nodes[i].local};
   PetscCall(PetscSFCreate(points->mesh->comm, &points->sf));
-  PetscCall(PetscSFSetGraph(points->sf, points->mesh->n_nodes, points->n_nodes, NULL, PETSC_OWN_POINTER, remote,
+  PetscCall(PetscSFSetGraph(points->sf, points->mesh->n_nodes, leaves, NULL, PETSC_OWN_POINTER, remote,
                             PETSC_OWN_POINTER));
   PetscCall(PetscSFSetUp(points->sf));
   PetscCallMPI(MPI_Type_contiguous(dim, MPIU_REAL, &points->block));
@@ -128,6 +129,56 @@ PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const 
   if (levers) PetscCall(SlaveLeversAroundNodes(points, n_records, records));
   PetscCall(PetscFree(records));
   PetscCall(CreateForest(points));
+  *out = points;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SlavePointsCreateRidge - makes slave points of a rigid tool's edges; each rank has a part of them.
+
+  Collective
+
+  Input Parameters:
++ surface - with points in the place of faces
+- loads   - gives the motion of the tool; borrowed
+
+  Output Parameter:
+. out - the slave points
+@*/
+PetscErrorCode SlavePointsCreateRidge(ContactSurface surface, Loads loads, SlavePoints *out)
+{
+  const Mesh         mesh  = surface->mesh;
+  const RidgePoints *ridge = &surface->ridge;
+  PetscInt           first, n;
+  PetscMPIInt        rank, size;
+  SlavePoints        points;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+  first = ridge->n * rank / size;
+  n     = ridge->n * (rank + 1) / size - first;
+  PetscCall(PetscNew(&points));
+  points->mesh    = mesh;
+  points->surface = surface;
+  points->loads   = loads;
+  points->n = points->n_nodes = n;
+  PetscCall(PetscMalloc1(n, &points->nodes));
+  PetscCall(PetscMalloc1(6 * n, &points->sides));
+  PetscCall(PetscMalloc6(n + 1, &points->ptr, n, &points->node, n, &points->S, n, &points->hat, n, &points->weight,
+                         n * mesh->dim, &points->offset));
+  PetscCall(PetscArrayzero(points->offset, n * mesh->dim));
+  PetscCall(PetscMalloc2(n, &points->size, n, &points->height));
+  for (PetscInt q = 0; q < n; q++) {
+    points->nodes[q] = (NodeKey){.id = first + q, .owner = rank, .local = -1};
+    PetscCall(PetscArraycpy(points->nodes[q].X, ridge->point[first + q].X, 3));
+    points->ptr[q] = points->node[q] = q;
+    points->S[q] = points->hat[q] = points->weight[q] = 1;
+    points->size[q] = points->height[q] = surface->mean_size;
+  }
+  points->ptr[n] = n;
+  PetscCall(CreateForest(points));
+  PetscCall(PetscCalloc1(n * mesh->dim, &points->end));
   *out = points;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -302,6 +353,7 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *points)
   }
   PetscCall(SlaveLeversDestroy(p));
   PetscCall(PetscFree(p->end));
+  PetscCall(PetscFree(p->sides));
   PetscCall(PetscFree6(p->ptr, p->node, p->S, p->hat, p->weight, p->offset));
   PetscCall(PetscFree2(p->size, p->height));
   PetscCall(PetscFree(p->nodes));
@@ -310,20 +362,39 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *points)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Moves points on edges of a tool with it, and turns the sides of the edges. */
+static void MoveRidge(SlavePoints points, PetscReal t)
+{
+  const int          dim   = points->mesh->dim, body = points->surface->body;
+  const RidgePoint  *ridge = points->surface->ridge.point;
+
+  for (PetscInt q = 0; q < points->n; q++) {
+    const RidgePoint *point = &ridge[points->nodes[q].id];
+    PetscReal         x[3];
+
+    LoadsRigidMotion(points->loads, body, t, point->X, x);
+    for (int d = 0; d < dim; d++) points->u[q * dim + d] = x[d] - point->X[d];
+    for (int k = 0; k < 2; k++)
+      LoadsRigidTurn(points->loads, body, t, &point->sides[3 * k], &points->sides[6 * q + 3 * k]);
+  }
+}
+
 /*@
-  SlavePointsMove - fetches the displacements of the nodes.
+  SlavePointsMove - fetches the displacements of the nodes, or moves them with their tool.
 
   Collective
 
   Input Parameters:
 + points - the slave points
-- u      - local displacements u[mesh n_nodes*dim] (length), read at owned nodes
+. u      - local displacements u[mesh n_nodes*dim] (length), read at owned nodes
+- t      - load parameter, for points of a rigid tool; ToolsPlace() has placed one with unknowns
 @*/
-PetscErrorCode SlavePointsMove(SlavePoints points, const PetscReal *u)
+PetscErrorCode SlavePointsMove(SlavePoints points, const PetscReal *u, PetscReal t)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscSFBcastBegin(points->sf, points->block, u, points->u, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(points->sf, points->block, u, points->u, MPI_REPLACE));
+  if (points->sides) MoveRidge(points, t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -372,6 +443,13 @@ static PetscBool IsMarked(const Facet *face, const PetscReal *marks)
   for (int a = 0; a < ElementGet(face->type)->nodes && marks; a++)
     if (marks[face->nodes[a]] > 0) return PETSC_TRUE;
   return (PetscBool)!marks;
+}
+
+/* Normals at points on edges of a tool: the mean of both sides. */
+static void RidgeNormals(SlavePoints points, PetscReal *normals)
+{
+  for (PetscInt q = 0; q < points->n; q++)
+    for (int d = 0; d < 3; d++) normals[3 * q + d] = points->sides[6 * q + d] + points->sides[6 * q + 3 + d];
 }
 
 /* Normals at nodes: the area-weighted mean normal of the faces around each node. */
@@ -474,7 +552,9 @@ PetscErrorCode SlavePointsNormals(SlavePoints points, int n_images, const Surfac
   const int dim = points->mesh->dim;
 
   PetscFunctionBeginUser;
-  if (points->face_sf)
+  if (points->sides)
+    RidgeNormals(points, normals);
+  else if (points->face_sf)
     PetscCall(HatNormals(points, n_images, images, u, some));
   else
     PetscCall(NodeNormals(points, u, normals));
@@ -507,6 +587,7 @@ PetscErrorCode SlavePointsFindEnds(SlavePoints points, const PetscReal *u)
   PetscReal *end;
 
   PetscFunctionBeginUser;
+  if (points->sides) PetscFunctionReturn(PETSC_SUCCESS); /* edges of a tool have no end */
   if (!points->end) PetscCall(PetscMalloc1(points->n_nodes * dim, &points->end));
   PetscCall(PetscMalloc1(points->mesh->n_nodes * dim, &end));
   PetscCall(SurfaceNodeEnds(points->surface, u, end));

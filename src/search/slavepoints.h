@@ -1,14 +1,16 @@
 /* The slave points of a pair: fixed combinations of slave nodes, plus an offset, at which the gap is measured. In
    node-to-surface contact they are the nodes themselves. In surface-to-surface contact they are the quadrature points
    of the faces around this rank's nodes, on whichever rank the faces live, with area weights and the hat functions by
-   which a slave node weighs them. They know no master.
+   which a slave node weighs them. They know no master. Points on the edges of a rigid tool have nodes of their own,
+   whose ids are numbers of ridge points, and move with the tool.
 
-   SlavePointsCreateNodes() or SlavePointsCreateQuadrature() makes them. SlavePointsSetOffsets() or
+   SlavePointsCreateNodes(), SlavePointsCreateQuadrature() or SlavePointsCreateRidge() makes them. SlavePointsSetOffsets() or
    SlavePointsSetMaps() brings the offsets of the faces to the points. SlavePointsMove() fetches displacements;
    SlavePointsPosition() and SlavePointsNormals() refer to the last move. SlavePointsFindEnds() finds where the slave
    ends. SlavePointsHatAreas() gives the nodal areas
    of surface-to-surface contact. */
 #pragma once
+#include "bodies/loads.h"
 #include "search/facemap.h"
 
 typedef struct {
@@ -28,6 +30,10 @@ typedef struct {
      the slave's surface at the point. NULL: not asked for. */
   PetscInt  *lever_ptr, *lever_node;
   PetscReal *lever_slope;
+  /* Points on edges of a tool only: what moves it, and the normals of both sides of the edge after SlavePointsMove(),
+     6 of each point. */
+  Loads      loads;
+  PetscReal *sides;
   PetscReal *end; /* n_nodes*dim: SurfaceNodeEnds() at the last SlavePointsFindEnds(), of any length */
   /* The following members are for surface-to-surface contact only. */
   PetscReal   *normal; /* n_nodes*3: mean normal around each node after SlavePointsNormals(), of any length */
@@ -46,8 +52,9 @@ typedef struct {
 PetscErrorCode SlavePointsCreateNodes(ContactSurface, PetscInt n, const PetscInt nodes[], const PetscReal size[],
                                       const PetscReal height[], PetscBool levers, SlavePoints *);
 PetscErrorCode SlavePointsCreateQuadrature(ContactSurface, Geometry, int finer, PetscBool levers, SlavePoints *);
+PetscErrorCode SlavePointsCreateRidge(ContactSurface, Loads, SlavePoints *);
 PetscErrorCode SlavePointsDestroy(SlavePoints *);
-PetscErrorCode SlavePointsMove(SlavePoints, const PetscReal *u);
+PetscErrorCode SlavePointsMove(SlavePoints, const PetscReal *u, PetscReal t);
 PetscBool      SlavePointIsOwn(SlavePoints, PetscInt q, PetscMPIInt rank);
 PetscInt       SlavePointFace(SlavePoints, PetscInt q);
 void           SlavePointsPosition(SlavePoints, PetscInt q, PetscReal *x);

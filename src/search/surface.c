@@ -202,6 +202,7 @@ PetscErrorCode SurfaceDestroy(ContactSurface *surface)
   PetscCall(PetscFree((*surface)->face_marks));
   PetscCall(PetscFree((*surface)->face_piece));
   PetscCall(PetscFree((*surface)->face_ends));
+  PetscCall(PetscFree((*surface)->ridge.point));
   PetscCall(FaceBlocksDestroy(&(*surface)->blocks));
   PetscCall(PetscFree(*surface));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -28,7 +28,20 @@ typedef struct {
   PetscBool reverses, left_out; /* reverses: inverts the orientation of a face */
 } SurfaceImage;
 
+/* A point on a sharp convex edge of a rigid tool, see ridgepoints.h */
 typedef struct {
+  PetscReal X[3];     /* relative to the mesh's centre (length) */
+  PetscReal area;     /* reference area */
+  PetscReal sides[6]; /* unit normals of both sides of the edge */
+  PetscInt  tag;      /* gmsh's tag of an end of the edge */
+} RidgePoint;
+
+typedef struct {
+  PetscInt    n;
+  RidgePoint *point;
+} RidgePoints;
+
+typedef struct _n_ContactSurface {
   Mesh             mesh;
   const MeshGroup *group; /* of a deformable body, else NULL */
   const MeshRigid *rigid; /* a rigid tool, else NULL; body: its number in the scene, else -1 */
@@ -46,7 +59,8 @@ typedef struct {
   PetscInt  *face_piece; /* of each face: the connected piece of the mesh to which it belongs; NULL: not sought */
   int       *face_ends;  /* of each face, bit e: edge e is an end, see surfaceends.h; NULL: none was sought */
   PetscInt   turned;     /* faces of a rigid tool whose normals were turned */
-  FaceBlocks blocks;     /* NULL before a search has asked for them; of a rigid tool in its own frame */
+  RidgePoints ridge;     /* points of a rigid tool that it has in the place of faces */
+  FaceBlocks  blocks;    /* NULL before a search has asked for them; of a rigid tool in its own frame */
 } *ContactSurface;
 
 PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const char *key, const char *name,

@@ -20,14 +20,28 @@ static void EdgeCorners(const Element *e, int edge, int corner[2])
   for (int k = 0; k < 2; k++) corner[k] = e->dim == 1 ? edge : e->edge_corners[edge][k];
 }
 
-/* Unit normal of a face in the middle of an edge, and the way out across it, square to the edge and the normal. */
-static void EdgeFrame(ContactSurface surface, const Facet *facet, int edge, PetscReal normal[3], PetscReal out[3])
+/*@
+  SurfaceEdgeFrame - finds the unit normal of a face in the middle of an edge, and the way out across it.
+
+  Not collective
+
+  Input Parameters:
++ surface - the surface
+. facet   - one of its faces
+- edge    - number of the edge in the face, in 2D of the end
+
+  Output Parameters:
++ normal - in the reference configuration
+- out    - square to the normal, of any length
+@*/
+void SurfaceEdgeFrame(ContactSurface surface, const Facet *facet, int edge, PetscReal normal[3], PetscReal out[3])
 {
-  const Element *e     = ElementGet(facet->type);
-  const int      dim   = surface->mesh->dim;
-  PetscReal      area  = 0;
-  double         xi[2] = {0, 0}, N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2], t[2][3] = {{0}}, across[2] = {0, 0};
-  int            corner[2];
+  const Element   *e     = ElementGet(facet->type);
+  const PetscReal *X     = surface->rigid ? surface->rigid->coords : surface->mesh->coords;
+  const int        dim   = surface->mesh->dim;
+  PetscReal        area  = 0;
+  double           xi[2] = {0, 0}, N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2], t[2][3] = {{0}}, across[2] = {0, 0};
+  int              corner[2];
 
   EdgeCorners(e, edge, corner);
   for (int k = 0; k < e->dim; k++) xi[k] = (e->node[corner[0]][k] + e->node[corner[1]][k]) / 2;
@@ -40,7 +54,7 @@ static void EdgeFrame(ContactSurface surface, const Facet *facet, int edge, Pets
   ElementShape(facet->type, xi, N, dN, NULL);
   for (int a = 0; a < e->nodes; a++)
     for (int k = 0; k < e->dim; k++)
-      for (int d = 0; d < dim; d++) t[k][d] += dN[a * e->dim + k] * surface->mesh->coords[facet->nodes[a] * dim + d];
+      for (int d = 0; d < dim; d++) t[k][d] += dN[a * e->dim + k] * X[facet->nodes[a] * dim + d];
   for (int d = 0; d < 3; d++) out[d] = across[0] * t[0][d] + across[1] * t[1][d];
   if (dim == 2) t[1][2] = 1;
   for (int d = 0; d < 3; d++) normal[d] = t[0][(d + 1) % 3] * t[1][(d + 2) % 3] - t[0][(d + 2) % 3] * t[1][(d + 1) % 3];
@@ -64,7 +78,7 @@ static void FillRow(const EndSearch *s, PetscInt f, int edge, PetscReal *row)
   row[EDGE_RANK]   = s->rank;
   row[EDGE_FACE]   = (PetscReal)f;
   row[EDGE_NUMBER] = edge;
-  EdgeFrame(s->surface, facet, edge, &row[EDGE_NORMAL], out);
+  SurfaceEdgeFrame(s->surface, facet, edge, &row[EDGE_NORMAL], out);
 }
 
 /* Does the surface turn away at an edge of a face, to a neighbour with this normal? */
@@ -72,7 +86,7 @@ static PetscBool TurnsAway(const EndSearch *s, PetscInt f, int edge, const Petsc
 {
   PetscReal normal[3], out[3], along = 0, away = 0;
 
-  EdgeFrame(s->surface, &s->surface->faces[f], edge, normal, out);
+  SurfaceEdgeFrame(s->surface, &s->surface->faces[f], edge, normal, out);
   for (int d = 0; d < 3; d++) {
     along += normal[d] * neighbour[d];
     away += out[d] * neighbour[d];

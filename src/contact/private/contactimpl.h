@@ -7,7 +7,10 @@
    itself (contactends.c). Faces may have terms besides (contactfaces.c).
    Both press and have stiffness as others do, but what is counted and shown is that of the nodes.
 
-   The files call each other downwards in this order: contactwork (room), contactpair, contactends, contactcorners,
+   A rigid tool with sharp edges that stands on its slave has a second pair (contactridge.c), node to surface: points on
+   the edges are its slave points, and the slave is its master.
+
+   The files call each other downwards in this order: contactwork (room), contactridge, contactpair, contactends, contactcorners,
    contactfaces and contactterm (a pair, its ends, the terms of its sharp edges and faces, one of its terms),
    contacttool (a tool with unknowns), contactpoint (one slave point), contactvariation (first variations that are
    kept), contactprojection (gaps of all points), contactvectors (first variations over dofs), frictiontravel,
@@ -50,7 +53,7 @@ typedef struct {
   PetscReal depth; /* behind the master (length); 0: no point was lost */
   PetscReal gap;   /* in front of the master, where the point is found now (length); NaN: no master is near */
   PetscReal size;  /* of the slave's faces there (length) */
-  PetscInt  node;  /* local */
+  PetscInt  tag;   /* of its node */
 } ContactLost;
 
 typedef struct {
@@ -60,7 +63,10 @@ typedef struct {
   PairFormulation     formulation;
   FitSettings         fit;           /* fit.fitted: the master is fitted, so lists hold fits and timings count as fit */
   ContactSurface      slave, master; /* master NULL: analytic, in scene */
-  const MeshTool     *tool;          /* the master, where its motion has free components; else NULL */
+  const MeshTool     *tool;          /* the master or the slave, where its motion has free components; else NULL */
+  int                 ridge;         /* number of the pair of its tool's sharp edges; 0: there is none */
+  int                 of;            /* of such a pair: number of the one with the tool as master */
+  SceneContact        said;          /* of such a pair: what the scene would say of it */
   int                 n_images;      /* of the master, for fits and search */
   int             n_mirrors; /* those and the ones beyond planes at which a surface turns sharply, for its corners */
   SurfaceImage    images[SURFACE_MAX_IMAGES], mirrors[SURFACE_MAX_IMAGES];
@@ -164,7 +170,7 @@ struct _n_Contact {
   Mesh             mesh;
   Scene            scene;
   Loads            loads;
-  int              n_pairs;
+  int              n_pairs, n_scene; /* the first n_scene are those of the scene, the others those of sharp edges */
   ContactPair     *pairs;
   PetscInt        *piece;   /* connected piece of each local node, while pairs of listed surfaces are made; else NULL */
   const PetscReal *u_begun; /* local displacements at which the load step began, of the model */
@@ -201,6 +207,12 @@ typedef struct {
 PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const PetscInt piece[], const SceneContact *,
                                  ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
+PetscErrorCode ContactPairCreateRidge(Contact, Elasticity, int of, ContactPair *);
+/* contactridge.c */
+PetscBool      ContactIsRidge(const ContactPair *);
+PetscErrorCode ContactRidgesAdd(Contact, Elasticity);
+PetscInt       ContactTermTag(const ContactPair *, PetscInt term);
+void           ContactTermPlace(const ContactPair *, PetscInt term, PetscReal X[3]);
 /* contactoverride.c */
 PetscErrorCode ContactOverride(Contact, Elasticity);
 /* contactrepeated.c */

@@ -1,0 +1,94 @@
+/* Pairs of the sharp edges of rigid tools.
+
+   Contact is measured at points of the slave, and an edge of the tool that stands between them is seen by none: it sinks
+   in until some points are behind it, and these are pressed out along its sides. So points on the edges of the tool
+   (ridgepoints.h) are the slave points of a second pair, node to surface, whose master is the slave of the first one.
+   Its force is square to that surface, and search, smoothing, tangent, penalties and checkpoints are those of all pairs.
+   The points have no unknowns, they are contact nodes of the tool (neighbourlists.h); a tool with unknowns gets its
+   part from the nodes of the deformable side, see contacttool.c. A point counts where no side of its edge lies on the
+   surface, and slave points of the first pair fade beside such an edge (RidgeShare() and EdgeShare() in flank.c).
+
+   The scene does not name these pairs, and nobody outside sees them: forces, moments and work on the tool, penetrations
+   and penalties are those of the pair to which they belong. There are none with friction, with a fluid or with a single
+   reference plane. */
+#include "contactimpl.h"
+
+/*@
+  ContactIsRidge - says whether the slave of a pair is the sharp edges of a rigid tool.
+
+  Not collective
+
+  Input Parameter:
+. pair - the pair
+@*/
+PetscBool ContactIsRidge(const ContactPair *pair)
+{
+  return (PetscBool)(pair->slave->ridge.n > 0);
+}
+
+/* Can the edges of the master of a pair have a pair of their own? */
+static PetscBool MayHaveRidge(Scene scene, const ContactPair *pair)
+{
+  return (PetscBool)(pair->master && pair->master->rigid && !pair->friction && !SceneHasFluid(scene) &&
+                     !pair->fit.global_frame);
+}
+
+/*@
+  ContactRidgesAdd - adds pairs of the sharp edges of tools behind those of the scene, where the tools have any.
+
+  Collective
+
+  Input Parameters:
++ contact    - the contact, with the pairs of the scene and room for as many more
+- elasticity - the bodies, for automatic penalties
+@*/
+PetscErrorCode ContactRidgesAdd(Contact contact, Elasticity elasticity)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_scene; p++) {
+    ContactPair *pair = &contact->pairs[p], *ridge = &contact->pairs[contact->n_pairs];
+
+    if (!MayHaveRidge(contact->scene, pair)) continue;
+    PetscCall(ContactPairCreateRidge(contact, elasticity, p, ridge));
+    if (!ridge->slave) continue;
+    SearchHasRidges(pair->search);
+    pair->ridge = contact->n_pairs++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactTermTag - returns gmsh's tag of the node of a term, for messages; of a point on the edge of a tool that of an
+  end of the edge.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+- c    - the term, of a node or of a side
+@*/
+PetscInt ContactTermTag(const ContactPair *pair, PetscInt c)
+{
+  return ContactIsRidge(pair) ? pair->slave->ridge.point[pair->node[c]].tag : pair->mesh->node_tag[pair->node[c]];
+}
+
+/*@
+  ContactTermPlace - gives the reference place of the node of a term, or of a point on the edge of a tool.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+- c    - the term, of a node or of a side
+
+  Output Parameter:
+. X - reference coordinates of the scene (length)
+@*/
+void ContactTermPlace(const ContactPair *pair, PetscInt c, PetscReal X[3])
+{
+  if (!ContactIsRidge(pair)) {
+    MeshNodePlace(pair->mesh, pair->node[c], X);
+    return;
+  }
+  for (int d = 0; d < 3; d++) X[d] = pair->slave->ridge.point[pair->node[c]].X[d] + pair->mesh->centre[d];
+}
