@@ -314,11 +314,13 @@ static PetscErrorCode AddAreaChange(Contact contact, int p, const PetscReal *rea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sums up the changes of a pair's nodes as ContactPairLoad() sums up what they bear. pressure: changes of theirs. */
+/* Sums up the changes of a pair's nodes as ContactPairLoad() sums up what they bear. pressure: changes of theirs;
+   point_force: of points on sharp edges of its tool. */
 static PetscErrorCode SumChanges(const ContactPair *pair, const ContactNodes *nodes, const PairChange *change,
-                                 const PetscReal *pressure, ContactLoad *load)
+                                 PetscInt points, const PetscReal *point_force, const PetscReal *pressure,
+                                 ContactLoad *load)
 {
-  PetscReal   sum[7] = {0}, largest = 0, peak = 0;
+  PetscReal   sum[8] = {0}, largest = 0, peak = 0;
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
@@ -333,10 +335,11 @@ static PetscErrorCode SumChanges(const ContactPair *pair, const ContactNodes *no
     largest = nodes->pressure[c];
     peak    = pressure[c];
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 7, MPIU_REAL, MPIU_SUM, pair->mesh->comm));
+  for (PetscInt c = 0; c < points; c++) sum[7] += point_force[c];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 8, MPIU_REAL, MPIU_SUM, pair->mesh->comm));
   PetscCall(LargestOfRanks(pair->mesh->comm, largest, NULL, &rank, NULL));
   PetscCallMPI(MPI_Bcast(&peak, 1, MPIU_REAL, rank, pair->mesh->comm));
-  *load = (ContactLoad){.force    = sum[2],
+  *load = (ContactLoad){.force    = sum[2] + sum[7],
                         .pressure = sum[0] > 0 ? (sum[3] - sum[1] / sum[0] * sum[2]) / sum[0] : 0,
                         .peak     = peak,
                         .friction = {sum[4], sum[5], sum[6]}};
@@ -368,8 +371,8 @@ PetscErrorCode ContactLoadChanges(Contact contact, PenaltySource source, const P
   PairChange *pairs;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(contact->n_scene, &pairs));
-  for (int p = 0; p < contact->n_scene; p++) {
+  PetscCall(PetscMalloc1(contact->n_pairs, &pairs));
+  for (int p = 0; p < contact->n_pairs; p++) {
     PetscCall(PairChangeCreate(&contact->pairs[p], &pairs[p]));
     PetscCall(PairForcesAlong(contact, &contact->pairs[p], source, v, &pairs[p]));
   }
@@ -384,10 +387,11 @@ PetscErrorCode ContactLoadChanges(Contact contact, PenaltySource source, const P
                                    pressure));
     PetscCall(AddAreaChange(contact, p, partner >= 0 ? contact->pairs[partner].reaction : NULL, u, v, pressure));
     PetscCall(ContactGetNodes(contact, p, u, &nodes));
-    PetscCall(SumChanges(pair, &nodes, &pairs[p], pressure, &change[p]));
+    PetscCall(SumChanges(pair, &nodes, &pairs[p], pair->ridge ? contact->pairs[pair->ridge].n : 0,
+                         pairs[pair->ridge].force, pressure, &change[p]));
     PetscCall(PetscFree2(pressure, area));
   }
-  for (int p = 0; p < contact->n_scene; p++) PetscCall(PairChangeDestroy(&pairs[p]));
+  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairChangeDestroy(&pairs[p]));
   PetscCall(PetscFree(pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

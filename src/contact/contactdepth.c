@@ -56,6 +56,7 @@ static PetscErrorCode GapWithin(const ContactPair *pair, PetscInt c, PetscReal *
 PetscErrorCode ContactPairDepth(Contact contact, int p, PetscReal *over_h)
 {
   const ContactPair *pair = &contact->pairs[p];
+  PetscReal          edges = 0;
 
   PetscFunctionBeginUser;
   *over_h = 0;
@@ -68,5 +69,7 @@ PetscErrorCode ContactPairDepth(Contact contact, int p, PetscReal *over_h)
     if (!PetscIsNanReal(gap)) *over_h = PetscMax(*over_h, (offset - gap) / size);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, over_h, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  if (pair->ridge) PetscCall(ContactPairDepth(contact, pair->ridge, &edges));
+  *over_h = PetscMax(*over_h, edges);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -17,17 +17,16 @@ static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscR
                                 ContactPlace *place)
 {
   PetscReal X[3] = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL};
-  PetscInt  tag = PETSC_MAX_INT, node = -1;
+  PetscInt  tag = PETSC_MAX_INT, at = -1;
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n; c++) {
-    if (!(value[c] >= largest - QUALITY_ROUND_OFF * pair->slave->mean_size) || mesh->node_tag[pair->node[c]] >= tag)
-      continue;
-    node = pair->node[c];
-    tag  = mesh->node_tag[node];
+    if (!(value[c] >= largest - QUALITY_ROUND_OFF * pair->slave->mean_size) || ContactTermTag(pair, c) >= tag) continue;
+    at  = c;
+    tag = ContactTermTag(pair, c);
   }
   PetscCallMPI(MPI_Allreduce(&tag, &place->tag, 1, MPIU_INT, MPI_MIN, mesh->comm));
-  if (tag == place->tag && node >= 0) MeshNodePlace(mesh, node, X);
+  if (tag == place->tag && at >= 0) ContactTermPlace(pair, at, X);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, X, 3, MPIU_REAL, MPIU_MAX, mesh->comm));
   if (place->tag == PETSC_MAX_INT) place->tag = -1;
   for (int d = 0; d < 3; d++) place->X[d] = place->tag >= 0 ? X[d] : 0;
@@ -164,6 +163,28 @@ static PetscErrorCode CountHanging(const ContactPair *pair, PetscMPIInt rank, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Counts the points on edges of the tool that press, and takes their penetrations where they are deeper. */
+static PetscErrorCode AddRidge(const ContactPair *ridge, ContactPressing *pressing, ContactQuality *quality)
+{
+  ContactPressing edges;
+  PetscReal      *depth;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactPairPressing(ridge, &edges));
+  quality->nodes += edges.n;
+  if (!pressing->n) quality->faces = PETSC_FALSE;
+  PetscCall(PetscMalloc1(ridge->n, &depth));
+  for (PetscInt c = 0; c < ridge->n; c++)
+    depth[c] =
+      ridge->now.status[c] == CONTACT_CLOSED ? ContactTermOffset(ridge, c, ridge->t) - ridge->now.gap[c] : NAN;
+  if (edges.depth > pressing->depth)
+    PetscCall(FindPlace(ridge->mesh, ridge, depth, edges.depth, &quality->deepest));
+  PetscCall(PetscFree(depth));
+  pressing->depth  = PetscMax(pressing->depth, edges.depth);
+  pressing->over_h = PetscMax(pressing->over_h, edges.over_h);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactPairQuality - measures the penetrations of a pair in the present state, against the size of its faces and
   against what facets leave out.
@@ -207,6 +228,7 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   if (pair->master) quality->turned = pair->master->turned;
   PetscCall(FindPlace(contact->mesh, pair, depth, pressing.depth, &quality->deepest));
   PetscCall(PetscFree(depth));
+  if (pair->ridge) PetscCall(AddRidge(&contact->pairs[pair->ridge], &pressing, quality));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
   quality->max_penetration        = pressing.depth;
   quality->max_penetration_over_h = pressing.over_h;

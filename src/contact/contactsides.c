@@ -38,6 +38,31 @@ static PetscBool Holds(const ContactPair *pair, const ContactState *state, Petsc
   return (PetscBool)(pair->formulation.surface && state->gap[c] <= SIDES_NEAR * pair->size[c]);
 }
 
+/* Marks the mesh's nodes of all faces near those points on edges of a tool that hold the surfaces. */
+static PetscErrorCode RidgePressed(const ContactPair *pair, PetscReal *mine)
+{
+  const NeighbourLists lists = pair->lists;
+  const int            dim   = pair->mesh->dim;
+  PetscReal           *values, *nodes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &nodes));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    if (!Holds(pair, &pair->now, c) && !Holds(pair, &pair->accepted, c)) continue;
+    for (PetscInt f = lists->facet_ptr[c]; f < lists->facet_ptr[c + 1]; f++) {
+      for (int a = 0; a < ElementGet(lists->facet[f].type)->nodes; a++) {
+        const PetscInt p = lists->list_point[lists->list_ptr[c] + lists->facet[f].nodes[a]];
+
+        values[lists->point_node[lists->point_ptr[p]] * dim] = 1;
+      }
+    }
+  }
+  PetscCall(NeighbourListsReduce(lists, values, nodes));
+  for (PetscInt i = 0; i < pair->mesh->n_nodes; i++) mine[i] += nodes[i * dim];
+  PetscCall(PetscFree2(values, nodes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactPairPressed - marks the slave nodes of a pair that are closed, now or in the accepted state. In surface to
   surface contact nodes with an open mean gap of up to half a face count, too.
@@ -50,6 +75,9 @@ static PetscBool Holds(const ContactPair *pair, const ContactState *state, Petsc
 
   Input/Output Parameter:
 . pressed - pressed[nodes of the mesh]: where it is so, a number above 0 is added on all ranks
+
+  Note:
+  Where a sharp edge of the tool presses, the nodes of the faces around it count.
 @*/
 PetscErrorCode ContactPairPressed(Contact contact, int p, PetscReal *pressed)
 {
@@ -62,6 +90,7 @@ PetscErrorCode ContactPairPressed(Contact contact, int p, PetscReal *pressed)
   for (PetscInt c = 0; c < pair->n; c++) {
     if (Holds(pair, &pair->now, c) || Holds(pair, &pair->accepted, c)) mine[pair->node[c]] = 1;
   }
+  if (pair->ridge) PetscCall(RidgePressed(&contact->pairs[pair->ridge], mine));
   PetscCall(MeshSumNodes(mesh, 1, mine));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) pressed[n] += mine[n];
   PetscCall(PetscFree(mine));

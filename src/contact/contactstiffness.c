@@ -20,6 +20,7 @@ PetscErrorCode ContactStiffen(Contact contact, int p, PetscReal factor)
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n; c++) pair->now.penalty[c] *= factor;
+  if (pair->ridge) PetscCall(ContactStiffen(contact, pair->ridge, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -63,10 +64,12 @@ PetscErrorCode ContactStiffenStick(Contact contact, int p, PetscReal factor)
 PetscErrorCode ContactPairLoad(Contact contact, int p, const PetscReal *u, ContactLoad *load)
 {
   const Friction friction = contact->pairs[p].friction;
+  const int      ridge    = contact->pairs[p].ridge;
   ContactNodes   nodes;
-  PetscReal      sum[5] = {0}, most = 0;
+  PetscReal      sum[6] = {0}, most = 0; /* force, by pressure, friction; force of edges, which have no pressure */
 
   PetscFunctionBeginUser;
+  for (PetscInt c = 0; ridge && c < contact->pairs[ridge].n; c++) sum[5] += contact->pairs[ridge].force[c];
   PetscCall(ContactGetNodes(contact, p, u, &nodes));
   for (PetscInt c = 0; c < nodes.n; c++) {
     for (int d = 0; d < 3 && friction; d++) sum[2 + d] += friction->nodal[3 * c + d];
@@ -75,9 +78,9 @@ PetscErrorCode ContactPairLoad(Contact contact, int p, const PetscReal *u, Conta
     sum[1] += nodes.force[c] * nodes.pressure[c];
     most = PetscMax(most, nodes.pressure[c]);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 5, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 6, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
-  *load = (ContactLoad){.force    = sum[0],
+  *load = (ContactLoad){.force    = sum[0] + sum[5],
                         .pressure = sum[0] > 0 ? sum[1] / sum[0] : 0,
                         .peak     = most,
                         .friction = {sum[2], sum[3], sum[4]},

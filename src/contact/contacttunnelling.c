@@ -268,6 +268,6 @@ PetscErrorCode ContactLocateLost(Contact contact, PetscBool *lost, char *text, s
   PetscCall(PetscSNPrintf(
     text, size,
     "contact '%s': node %.0f was %.3g behind its master and is found %s (face size %.3g): is the penalty too soft?",
-    contact->pairs[(int)worst[4]].scene->name, (double)worst[3], (double)worst[0], now, (double)worst[2]));
+    ContactPairName(contact, (int)worst[4]), (double)worst[3], (double)worst[0], now, (double)worst[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
