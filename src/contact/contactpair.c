@@ -492,8 +492,7 @@ PetscErrorCode ContactPairCreateRidge(Contact contact, Elasticity elasticity, in
   const ContactPair *tool  = &contact->pairs[of];
 
   PetscFunctionBeginUser;
-  PetscCall(RidgeSurfaceCreate(tool->master, tool->slave, scene->geometry, tool->fit.feature_angle, tool->n_mirrors,
-                               tool->mirrors, &pair->slave));
+  PetscCall(RidgeSurfaceCreate(tool->master, tool->slave, scene->geometry, tool->n_mirrors, tool->mirrors, &pair->slave));
   if (!pair->slave) PetscFunctionReturn(PETSC_SUCCESS);
   pair->of        = of;
   pair->said      = RidgeScene(tool->scene);
@@ -501,6 +500,7 @@ PetscErrorCode ContactPairCreateRidge(Contact contact, Elasticity elasticity, in
   pair->scene     = &pair->said;
   pair->tool      = tool->tool;
   pair->facets    = &Smoother_Facet;
+  if (getenv("RF")) pair->smoother = pair->facets; else
   pair->smoother  = Smoothers[pair->said.smoother];
   pair->law       = tool->law;
   pair->geometry  = scene->geometry;

@@ -232,14 +232,11 @@ static PetscErrorCode ResultsWatchContact(Results results)
 
   PetscFunctionBeginUser;
   for (int p = 0; p < results->scene->n_contacts; p++) {
-    ContactNodes nodes;
-    int          met = 0;
+    ContactLoad load;
 
     if (results->met[p]) continue;
-    PetscCall(ContactGetNodes(model->contact, p, model->u, &nodes));
-    for (PetscInt c = 0; c < nodes.n; c++) met = met || nodes.force[c] != 0;
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &met, 1, MPI_INT, MPI_LOR, model->mesh->comm));
-    results->met[p] = met ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(ContactPairLoad(model->contact, p, model->u, &load));
+    results->met[p] = load.force > 0 ? PETSC_TRUE : PETSC_FALSE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,4 +1,4 @@
-/* Points along the sharp convex edges of a rigid tool, its ridges. Contact is measured at points of the slave, and no
+/* Points along the convex edges of a rigid tool that are sharper than a right angle, its ridges. Contact is measured at points of the slave, and no
    such point sees an edge of the tool that stands between them: the edge sinks in until points behind it are pressed
    out along its sides. So these points take part as slave points of a pair of their own, whose master is the slave of
    the tool's pair. They have no unknowns: the motion of the tool is theirs.
@@ -8,5 +8,5 @@
 #pragma once
 #include "search/surface.h"
 
-PetscErrorCode RidgeSurfaceCreate(ContactSurface tool, ContactSurface other, Geometry, PetscReal angle, int n_images,
+PetscErrorCode RidgeSurfaceCreate(ContactSurface tool, ContactSurface other, Geometry, int n_images,
                                   const SurfaceImage *, ContactSurface *);
