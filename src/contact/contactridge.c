@@ -51,7 +51,6 @@ PetscErrorCode ContactRidgesAdd(Contact contact, Elasticity elasticity)
     if (!MayHaveRidge(contact->scene, pair)) continue;
     PetscCall(ContactPairCreateRidge(contact, elasticity, p, ridge));
     if (!ridge->slave) continue;
-    SearchHasRidges(pair->search);
     if (getenv("RIDGE_DEBUG")) fprintf(stderr, "RIDGE %s %d points\n", pair->scene->name, (int)ridge->slave->ridge.n);
     pair->ridge = contact->n_pairs++;
   }

@@ -269,7 +269,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                            .height     = s->slaves->height[q],
                            .listed     = s->listed,
                            .one_body   = s->one_body,
-                           .two_sided  = (PetscBool)(s->ridges || (s->listed && s->master && !s->master->rigid)),
+                           .two_sided  = (PetscBool)(s->listed && s->master && !s->master->rigid),
                            .sharp      = s->fit->feature_angle,
                            .marks      = s->marks ? s->marks[q] : 0,
                            .best       = -1,
@@ -340,19 +340,6 @@ void SearchAllSides(ContactSearch s, PetscBool one_body)
 {
   s->listed   = PETSC_TRUE;
   s->one_body = one_body;
-}
-
-/*@
-  SearchHasRidges - has the area of slave points fade beside sharp edges of the master, whose own points press there.
-
-  Not collective
-
-  Input Parameter:
-. s - the search, whose master is a rigid tool
-@*/
-void SearchHasRidges(ContactSearch s)
-{
-  s->ridges = PETSC_TRUE;
 }
 
 /*@

@@ -43,7 +43,6 @@ PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface master, PetscReal
 PetscErrorCode SearchDestroy(ContactSearch *);
 void           SearchKeepFaces(ContactSearch);
 void           SearchAllSides(ContactSearch, PetscBool one_body);
-void           SearchHasRidges(ContactSearch);
 void           SearchSetTool(ContactSearch, const MeshTool *);
 void           SearchSetMarks(ContactSearch, const FaceMarks *);
 void           SearchSetRungs(ContactSearch, const int *first);

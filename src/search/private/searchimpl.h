@@ -55,7 +55,6 @@ struct _n_ContactSearch {
   PetscBool           keeps_faces;   /* lists keep all faces, not only those of each slave point */
   PetscBool           listed;        /* any side of the bodies may meet any other one */
   PetscBool           one_body;      /* slave and master have faces of one body */
-  PetscBool           ridges;        /* points on sharp edges of the master are slave points of another pair */
   const FaceMarks    *marks;         /* of each slave point, where other pairs treat some of its partners; else NULL */
   PetscReal           reach, margin; /* lengths, without the motion */
   PetscReal           fit_reach;     /* SearchFitReach() */
@@ -96,7 +95,7 @@ typedef struct {
   PetscReal        x[3], size, height; /* of the slave's face, and of the element below it (length) */
   PetscReal        outward[3];         /* unit normal out of the slave's body; 0 where it has none */
   PetscBool        listed, one_body;   /* as in the search */
-  PetscBool        two_sided;          /* the master is a slave of this surface too, at least at its sharp edges */
+  PetscBool        two_sided;          /* the master is a slave of this surface too */
   PetscReal        sharp;              /* facets that differ by more meet at a sharp edge (radians) */
   /* The slave point, and the number of nodes of its own face: a face with one of these nodes is not its master. */
   PetscInt  q, own;
