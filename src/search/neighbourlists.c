@@ -49,7 +49,7 @@ static PetscInt MarkSlaveNodes(ContactSearch s, NeighbourLists lists, char *mark
 static PetscErrorCode CollectKeys(ContactSearch s, const SearchField *field, NeighbourLists lists, ContactKeys *all)
 {
   const PetscBool rigid     = (PetscBool)(s->master && s->master->rigid);
-  const PetscBool ridge     = (PetscBool)(s->slaves && s->slaves->sides);
+  const PetscBool ridge     = (PetscBool)(s->slaves && s->slaves->surface->ridge.n);
   const PetscInt  n_records = field->n_records, n_nodes = s->slaves ? s->slaves->n_nodes : 0;
   const FaceMaps  none = {0}, *maps[] = {&field->maps, s->slaves ? &s->slaves->maps : &none};
   PetscInt        n = 0, n_slaves, n_rigid = 0, n_mapped = 0, n_tool = s->tool ? TOOL_NODES : 0;
@@ -676,8 +676,8 @@ void NeighbourListsPointGeometry(ContactSearch s, NeighbourLists lists, const Se
    are those of all lists of the search. */
 static PetscErrorCode TakeSlaveShapes(NeighbourLists lists, SlavePoints slaves, PetscBool first)
 {
-  const PetscInt entries = slaves->ptr[slaves->n];
-  const PetscInt from = slaves->sides ? lists->n_deformable : 0, end = slaves->sides ? lists->n_nodes : lists->n_deformable;
+  const PetscInt entries = slaves->ptr[slaves->n], ridge = slaves->surface->ridge.n;
+  const PetscInt from = ridge ? lists->n_deformable : 0, end = ridge ? lists->n_nodes : lists->n_deformable;
   PetscInt      *number; /* of each node of the points, from `from` on */
 
   PetscFunctionBeginUser;

@@ -394,7 +394,7 @@ PetscErrorCode SlavePointsMove(SlavePoints points, const PetscReal *u, PetscReal
   PetscFunctionBeginUser;
   PetscCall(PetscSFBcastBegin(points->sf, points->block, u, points->u, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(points->sf, points->block, u, points->u, MPI_REPLACE));
-  if (points->sides) MoveRidge(points, t);
+  if (points->surface->ridge.n) MoveRidge(points, t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -552,7 +552,7 @@ PetscErrorCode SlavePointsNormals(SlavePoints points, int n_images, const Surfac
   const int dim = points->mesh->dim;
 
   PetscFunctionBeginUser;
-  if (points->sides)
+  if (points->surface->ridge.n)
     RidgeNormals(points, normals);
   else if (points->face_sf)
     PetscCall(HatNormals(points, n_images, images, u, some));
@@ -587,7 +587,7 @@ PetscErrorCode SlavePointsFindEnds(SlavePoints points, const PetscReal *u)
   PetscReal *end;
 
   PetscFunctionBeginUser;
-  if (points->sides) PetscFunctionReturn(PETSC_SUCCESS); /* edges of a tool have no end */
+  if (points->surface->ridge.n) PetscFunctionReturn(PETSC_SUCCESS); /* edges of a tool have no end */
   if (!points->end) PetscCall(PetscMalloc1(points->n_nodes * dim, &points->end));
   PetscCall(PetscMalloc1(points->mesh->n_nodes * dim, &end));
   PetscCall(SurfaceNodeEnds(points->surface, u, end));
