@@ -98,6 +98,7 @@ typedef struct {
                         the slave points near it (length) */
   PetscInt     near, averse; /* slave points near the master; of these, those that do not face it and take no part */
   PetscInt     hanging;      /* slave points past a free edge of the master that are deep and hardly take part */
+  PetscInt     edges;        /* points on sharp edges of a rigid master that press, which count as nodes, too */
   PetscInt     turned;       /* faces of a rigid master whose normals were turned to the slave */
   ContactPlace deepest;      /* where the largest penetration is */
 } ContactQuality;

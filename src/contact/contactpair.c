@@ -500,8 +500,9 @@ PetscErrorCode ContactPairCreateRidge(Contact contact, Elasticity elasticity, in
   pair->scene     = &pair->said;
   pair->tool      = tool->tool;
   pair->facets    = &Smoother_Facet;
-  if (getenv("RF")) pair->smoother = pair->facets; else
-  pair->smoother  = Smoothers[pair->said.smoother];
+  /* Tools with unknowns take their part of a gap from motions of slave and tool as one body, in which frames of fits on
+     the slave do not turn. */
+  pair->smoother  = pair->tool ? pair->facets : Smoothers[pair->said.smoother];
   pair->law       = tool->law;
   pair->geometry  = scene->geometry;
   pair->n_images  = tool->n_images;

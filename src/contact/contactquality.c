@@ -172,6 +172,7 @@ static PetscErrorCode AddRidge(const ContactPair *ridge, ContactPressing *pressi
   PetscFunctionBeginUser;
   PetscCall(ContactPairPressing(ridge, &edges));
   quality->nodes += edges.n;
+  quality->edges = edges.n;
   if (!pressing->n) quality->faces = PETSC_FALSE;
   PetscCall(PetscMalloc1(ridge->n, &depth));
   for (PetscInt c = 0; c < ridge->n; c++)

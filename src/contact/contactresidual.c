@@ -163,7 +163,6 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
     pair->now.status[c] = value.stiffness > 0 ? CONTACT_CLOSED : CONTACT_OPEN;
     ContactTermPress(pair, c, value.pressure, pair->point_force);
     TermNormal(pair, c);
-    if (ContactIsRidge(pair) && getenv("RIDGE_DEBUG")) fprintf(stderr,"t %g tip %d gap %g factor %g share %g p %g n %g %g pen %g area %g facets %d side %g %g %g %g nrm %g %g\n", t, (int)c, gap, pair->factor[c], pair->lists->share[c], value.pressure, pair->point_normal[3*c], pair->point_normal[3*c+1], pair->now.penalty[c], area, (int)(pair->lists->facet_ptr[c+1]-pair->lists->facet_ptr[c]), pair->slaves->sides[6*c], pair->slaves->sides[6*c+1], pair->slaves->sides[6*c+3], pair->slaves->sides[6*c+4], pair->lists->slave_normal[3*c], pair->lists->slave_normal[3*c+1]);
   }
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
   pair->t = t;

@@ -6,7 +6,8 @@
    Its force is square to that surface, and search, smoothing, tangent, penalties and checkpoints are those of all pairs.
    The points have no unknowns, they are contact nodes of the tool (neighbourlists.h); a tool with unknowns gets its
    part from the nodes of the deformable side, see contacttool.c. A point counts where no side of its edge lies on the
-   surface, and slave points of the first pair fade beside such an edge (RidgeShare() and EdgeShare() in flank.c).
+   surface (EdgeShare() in flank.c). Slave points of the first pair beside the edge keep their area: what the edge
+   holds is not behind its sides, and where a dent is steep they bear it.
 
    The scene does not name these pairs, and nobody outside sees them: forces, moments and work on the tool, penetrations
    and penalties are those of the pair to which they belong. There are none with friction, with a fluid or with a single
@@ -51,7 +52,6 @@ PetscErrorCode ContactRidgesAdd(Contact contact, Elasticity elasticity)
     if (!MayHaveRidge(contact->scene, pair)) continue;
     PetscCall(ContactPairCreateRidge(contact, elasticity, p, ridge));
     if (!ridge->slave) continue;
-    if (getenv("RIDGE_DEBUG")) fprintf(stderr, "RIDGE %s %d points\n", pair->scene->name, (int)ridge->slave->ridge.n);
     pair->ridge = contact->n_pairs++;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -481,11 +481,12 @@ static void WarnCrossed(const RunFigures *figures, PetscBool met)
       (double)over_h);
 }
 
-/* The pair in which the edge of a wedge stands between the points of its slave; NULL: none. */
+/* The pair in which the edge of a wedge stands between the points of its slave and does not press itself; NULL: none. */
 static const PairFigures *PairOnWedge(const RunFigures *figures)
 {
   for (int p = 0; p < figures->n_pairs; p++)
-    if (figures->pairs[p].master.wedge && AdviceMasterStands(&figures->pairs[p])) return &figures->pairs[p];
+    if (figures->pairs[p].master.wedge && !figures->pairs[p].quality.edges && AdviceMasterStands(&figures->pairs[p]))
+      return &figures->pairs[p];
   return NULL;
 }
 
