@@ -56,14 +56,15 @@ static PetscErrorCode ListEdges(ContactSurface tool, PetscInt *n, RidgeEdge **ed
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The plane of symmetry that holds an edge; NULL: none. */
+/* The plane of symmetry that holds an edge; NULL: none. The tip of a cone on the axis is no edge: it bears nothing, and
+   elements that follow it are too stiff, by four times where they are as large as the dent. */
 static const SurfaceImage *PlaneOf(const RidgeSearch *s, const RidgeEdge *edge)
 {
   const Mesh       mesh = s->tool->mesh;
   const PetscReal *X    = s->tool->rigid->coords;
 
   for (int plane = 1; plane < s->n_images; plane <<= 1)
-    if (SurfaceOnPlane(mesh, &s->images[plane], &X[edge->low * mesh->dim]) &&
+    if (!SurfaceImageBeyondAxis(&s->images[plane]) && SurfaceOnPlane(mesh, &s->images[plane], &X[edge->low * mesh->dim]) &&
         SurfaceOnPlane(mesh, &s->images[plane], &X[edge->high * mesh->dim]))
       return &s->images[plane];
   return NULL;
@@ -100,16 +101,13 @@ static PetscReal EdgeLength(const RidgeSearch *s, const RidgeEdge *edge)
   return PetscSqrtReal(square);
 }
 
-/* Area of a point: a face wide, along its part of the edge; half of that in a plane of symmetry, a disc at the axis. */
+/* Area of a point: a face wide, along its part of the edge; half of that in a plane of symmetry. */
 static PetscReal PointArea(const RidgeSearch *s, const RidgeEdge *edge, PetscReal length, const PetscReal *X)
 {
-  const SurfaceImage *plane = PlaneOf(s, edge);
-  const PetscReal     part  = plane && !SurfaceImageBeyondAxis(plane) ? 0.5 : 1;
+  const PetscReal along =
+    s->geometry == GEOMETRY_SOLID ? length : s->geometry == GEOMETRY_AXISYMMETRIC ? 2 * PETSC_PI * X[0] : 1;
 
-  if (s->geometry == GEOMETRY_SOLID) return part * length * s->size;
-  if (s->geometry != GEOMETRY_AXISYMMETRIC) return part * s->size;
-  if (X[0] < s->size / 2) return part * PETSC_PI * PetscSqr(X[0] + s->size / 2);
-  return part * 2 * PETSC_PI * X[0] * s->size;
+  return (PlaneOf(s, edge) ? 0.5 : 1) * along * s->size;
 }
 
 /* Adds the points of an edge. */
