@@ -38,6 +38,29 @@ static PetscErrorCode FindPieces(Mesh mesh, Scene scene, PetscInt **piece)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Can the sharp edges of the master of a pair have a pair of their own? */
+static PetscBool MayHaveRidge(Scene scene, const ContactPair *pair)
+{
+  return (PetscBool)(pair->master && pair->master->rigid && !pair->friction && !SceneHasFluid(scene) &&
+                     !pair->fit.global_frame);
+}
+
+/* Adds pairs of the sharp edges of tools behind those of the scene, where the tools have any. */
+static PetscErrorCode AddRidges(Contact contact, Elasticity elasticity)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_scene; p++) {
+    ContactPair *pair = &contact->pairs[p], *ridge = &contact->pairs[contact->n_pairs];
+
+    if (!MayHaveRidge(contact->scene, pair)) continue;
+    PetscCall(ContactPairCreateRidge(contact, elasticity, p, ridge));
+    if (!ridge->slave) continue;
+    ridge->work = &contact->work;
+    pair->ridge = contact->n_pairs++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactCreate - creates all pairs of the scene, without lists.
 
@@ -96,8 +119,7 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscCall(LendOffsets(contact));
   PetscCall(ContactRefuseRepeated(contact));
   PetscCall(ContactOverride(contact, elasticity));
-  PetscCall(ContactRidgesAdd(contact, elasticity));
-  for (int p = contact->n_scene; p < contact->n_pairs; p++) contact->pairs[p].work = &contact->work;
+  PetscCall(AddRidges(contact, elasticity));
   PetscCall(ContactWorkCreate(capacity, dense, workspace, &contact->work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -188,9 +188,9 @@ static PetscErrorCode GatherChanges(ContactCycle cycle, PetscInt period, GatherT
       const PetscBool face = (PetscBool)(c >= pair->n_sides);
 
       if (!Changes(cycle, period, i)) continue;
-      rows[2 * n]       = 2 * p + (face ? 1 : 0);
-      rows[2 * n++ + 1] = face ? (PetscReal)pair->slaves->faces[pair->face[c - pair->n_sides]].tag
-                               : (PetscReal)ContactTermTag(pair, c);
+      rows[2 * n] = 2 * p + (face ? 1 : 0);
+      rows[2 * n++ + 1] =
+        face ? (PetscReal)pair->slaves->faces[pair->face[c - pair->n_sides]].tag : (PetscReal)ContactTermTag(pair, c);
     }
   }
   PetscCall(GatherTableCreate(contact->mesh->comm, 2, n, rows, table));

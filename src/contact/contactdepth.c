@@ -55,7 +55,7 @@ static PetscErrorCode GapWithin(const ContactPair *pair, PetscInt c, PetscReal *
 @*/
 PetscErrorCode ContactPairDepth(Contact contact, int p, PetscReal *over_h)
 {
-  const ContactPair *pair = &contact->pairs[p];
+  const ContactPair *pair  = &contact->pairs[p];
   PetscReal          edges = 0;
 
   PetscFunctionBeginUser;

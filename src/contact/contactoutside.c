@@ -32,9 +32,9 @@ const Motion *ContactPairMotion(Contact contact, int p)
    so that the slave nodes tell everything. */
 void ContactPairHold(Contact contact, const ContactPair *pair, PetscReal t, const PetscReal *values, PetscReal *out)
 {
-  const Motion        *motion = ContactPairMotion(contact, ContactIsRidge(pair) ? pair->of : (int)(pair - contact->pairs));
-  const NeighbourLists lists  = pair->lists;
-  const int            dim    = contact->mesh->dim;
+  const Motion *motion = ContactPairMotion(contact, ContactIsRidge(pair) ? pair->of : (int)(pair - contact->pairs));
+  const NeighbourLists lists = pair->lists;
+  const int            dim   = contact->mesh->dim;
   PetscReal            q[MOTION_COMPONENTS], point[3], moment[3] = {0, 0, 0};
   double               spin[3][3];
 

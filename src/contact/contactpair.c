@@ -492,14 +492,15 @@ PetscErrorCode ContactPairCreateRidge(Contact contact, Elasticity elasticity, in
   const ContactPair *tool  = &contact->pairs[of];
 
   PetscFunctionBeginUser;
-  PetscCall(RidgeSurfaceCreate(tool->master, tool->slave, scene->geometry, tool->n_mirrors, tool->mirrors, &pair->slave));
+  PetscCall(
+    RidgeSurfaceCreate(tool->master, tool->slave, scene->geometry, tool->n_mirrors, tool->mirrors, &pair->slave));
   if (!pair->slave) PetscFunctionReturn(PETSC_SUCCESS);
-  pair->of        = of;
-  pair->said      = RidgeScene(tool->scene);
-  pair->mesh      = mesh;
-  pair->scene     = &pair->said;
-  pair->tool      = tool->tool;
-  pair->facets    = &Smoother_Facet;
+  pair->of     = of;
+  pair->said   = RidgeScene(tool->scene);
+  pair->mesh   = mesh;
+  pair->scene  = &pair->said;
+  pair->tool   = tool->tool;
+  pair->facets = &Smoother_Facet;
   /* Tools with unknowns take their part of a gap from motions of slave and tool as one body, in which frames of fits on
      the slave do not turn. */
   pair->smoother  = pair->tool ? pair->facets : Smoothers[pair->said.smoother];

@@ -176,10 +176,8 @@ static PetscErrorCode AddRidge(const ContactPair *ridge, ContactPressing *pressi
   if (!pressing->n) quality->faces = PETSC_FALSE;
   PetscCall(PetscMalloc1(ridge->n, &depth));
   for (PetscInt c = 0; c < ridge->n; c++)
-    depth[c] =
-      ridge->now.status[c] == CONTACT_CLOSED ? ContactTermOffset(ridge, c, ridge->t) - ridge->now.gap[c] : NAN;
-  if (edges.depth > pressing->depth)
-    PetscCall(FindPlace(ridge->mesh, ridge, depth, edges.depth, &quality->deepest));
+    depth[c] = ridge->now.status[c] == CONTACT_CLOSED ? ContactTermOffset(ridge, c, ridge->t) - ridge->now.gap[c] : NAN;
+  if (edges.depth > pressing->depth) PetscCall(FindPlace(ridge->mesh, ridge, depth, edges.depth, &quality->deepest));
   PetscCall(PetscFree(depth));
   pressing->depth  = PetscMax(pressing->depth, edges.depth);
   pressing->over_h = PetscMax(pressing->over_h, edges.over_h);

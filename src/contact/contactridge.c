@@ -1,12 +1,12 @@
 /* Pairs of the sharp edges of rigid tools.
 
-   Contact is measured at points of the slave, and an edge of the tool that stands between them is seen by none: it sinks
-   in until some points are behind it, and these are pressed out along its sides. So points on the edges of the tool
-   (ridgepoints.h) are the slave points of a second pair, node to surface, whose master is the slave of the first one.
-   Its force is square to that surface, and search, smoothing, tangent, penalties and checkpoints are those of all pairs.
-   The points have no unknowns, they are contact nodes of the tool (neighbourlists.h); a tool with unknowns gets its
-   part from the nodes of the deformable side, see contacttool.c. A point counts where no side of its edge lies on the
-   surface (EdgeShare() in flank.c). Slave points of the first pair beside the edge keep their area: what the edge
+   Contact is measured at points of the slave, and an edge of the tool that stands between them is seen by none: it
+   sinks in until some points are behind it, and these are pressed out along its sides. So points on the edges of the
+   tool (ridgepoints.h) are the slave points of a second pair, node to surface, whose master is the slave of the first
+   one. Its force is square to that surface, and search, smoothing, tangent, penalties and checkpoints are those of all
+   pairs. The points have no unknowns, they are contact nodes of the tool (neighbourlists.h); a tool with unknowns gets
+   its part from the nodes of the deformable side, see contacttool.c. A point counts where no side of its edge lies on
+   the surface (EdgeShare() in flank.c). Slave points of the first pair beside the edge keep their area: what the edge
    holds is not behind its sides, and where a dent is steep they bear it.
 
    The scene does not name these pairs, and nobody outside sees them: forces, moments and work on the tool, penetrations
@@ -25,36 +25,6 @@
 PetscBool ContactIsRidge(const ContactPair *pair)
 {
   return (PetscBool)(pair->slave->ridge.n > 0);
-}
-
-/* Can the edges of the master of a pair have a pair of their own? */
-static PetscBool MayHaveRidge(Scene scene, const ContactPair *pair)
-{
-  return (PetscBool)(pair->master && pair->master->rigid && !pair->friction && !SceneHasFluid(scene) &&
-                     !pair->fit.global_frame);
-}
-
-/*@
-  ContactRidgesAdd - adds pairs of the sharp edges of tools behind those of the scene, where the tools have any.
-
-  Collective
-
-  Input Parameters:
-+ contact    - the contact, with the pairs of the scene and room for as many more
-- elasticity - the bodies, for automatic penalties
-@*/
-PetscErrorCode ContactRidgesAdd(Contact contact, Elasticity elasticity)
-{
-  PetscFunctionBeginUser;
-  for (int p = 0; p < contact->n_scene; p++) {
-    ContactPair *pair = &contact->pairs[p], *ridge = &contact->pairs[contact->n_pairs];
-
-    if (!MayHaveRidge(contact->scene, pair)) continue;
-    PetscCall(ContactPairCreateRidge(contact, elasticity, p, ridge));
-    if (!ridge->slave) continue;
-    pair->ridge = contact->n_pairs++;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@

@@ -78,6 +78,12 @@ static PetscErrorCode TouchStepRows(Contact contact, PetscReal **rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Number of the node of a term, or of the point on an edge of a tool, the same on any ranks. */
+static PetscInt NodeId(const ContactPair *pair, PetscInt c)
+{
+  return ContactIsRidge(pair) ? pair->node[c] : pair->mesh->node_id[pair->node[c]];
+}
+
 /*@
   ContactTouches - finds when the open slave nodes will touch, beta_k, if all goes on as from (u_0, t_0) to (u, t).
 
@@ -124,7 +130,7 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
       beta = TouchStepBeta(gap[0], gap[1], CONTACT_RESTING * pair->size[c]);
       if (PetscIsNanReal(beta) || (still_open && !(gap[1] > 0))) continue;
       rows[3 * count]     = beta;
-      rows[3 * count + 1] = (PetscReal)(ContactIsRidge(pair) ? ContactTermId(pair, c) : contact->mesh->node_id[pair->node[c]]) * contact->n_pairs + p;
+      rows[3 * count + 1] = (PetscReal)NodeId(pair, c) * contact->n_pairs + p;
       rows[3 * count + 2] = by_area ? pair->area[c] : 1;
       count++;
     }

@@ -26,7 +26,7 @@ static PetscErrorCode PairTurn(Contact contact, ContactPair *pair, const PetscRe
 
       for (int d = 0; d < 3; d++) turn += PetscSqr(pair->point_normal[3 * q + d] - before[3 * q + d]);
       if (pair->point_force[q] == 0 || !(PetscSqrtReal(turn) > *most)) continue;
-      *most = PetscSqrtReal(turn);
+      *most      = PetscSqrtReal(turn);
       place->tag = ContactTermTag(pair, c);
       ContactTermPlace(pair, c, place->X);
     }
@@ -54,11 +54,11 @@ static PetscErrorCode PairTurn(Contact contact, ContactPair *pair, const PetscRe
 PetscErrorCode ContactLocateTurn(Contact contact, const PetscReal *u, const PetscReal *u_ahead, PetscReal t,
                                  PetscBool *found, ContactPlace *place)
 {
-  Mesh        mesh      = contact->mesh;
-  PetscReal   values[4] = {0}, mine = TURN_AT_ONCE, most;
+  Mesh         mesh      = contact->mesh;
+  PetscReal    values[4] = {0}, mine = TURN_AT_ONCE, most;
   ContactPlace at = {.tag = -1};
-  PetscMPIInt rank;
-  PetscBool   here;
+  PetscMPIInt  rank;
+  PetscBool    here;
 
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {

@@ -164,11 +164,10 @@ static double MasterStandsIn(const RunFigures *figures, const PairFigures *pair,
 
   (void)figures;
   if (!AdviceMasterStands(pair)) return 0;
-  snprintf(
-    text, ADVICE_TEXT,
-    "%s: nodes of '%s' stand up to %.2g of a face deep between the slave's, displacements may be off by %.2g%s",
-    pair->name, pair->scene->master, (double)master->over_h, (double)master->depth,
-    pair->quality.edges ? "" : ", and an edge presses there square to its sides, not to the slave");
+  snprintf(text, ADVICE_TEXT,
+           "%s: nodes of '%s' stand up to %.2g of a face deep between the slave's, displacements may be off by %.2g%s",
+           pair->name, pair->scene->master, (double)master->over_h, (double)master->depth,
+           pair->quality.edges ? "" : ", and an edge presses there square to its sides, not to the slave");
   return 1;
 }
 

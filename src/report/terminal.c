@@ -481,7 +481,7 @@ static void WarnCrossed(const RunFigures *figures, PetscBool met)
       (double)over_h);
 }
 
-/* The pair in which the edge of a wedge stands between the points of its slave and does not press itself; NULL: none. */
+/* The pair in which the edge of a wedge stands between the points of its slave and presses nowhere; NULL: none. */
 static const PairFigures *PairOnWedge(const RunFigures *figures)
 {
   for (int p = 0; p < figures->n_pairs; p++)

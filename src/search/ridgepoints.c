@@ -20,7 +20,7 @@ typedef struct {
 /* What the edges of a tool are compared with */
 typedef struct {
   ContactSurface      tool;
-  PetscReal           size;   /* of the faces of the other surface (length) */
+  PetscReal           size; /* of the faces of the other surface (length) */
   Geometry            geometry;
   int                 n_images;
   const SurfaceImage *images;
@@ -64,7 +64,8 @@ static const SurfaceImage *PlaneOf(const RidgeSearch *s, const RidgeEdge *edge)
   const PetscReal *X    = s->tool->rigid->coords;
 
   for (int plane = 1; plane < s->n_images; plane <<= 1)
-    if (!SurfaceImageBeyondAxis(&s->images[plane]) && SurfaceOnPlane(mesh, &s->images[plane], &X[edge->low * mesh->dim]) &&
+    if (!SurfaceImageBeyondAxis(&s->images[plane]) &&
+        SurfaceOnPlane(mesh, &s->images[plane], &X[edge->low * mesh->dim]) &&
         SurfaceOnPlane(mesh, &s->images[plane], &X[edge->high * mesh->dim]))
       return &s->images[plane];
   return NULL;
@@ -104,8 +105,9 @@ static PetscReal EdgeLength(const RidgeSearch *s, const RidgeEdge *edge)
 /* Area of a point: a face wide, along its part of the edge; half of that in a plane of symmetry. */
 static PetscReal PointArea(const RidgeSearch *s, const RidgeEdge *edge, PetscReal length, const PetscReal *X)
 {
-  const PetscReal along =
-    s->geometry == GEOMETRY_SOLID ? length : s->geometry == GEOMETRY_AXISYMMETRIC ? 2 * PETSC_PI * X[0] : 1;
+  const PetscReal along = s->geometry == GEOMETRY_SOLID          ? length
+                          : s->geometry == GEOMETRY_AXISYMMETRIC ? 2 * PETSC_PI * X[0]
+                                                                 : 1;
 
   return (PlaneOf(s, edge) ? 0.5 : 1) * along * s->size;
 }
@@ -152,7 +154,7 @@ static PetscErrorCode AddPoints(const RidgeSearch *s, const RidgeEdge *edge, con
 PetscErrorCode RidgeSurfaceCreate(ContactSurface tool, ContactSurface other, Geometry geometry, int n_images,
                                   const SurfaceImage *images, ContactSurface *out)
 {
-  const RidgeSearch s = {tool, other->mean_size, geometry, n_images, images};
+  const RidgeSearch s     = {tool, other->mean_size, geometry, n_images, images};
   RidgePoints       ridge = {.n = 0};
   RidgeEdge        *edges;
   PetscInt          n;

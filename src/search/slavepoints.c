@@ -6,17 +6,16 @@
 /* Makes the star forest from the owners to the nodes, whose keys are complete. Nodes of a tool have no owner. */
 static PetscErrorCode CreateForest(SlavePoints points)
 {
-  PetscSFNode *remote;
+  PetscSFNode   *remote;
   const int      dim    = points->mesh->dim;
   const PetscInt leaves = points->surface->ridge.n ? 0 : points->n_nodes;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(leaves, &remote));
-  for (PetscInt i = 0; i < leaves; i++)
-    remote[i] = (PetscSFNode){points->nodes[i].owner, points->nodes[i].local};
+  for (PetscInt i = 0; i < leaves; i++) remote[i] = (PetscSFNode){points->nodes[i].owner, points->nodes[i].local};
   PetscCall(PetscSFCreate(points->mesh->comm, &points->sf));
-  PetscCall(PetscSFSetGraph(points->sf, points->mesh->n_nodes, leaves, NULL, PETSC_OWN_POINTER, remote,
-                            PETSC_OWN_POINTER));
+  PetscCall(
+    PetscSFSetGraph(points->sf, points->mesh->n_nodes, leaves, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
   PetscCall(PetscSFSetUp(points->sf));
   PetscCallMPI(MPI_Type_contiguous(dim, MPIU_REAL, &points->block));
   PetscCallMPI(MPI_Type_commit(&points->block));
@@ -365,8 +364,8 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *points)
 /* Moves points on edges of a tool with it, and turns the sides of the edges. */
 static void MoveRidge(SlavePoints points, PetscReal t)
 {
-  const int          dim   = points->mesh->dim, body = points->surface->body;
-  const RidgePoint  *ridge = points->surface->ridge.point;
+  const int         dim = points->mesh->dim, body = points->surface->body;
+  const RidgePoint *ridge = points->surface->ridge.point;
 
   for (PetscInt q = 0; q < points->n; q++) {
     const RidgePoint *point = &ridge[points->nodes[q].id];

@@ -4,11 +4,10 @@
    which a slave node weighs them. They know no master. Points on the edges of a rigid tool have nodes of their own,
    whose ids are numbers of ridge points, and move with the tool.
 
-   SlavePointsCreateNodes(), SlavePointsCreateQuadrature() or SlavePointsCreateRidge() makes them. SlavePointsSetOffsets() or
-   SlavePointsSetMaps() brings the offsets of the faces to the points. SlavePointsMove() fetches displacements;
-   SlavePointsPosition() and SlavePointsNormals() refer to the last move. SlavePointsFindEnds() finds where the slave
-   ends. SlavePointsHatAreas() gives the nodal areas
-   of surface-to-surface contact. */
+   SlavePointsCreateNodes(), SlavePointsCreateQuadrature() or SlavePointsCreateRidge() makes them.
+   SlavePointsSetOffsets() or SlavePointsSetMaps() brings the offsets of the faces to the points. SlavePointsMove()
+   fetches displacements; SlavePointsPosition() and SlavePointsNormals() refer to the last move. SlavePointsFindEnds()
+   finds where the slave ends. SlavePointsHatAreas() gives the nodal areas of surface-to-surface contact. */
 #pragma once
 #include "bodies/loads.h"
 #include "search/facemap.h"

@@ -54,13 +54,13 @@ typedef struct _n_ContactSurface {
   PetscReal        mean_size, max_size; /* mean and largest face size, over all ranks */
   PetscReal        max_extent;          /* longest distance between two corners of a face */
   /* Area-weighted mean of E over element height, over all ranks; 0 for a rigid tool. */
-  PetscReal  stiffness;
-  FaceMarks *face_marks; /* of each face; NULL: there are none */
-  PetscInt  *face_piece; /* of each face: the connected piece of the mesh to which it belongs; NULL: not sought */
-  int       *face_ends;  /* of each face, bit e: edge e is an end, see surfaceends.h; NULL: none was sought */
-  PetscInt   turned;     /* faces of a rigid tool whose normals were turned */
-  RidgePoints ridge;     /* points of a rigid tool that it has in the place of faces */
-  FaceBlocks  blocks;    /* NULL before a search has asked for them; of a rigid tool in its own frame */
+  PetscReal   stiffness;
+  FaceMarks  *face_marks; /* of each face; NULL: there are none */
+  PetscInt   *face_piece; /* of each face: the connected piece of the mesh to which it belongs; NULL: not sought */
+  int        *face_ends;  /* of each face, bit e: edge e is an end, see surfaceends.h; NULL: none was sought */
+  PetscInt    turned;     /* faces of a rigid tool whose normals were turned */
+  RidgePoints ridge;      /* points of a rigid tool that it has in the place of faces */
+  FaceBlocks  blocks;     /* NULL before a search has asked for them; of a rigid tool in its own frame */
 } *ContactSurface;
 
 PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const char *key, const char *name,

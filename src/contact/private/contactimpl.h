@@ -10,10 +10,10 @@
    A rigid tool with sharp edges that stands on its slave has a second pair (contactridge.c), node to surface: points on
    the edges are its slave points, and the slave is its master.
 
-   The files call each other downwards in this order: contactwork (room), contactridge, contactpair, contactends, contactcorners,
-   contactfaces and contactterm (a pair, its ends, the terms of its sharp edges and faces, one of its terms),
-   contacttool (a tool with unknowns), contactpoint (one slave point), contactvariation (first variations that are
-   kept), contactprojection (gaps of all points), contactvectors (first variations over dofs), frictiontravel,
+   The files call each other downwards in this order: contactwork (room), contactpair, contactends,
+   contactcorners, contactfaces and contactterm (a pair, its ends, the terms of its sharp edges and faces, one of its
+   terms), contacttool (a tool with unknowns), contactpoint (one slave point), contactvariation (first variations that
+   are kept), contactprojection (gaps of all points), contactvectors (first variations over dofs), frictiontravel,
    frictionenergy, friction, frictionstep, frictiontangent, contactresidual, contacttangent, contactlists, contact. */
 #pragma once
 #include "matrix/blockmatrix.h"
@@ -209,10 +209,9 @@ PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const PetscInt 
 PetscErrorCode ContactPairDestroy(ContactPair *);
 PetscErrorCode ContactPairCreateRidge(Contact, Elasticity, int of, ContactPair *);
 /* contactridge.c */
-PetscBool      ContactIsRidge(const ContactPair *);
-PetscErrorCode ContactRidgesAdd(Contact, Elasticity);
-PetscInt       ContactTermTag(const ContactPair *, PetscInt term);
-void           ContactTermPlace(const ContactPair *, PetscInt term, PetscReal X[3]);
+PetscBool ContactIsRidge(const ContactPair *);
+PetscInt  ContactTermTag(const ContactPair *, PetscInt term);
+void      ContactTermPlace(const ContactPair *, PetscInt term, PetscReal X[3]);
 /* contactoverride.c */
 PetscErrorCode ContactOverride(Contact, Elasticity);
 /* contactrepeated.c */
