@@ -359,8 +359,8 @@ static const Explanation Warnings[] = {
    "warning: a sharp edge of the master stands between the points of the slave",
    "Contact is measured at points of the slave. The few of them that are behind the edge are pressed out along its "
    "sides, so that the edge has a force across it that depends on where they lie.",
-   "Make the body of the edge the slave, list both as `surfaces`, or, under a rigid tool, refine the slave until its "
-   "faces are smaller than the dent, or round the edge of the tool."},
+   "Make the body of the edge the slave, or list both as `surfaces`. Edges of rigid tools press by themselves, but not "
+   "with friction or a fluid: refine the slave there until its faces are smaller than the dent, or round the edge."},
   {"B156",
    {"which no estimated error holds"},
    "warning: a zone of contact has few faces",

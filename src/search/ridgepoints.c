@@ -7,8 +7,8 @@
 #define RIDGE_SPACING 0.5
 
 /* Sides of an edge are more than a right angle apart: cosine of their normals, less round-off of right-angled edges.
-   Slave points hold the surface at blunter edges: a lid on the square corners of a wall took 4 to 10 times as many
-   iterations with points on them, and its forces were no better. */
+   Slave points hold the surface at blunter edges: a lid on the square corners of a wall took 3 to 13 times as many
+   iterations with points on them, and its side force scattered more from mesh to mesh. */
 #define RIDGE_WEDGE (-1e-3)
 
 /* An edge of a face of the tool (an end in 2D) by its corners */

@@ -149,6 +149,14 @@ CASES["meshed tool, diffuse, far turned"] = (RUNS / "slide_cylinder.yaml", PUSHE
     "{x: 3}, motion: [{rz: 70}]}"
 ])
 
+# The sharp edge of a rigid wedge under a beam, whose own points press
+for order in (1, 2):
+    WEDGE = ["mesh.parameters={rigid: 1, n: 20}", f"mesh.order={order}", "loads=[]", "output.certificate=false"]
+    CASES[f"edge of a wedge, order {order}"] = (SCENES / "beam_on_edge.yaml", [
+        *WEDGE, "bodies.1={surface: flanks, rigid: {motion: [{uy: 2}]}}"])
+    CASES[f"edge of a wedge under a force, order {order}"] = (SCENES / "beam_on_edge.yaml", [
+        *WEDGE, "bodies.1={surface: flanks, rigid: {point: [7.87, 0], free: [uy], force: [0, 0.13]}}"])
+
 # Where a case's forces are this strongly curved, one-sided differences need a shorter step than PETSc's 1.5e-8: their
 # deviation is in proportion to it, 3e-6 at 1.5e-8 and 4e-7 at 2e-9 with the smooth surface.
 STEPS = dict.fromkeys(("turning rigid cylinder, surface to surface, sticks",

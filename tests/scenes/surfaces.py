@@ -9,11 +9,20 @@ SHRINK, BUMPER = SCENES.parent / "jobs/shrink_fit.yaml", SCENES / "jounce_bumper
 SIDES = 4e-3  # of a force of friction: between a list and one role of slave and master, whose points differ
 BEAMS, BLOCK, BLADE = SCENES / "crossed_beams.yaml", SCENES / "patch.yaml", SCENES / "knife.yaml"
 LID = SCENES / "lid_on_wall.yaml"
+BLOCK_BLADE = SCENES / "blade.yaml"
 LID_WEIGHT = 1e-2  # measured 4.4e-3 and 1.6e-3 of the force
 LID_SIDE = 8e-3  # measured 1e-3 and 5.2e-3; 2.5e-2 where points behind the edges press, and the run ends
 EDGE, SOLID = SCENES / "beam_on_edge.yaml", ["mesh.parameters.solid=1", "mesh.parameters.n=20", "geometry=solid",
                                              "supports=[{surface: clamp, ux: 0, uy: 0, uz: 0}]",
                                              "loads=[{surface: base, ux: 0, uy: 1, uz: 0}]"]
+# A rigid wedge under the beam, and one that is all but rigid and has small faces at its edge
+RIGID = ["mesh.parameters.rigid=1", "loads=[]"]
+MOVED = "bodies.1={{surface: flanks, rigid: {{motion: [{{uy: {}}}]}}}}"
+DRIVEN = "bodies.1={surface: flanks, rigid: {point: [7.87, 0], free: [uy], force: [0, 0.1325]}}"
+HARD = ["bodies.1.material.E=2e6", "mesh.parameters.edge=0.03"]
+RIDGE_THRUST = 2.5e-2  # measured 7e-3 and 4e-3 in the plane, 1.6e-2 and 6e-3 in space
+RIDGE_FORCE = 1e-2  # measured 7e-3 and less
+RIDGE_HALF = 1e-3  # measured 1e-5
 PRESSED = ["supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_min, uz: 0}]",
            "loads=[{surface: y_max, uy: -0.1}]", "contact=[{name: own, surfaces: all}]"]
 PLATE = SCENES / "plate_block.yaml"
@@ -320,6 +329,37 @@ def edge():
         check.holds(f"roles stay: {name}", "stands on" not in kept.text)
 
 
+def blade():
+    """The edge of a rigid tool between the points of a coarser slave: its own points press, in the plane, in space and in
+    half a model, under a prescribed motion and under a force, and no warning is left. With friction it is warned of."""
+    for kind, order, more, way in (("plane", 1, [], 2), ("plane", 2, [], 2), ("solid", 1, SOLID, 1),
+                                   ("solid", 2, SOLID, 1)):
+        name = f"{kind}, order {order}"
+        hard = run(args, EDGE, out=f"hard_{kind}_{order}", overrides=[
+            f"mesh.order={order}", "contact=[{name: tip, slave: flanks, master: bottom}]", *more, *HARD]).summary()
+        rigid = run(args, EDGE, out=f"rigid_{kind}_{order}", overrides=[
+            f"mesh.order={order}", *more, *RIGID, MOVED.format(way if kind == "plane" else f"{way}, uz: 0")])
+        probes = rigid.summary()["probes"]
+        check.near(f"{name}: thrust of a rigid wedge over that of a hard one as slave",
+                   probes["thrust"] / hard["probes"]["thrust"], 1, RIDGE_THRUST)
+        check.near(f"{name}: force", probes["down"] / hard["probes"]["down"], 1, RIDGE_FORCE)
+        check.near(f"{name}: force on the edge", probes["on_edge"] / probes["down"], 1, EXACT)
+        check.holds(f"{name}: no edge is warned of", "B157" not in rigid.text and "B506" not in rigid.text)
+    driven = run(args, EDGE, out="driven", overrides=[
+        "mesh.order=1", *RIGID, DRIVEN, "probes.3={name: way, tool_motion: tip, component: y}"]).summary()["probes"]
+    moved = run(args, EDGE, out="moved", overrides=["mesh.order=1", *RIGID, MOVED.format(driven["way"])]).summary()["probes"]
+    check.near("wedge under a force: force of the way that it goes", moved["down"] / driven["down"], 1, RIDGE_FORCE)
+    for order in (1, 2):
+        forces = [run(args, BLOCK_BLADE, out=f"half{half}_{order}", overrides=[
+            f"mesh.order={order}", f"mesh.parameters={{half: {half}, n: 10, x: 0}}", "bodies.1.rigid.motion.0.uy=-0.11",
+            *(["supports.1={surface: left, ux: 0}"] if half else [])]).summary()["probes"]["on_blade"]
+            for half in (0, 1)]
+        check.near(f"half a model, order {order}", 2 * forces[1] / forces[0], 1, RIDGE_HALF)
+    rubbed = run(args, EDGE, out="rubbed", must=None, overrides=[
+        "mesh.order=1", *RIGID, MOVED.format(2), "contact.0.friction={mu: 0.1}"])
+    check.holds("with friction the edge is warned of", "B157" in rubbed.text)
+
+
 def parts():
     """Two parts of one body that share no nodes are partners like two bodies: what overlaps before any load is seen, and
     refused where it is too deep to be."""
@@ -423,7 +463,7 @@ def refusals():
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, refined, mirror, walls, keystone, joined, edge, chamfer, ranks, refusals, override, friction, overlap, bumper, edges, knife, live, still, parts or "
+args = arguments(("case", "frame, refined, mirror, walls, keystone, joined, edge, chamfer, ranks, refusals, override, friction, overlap, bumper, edges, knife, blade, live, still, parts or "
                               "tools"))
 check = Check()
 if args.case == "frame":
@@ -435,6 +475,6 @@ elif args.case == "mirror":
     mirror("surface_to_surface")
 else:
     {"walls": walls, "keystone": keystone, "joined": joined, "edge": edge, "chamfer": chamfer, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
-     "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "live": live, "parts": parts, "refined": refined, "still": still,
+     "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "blade": blade, "live": live, "parts": parts, "refined": refined, "still": still,
      "tools": tools}[args.case]()
 check.finish()
