@@ -755,6 +755,23 @@ PetscErrorCode ContactPairTermStiffness(Contact contact, int pair, PetscReal *st
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Counts the nodes of faces around points on edges of a tool that are closed, each with its label. */
+static PetscErrorCode AddRidgeClosed(const ContactPair *ridge, const PetscInt *label, PetscInt *closed)
+{
+  PetscBool *some;
+  PetscReal *mine;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(ridge->n, &some));
+  PetscCall(PetscCalloc1(ridge->mesh->n_nodes, &mine));
+  for (PetscInt c = 0; c < ridge->n; c++) some[c] = (PetscBool)(ridge->now.status[c] == CONTACT_CLOSED);
+  PetscCall(ContactRidgeFaces(ridge, some, mine));
+  for (PetscInt i = 0; i < ridge->mesh->n_nodes; i++) closed[label[i]] += mine[i] > 0;
+  PetscCall(PetscFree(some));
+  PetscCall(PetscFree(mine));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactPairClosed - says whether a pair has closed terms at the nodes of some bodies.
 
@@ -768,7 +785,7 @@ PetscErrorCode ContactPairTermStiffness(Contact contact, int pair, PetscReal *st
 
   Output Parameter:
 . closed - closed[n]: terms of slave nodes and faces with that label that are closed in the present state, of all
-           ranks
+           ranks; of a tool's edge that presses the nodes around it
 @*/
 PetscErrorCode ContactPairClosed(Contact contact, int pair, const PetscInt *label, PetscInt n, PetscInt *closed)
 {
@@ -777,6 +794,7 @@ PetscErrorCode ContactPairClosed(Contact contact, int pair, const PetscInt *labe
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(closed, n));
   for (PetscInt c = 0; c < p->n; c++) closed[label[p->node[c]]] += p->now.status[c] == CONTACT_CLOSED;
+  if (p->ridge) PetscCall(AddRidgeClosed(&contact->pairs[p->ridge], label, closed));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, closed, (PetscMPIInt)n, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

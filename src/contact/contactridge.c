@@ -62,3 +62,38 @@ void ContactTermPlace(const ContactPair *pair, PetscInt c, PetscReal X[3])
   }
   for (int d = 0; d < 3; d++) X[d] = pair->slave->ridge.point[pair->node[c]].X[d] + pair->mesh->centre[d];
 }
+
+/*@
+  ContactRidgeFaces - marks the nodes of all faces near some points on edges of a tool.
+
+  Collective
+
+  Input Parameters:
++ pair - a pair whose slave is the sharp edges of a tool, with lists
+- some - which of its terms
+
+  Input/Output Parameter:
+. mine - mine[nodes of the mesh]: at owned nodes of these faces a number above 0 is added
+@*/
+PetscErrorCode ContactRidgeFaces(const ContactPair *pair, const PetscBool some[], PetscReal *mine)
+{
+  const NeighbourLists lists = pair->lists;
+  const int            dim   = pair->mesh->dim;
+  PetscReal           *values, *nodes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &nodes));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    for (PetscInt f = lists->facet_ptr[c]; some[c] && f < lists->facet_ptr[c + 1]; f++) {
+      for (int a = 0; a < ElementGet(lists->facet[f].type)->nodes; a++) {
+        const PetscInt p = lists->list_point[lists->list_ptr[c] + lists->facet[f].nodes[a]];
+
+        values[lists->point_node[lists->point_ptr[p]] * dim] = 1;
+      }
+    }
+  }
+  PetscCall(NeighbourListsReduce(lists, values, nodes));
+  for (PetscInt i = 0; i < pair->mesh->n_nodes; i++) mine[i] += nodes[i * dim];
+  PetscCall(PetscFree2(values, nodes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

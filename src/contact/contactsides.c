@@ -38,28 +38,17 @@ static PetscBool Holds(const ContactPair *pair, const ContactState *state, Petsc
   return (PetscBool)(pair->formulation.surface && state->gap[c] <= SIDES_NEAR * pair->size[c]);
 }
 
-/* Marks the mesh's nodes of all faces near those points on edges of a tool that hold the surfaces. */
-static PetscErrorCode RidgePressed(const ContactPair *pair, PetscReal *mine)
+/* Adds to the mesh's nodes of all faces near those points on edges of a tool that hold the surfaces. */
+static PetscErrorCode AddRidge(const ContactPair *pair, PetscReal *mine)
 {
-  const NeighbourLists lists = pair->lists;
-  const int            dim   = pair->mesh->dim;
-  PetscReal           *values, *nodes;
+  PetscBool *holds;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &nodes));
-  for (PetscInt c = 0; c < pair->n; c++) {
-    if (!Holds(pair, &pair->now, c) && !Holds(pair, &pair->accepted, c)) continue;
-    for (PetscInt f = lists->facet_ptr[c]; f < lists->facet_ptr[c + 1]; f++) {
-      for (int a = 0; a < ElementGet(lists->facet[f].type)->nodes; a++) {
-        const PetscInt p = lists->list_point[lists->list_ptr[c] + lists->facet[f].nodes[a]];
-
-        values[lists->point_node[lists->point_ptr[p]] * dim] = 1;
-      }
-    }
-  }
-  PetscCall(NeighbourListsReduce(lists, values, nodes));
-  for (PetscInt i = 0; i < pair->mesh->n_nodes; i++) mine[i] += nodes[i * dim];
-  PetscCall(PetscFree2(values, nodes));
+  PetscCall(PetscMalloc1(pair->n, &holds));
+  for (PetscInt c = 0; c < pair->n; c++)
+    holds[c] = (PetscBool)(Holds(pair, &pair->now, c) || Holds(pair, &pair->accepted, c));
+  PetscCall(ContactRidgeFaces(pair, holds, mine));
+  PetscCall(PetscFree(holds));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,7 +79,7 @@ PetscErrorCode ContactPairPressed(Contact contact, int p, PetscReal *pressed)
   for (PetscInt c = 0; c < pair->n; c++) {
     if (Holds(pair, &pair->now, c) || Holds(pair, &pair->accepted, c)) mine[pair->node[c]] = 1;
   }
-  if (pair->ridge) PetscCall(RidgePressed(&contact->pairs[pair->ridge], mine));
+  if (pair->ridge) PetscCall(AddRidge(&contact->pairs[pair->ridge], mine));
   PetscCall(MeshSumNodes(mesh, 1, mine));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) pressed[n] += mine[n];
   PetscCall(PetscFree(mine));

@@ -209,9 +209,10 @@ PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const PetscInt 
 PetscErrorCode ContactPairDestroy(ContactPair *);
 PetscErrorCode ContactPairCreateRidge(Contact, Elasticity, int of, ContactPair *);
 /* contactridge.c */
-PetscBool ContactIsRidge(const ContactPair *);
-PetscInt  ContactTermTag(const ContactPair *, PetscInt term);
-void      ContactTermPlace(const ContactPair *, PetscInt term, PetscReal X[3]);
+PetscBool      ContactIsRidge(const ContactPair *);
+PetscInt       ContactTermTag(const ContactPair *, PetscInt term);
+void           ContactTermPlace(const ContactPair *, PetscInt term, PetscReal X[3]);
+PetscErrorCode ContactRidgeFaces(const ContactPair *, const PetscBool some[], PetscReal *mine);
 /* contactoverride.c */
 PetscErrorCode ContactOverride(Contact, Elasticity);
 /* contactrepeated.c */
