@@ -89,6 +89,15 @@ PetscBool OwnBodyIsWedge(const Nearest *look, const Candidate *c)
   return (PetscBool)(foot.gap < 0 && cosine < OWN_BODY_SHARP);
 }
 
+/* Is a slave point beside a facet of another body, on whose edge it has its foot? */
+static PetscBool IsBeside(const Nearest *look, const Candidate *c, const Foot *foot)
+{
+  PetscReal along = 0;
+
+  for (int d = 0; d < look->lists->dim; d++) along += c->normal[d] * foot->normal[d];
+  return (PetscBool)(PetscAbsReal(along) < OWN_BODY_BESIDE);
+}
+
 /*@
   OwnBodyHides - says whether a candidate lies behind the slave point, beyond its own body.
 
@@ -100,7 +109,8 @@ PetscBool OwnBodyIsWedge(const Nearest *look, const Candidate *c)
 - foot - of the point on the candidate, without free edges
 
   Note:
-  Always PETSC_FALSE where the scene names slave and master.
+  Always PETSC_FALSE where the scene names slave and master. The distance to another body's facet that the point is
+  beside is no depth. Without the facets at an edge of that body, the point would be taken for one behind the next ones.
 @*/
 PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot)
 {
@@ -108,7 +118,7 @@ PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot
   PetscReal       wall;
 
   if (!look->listed || depth <= 0) return PETSC_FALSE;
-  if (depth > SEARCH_ENTERED * look->height) return PETSC_TRUE;
+  if (depth > SEARCH_ENTERED * look->height) return (PetscBool)(look->one_body || !IsBeside(look, c, foot));
   if (!OnOwnPiece(look, c)) return PETSC_FALSE;
   wall = ReferenceDepth(look, c);
   return (PetscBool)(wall > OWN_BODY_TOUCHES * look->size && depth > SEARCH_ENTERED * wall);
@@ -148,7 +158,7 @@ static int OwnSide(const Nearest *look, const Candidate *c, PetscReal tolerance)
 /* Is a facet farther from the slave point than what can have been entered of its body? */
 static PetscBool BeyondEntered(const Nearest *look, const FacetHull *hull, PetscReal tolerance)
 {
-  const PetscReal reach  = hull->radius + SEARCH_ENTERED * look->height + tolerance;
+  const PetscReal reach  = hull->radius + OwnBodyBehind(look) + tolerance;
   PetscReal       square = 0;
 
   for (int d = 0; d < 3; d++) square += PetscSqr(hull->centre[d] - look->x[d]);
@@ -199,15 +209,6 @@ PetscReal OwnBodyBehind(const Nearest *look)
   const PetscReal entered = SEARCH_ENTERED * look->height;
 
   return look->one_body ? entered : PetscMax(entered, look->size);
-}
-
-/* Is a slave point beside a facet of another body, on whose edge it has its foot? */
-static PetscBool IsBeside(const Nearest *look, const Candidate *c, const Foot *foot)
-{
-  PetscReal along = 0;
-
-  for (int d = 0; d < look->lists->dim; d++) along += c->normal[d] * foot->normal[d];
-  return (PetscBool)(PetscAbsReal(along) < OWN_BODY_BESIDE);
 }
 
 /*@
