@@ -2,6 +2,7 @@
 #include "multigrid.h"
 #include "base/freememory.h"
 #include "linear/directsolver.h"
+#include "coarsecontact.h"
 #include "gaussseidel.h"
 #include "matrix/matrixrows.h"
 #include "matrix/widematrix.h"
@@ -232,7 +233,7 @@ static PetscErrorCode ReplaceNodes(Multigrid m, Mat nodes)
 
 /* Makes the operator over all dofs from the arrays of the operator, with softer contact. The diagonal of constrained
    dofs is the mean of the others, so that no coarse row mixes scales. */
-static PetscErrorCode BorrowNodes(Multigrid m, Mat A, WideMatrix *loan)
+static PetscErrorCode BorrowNodes(Multigrid m, Mat A, PetscReal *full, WideMatrix *loan)
 {
   PetscInt    *ghost;
   PetscReal    softness = 1, mean = 1;
@@ -244,7 +245,8 @@ static PetscErrorCode BorrowNodes(Multigrid m, Mat A, WideMatrix *loan)
   PetscCall(NumberGhosts(m, A, &ghost));
   PetscCall(WideMatrixBorrow(A, &(WideRows){m->n_all, m->row, ghost, mean}, m->mesh->dim, &nodes, loan));
   PetscCall(PetscFree(ghost));
-  if (softness < 1) PetscCall(WideMatrixAdd(*loan, softness - 1, m->contact));
+  if (m->interface) PetscCall(WideMatrixAdd(*loan, -1, m->contact));
+  *full = softness;
   PetscCall(ReplaceNodes(m, nodes));
   if (!m->nodes_right) PetscCall(MatCreateVecs(m->nodes, &m->nodes_right, &m->nodes_left));
   PetscCall(ModesCreate(m, &modes));
@@ -256,12 +258,15 @@ static PetscErrorCode BorrowNodes(Multigrid m, Mat A, WideMatrix *loan)
 
 static PetscErrorCode CreateBodies(Multigrid m)
 {
+  PetscReal zero = 0;
+
   PetscFunctionBeginUser;
   PetscCall(PCDestroy(&m->bodies)); /* levels of other sizes would survive a reset */
   PetscCall(PCCreate(m->mesh->comm, &m->bodies));
   PetscCall(PCSetOptionsPrefix(m->bodies, MULTIGRID_BODIES));
   PetscCall(PCSetType(m->bodies, PCGAMG));
   PetscCall(PCGAMGSetReuseInterpolation(m->bodies, PETSC_TRUE));
+  PetscCall(PCGAMGSetThreshold(m->bodies, &zero, 1));
   PetscCall(PCSetFromOptions(m->bodies));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -301,11 +306,13 @@ static PetscErrorCode HoldBodies(Multigrid m, PetscBool hold)
   PetscCall(PCMGGetLevels(m->bodies, &levels));
   PetscCall(PCMGGetSmoother(m->bodies, levels - 1, &finest));
   PetscCall(KSPGetPC(finest, &sweeps));
-  if (hold)
+  if (hold) {
+    PetscCall(KSPSetReusePreconditioner(finest, PETSC_FALSE));
+    PetscCall(KSPSetOperators(finest, m->nodes, m->nodes));
     PetscCall(KSPSetUp(finest)); /* copies the operator */
-  else if (m->swept)
+    PetscCall(KSPSetReusePreconditioner(finest, PETSC_TRUE));
+  } else if (m->swept)
     PetscCall(GaussSeidelForget(sweeps));
-  PetscCall(KSPSetReusePreconditioner(finest, hold));
   PetscCall(PCSetReusePreconditioner(m->bodies, hold));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -343,10 +350,37 @@ static PetscErrorCode ReturnNodes(Multigrid m, WideMatrix *loan)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds contact to multigrid that was made for the bodies alone. */
+static PetscErrorCode AddContact(Multigrid m, PetscReal softness, WideMatrix loan)
+{
+  PetscInt        n, begin, *to;
+  const PetscInt *from;
+  Mat             contact;
+  IS              rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(WideMatrixAdd(loan, softness - 1, m->contact));
+  PetscCall(MatAssemblyBegin(m->nodes, MAT_FINAL_ASSEMBLY)); /* its values have changed */
+  PetscCall(MatAssemblyEnd(m->nodes, MAT_FINAL_ASSEMBLY));
+  PetscCall(ISGetLocalSize(m->interface, &n));
+  PetscCall(VecGetOwnershipRange(m->number, &begin, NULL));
+  PetscCall(PetscMalloc1(n, &to));
+  PetscCall(ISGetIndices(m->interface, &from));
+  for (PetscInt i = 0; i < n; i++) to[i] = m->first + m->row[from[i] - begin];
+  PetscCall(ISRestoreIndices(m->interface, &from));
+  PetscCall(ISCreateGeneral(m->mesh->comm, n, to, PETSC_OWN_POINTER, &rows));
+  PetscCall(MatCreateSubMatrix(m->contact, m->interface, m->interface, MAT_INITIAL_MATRIX, &contact));
+  PetscCall(CoarseContactAdd(m->bodies, contact, rows, softness, m->mesh->dim));
+  PetscCall(MatDestroy(&contact));
+  PetscCall(ISDestroy(&rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Makes multigrid for the operator. Its coarse spaces stay as long as the pattern does. */
 static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
 {
   const PetscBool fresh = m->changed;
+  PetscReal       softness;
   WideMatrix      loan;
 
   PetscFunctionBeginUser;
@@ -355,10 +389,11 @@ static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
   else
     PetscCall(HoldBodies(m, PETSC_FALSE));
   FreeMemoryReturn();
-  PetscCall(BorrowNodes(m, A, &loan));
+  PetscCall(BorrowNodes(m, A, &softness, &loan));
   m->changed = PETSC_FALSE;
   PetscCall(PCSetOperators(m->bodies, m->nodes, m->nodes));
   PetscCall(PCSetUp(m->bodies));
+  if (m->interface) PetscCall(AddContact(m, softness, loan));
   if (fresh) PetscCall(SmoothFinest(m));
   PetscCall(ReturnNodes(m, &loan));
   m->renew  = PETSC_FALSE;

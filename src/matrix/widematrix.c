@@ -141,15 +141,19 @@ PetscErrorCode WideMatrixBorrow(Mat lender, const WideRows *rows, PetscInt size,
 /* Adds one row of a term to a block, whose row begins at `to`. Both ascend by the numbers that `number` and the term
    have for their columns. */
 static void AddRow(WideBlock *block, PetscInt row, PetscInt to, const PetscInt *number, PetscReal factor,
-                   const MatrixRows *term)
+                   const MatrixRows *term, PetscBool again)
 {
   for (PetscInt k = term->ptr[row]; k < term->ptr[row + 1]; k++) {
     const PetscInt column = MatrixRowsColumn(term, 0, k);
 
-    while (number[block->column[to]] < column) to++;
-    block->place[block->n_kept]  = to;
-    block->kept[block->n_kept++] = block->value[to];
-    block->value[to] += factor * term->value[k];
+    if (again)
+      to = block->place[block->n_kept];
+    else {
+      while (number[block->column[to]] < column) to++;
+      block->place[block->n_kept] = to;
+      block->kept[block->n_kept]  = block->value[to];
+    }
+    block->value[to] = block->kept[block->n_kept++] + factor * term->value[k];
   }
 }
 
@@ -164,12 +168,13 @@ static void AddRow(WideBlock *block, PetscInt row, PetscInt to, const PetscInt *
 - term   - AIJ matrix over the rows and columns of the lender, which has an entry for each of its entries
 
   Note:
-  Call it once at most. WideMatrixReturn() gives the lender its own values back, to the last bit.
+  Another call, with the same term, puts another multiple of it in the place of the first. WideMatrixReturn() gives the lender its own values back, to the last bit.
 @*/
 PetscErrorCode WideMatrixAdd(WideMatrix loan, PetscReal factor, Mat term)
 {
+  const PetscBool again = loan->added;
+
   PetscFunctionBeginUser;
-  PetscCheck(!loan->added, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "a term was added already");
   loan->added = PETSC_TRUE;
   for (int b = 0; b < MATRIX_BLOCKS; b++) {
     WideBlock      *block  = &loan->block[b];
@@ -178,9 +183,10 @@ PetscErrorCode WideMatrixAdd(WideMatrix loan, PetscReal factor, Mat term)
 
     PetscCall(MatrixRowsGet(term, b, &rows));
     if (!rows.mat) continue;
-    PetscCall(PetscMalloc2(rows.ptr[rows.n], &block->place, rows.ptr[rows.n], &block->kept));
+    block->n_kept = 0;
+    if (!again) PetscCall(PetscMalloc2(rows.ptr[rows.n], &block->place, rows.ptr[rows.n], &block->kept));
     for (PetscInt i = 0; i < loan->n; i++)
-      if (loan->narrow[i] >= 0) AddRow(block, loan->narrow[i], block->ptr[i], number, factor, &rows);
+      if (loan->narrow[i] >= 0) AddRow(block, loan->narrow[i], block->ptr[i], number, factor, &rows, again);
     PetscCall(MatrixRowsRestore(&rows));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
