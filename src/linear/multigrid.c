@@ -185,13 +185,31 @@ static PetscErrorCode NumberGhosts(Multigrid m, Mat A, PetscInt **ghost)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds half the sum of the absolute values of contact's entries, which is that of its diagonal where contact couples
+   each node to one other. Where it couples a node to many, as with surfaces to surfaces, the diagonal would be a small
+   part of what resists when surfaces move as a whole. */
+static PetscErrorCode SumContact(Multigrid m, PetscReal *half)
+{
+  PetscInt           begin, end, entries;
+  const PetscScalar *value;
+
+  PetscFunctionBeginUser;
+  *half = 0;
+  PetscCall(MatGetOwnershipRange(m->contact, &begin, &end));
+  for (PetscInt row = begin; row < end; row++) {
+    PetscCall(MatGetRow(m->contact, row, &entries, NULL, &value));
+    for (PetscInt k = 0; k < entries; k++) *half += PetscAbsScalar(value[k]) / 2;
+    PetscCall(MatRestoreRow(m->contact, row, &entries, NULL, &value));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Finds how stiff contact may be for multigrid, in parts of its full stiffness: at most as stiff as the bodies are
-   where contact is. *mean: mean diagonal entry of the operator with contact of that stiffness. With stiffer contact
-   smoothers diverge whose largest eigenvalue is estimated. The interface's solve
-   makes up for the rest; a hundredth of the stiffness costs no iteration. */
+   where contact is. *mean: mean diagonal entry of the bodies. With stiffer contact smoothers diverge whose largest
+   eigenvalue is estimated. The interface's solve makes up for the rest. */
 static PetscErrorCode SoftenContact(Multigrid m, Mat A, PetscReal *softness, PetscReal *mean)
 {
-  PetscReal          sum[3] = {0, 0, 0}; /* of diagonals: bodies where contact is; contact; whole operator */
+  PetscReal          sum[3] = {0, 0, 0}; /* bodies' diagonal where contact is, and everywhere; stiffness of contact */
   const PetscScalar *whole, *contact = NULL;
   Vec                diagonal, of_contact;
   PetscInt           n;
@@ -201,19 +219,19 @@ static PetscErrorCode SoftenContact(Multigrid m, Mat A, PetscReal *softness, Pet
   PetscCall(VecDuplicate(m->number, &of_contact));
   PetscCall(MatGetDiagonal(A, diagonal));
   if (m->interface) PetscCall(MatGetDiagonal(m->contact, of_contact));
+  if (m->interface) PetscCall(SumContact(m, &sum[2]));
   PetscCall(VecGetArrayRead(of_contact, &contact));
   PetscCall(VecGetArrayRead(diagonal, &whole));
   for (PetscInt i = 0; i < m->n_free; i++) {
     sum[0] += contact[i] != 0 ? PetscRealPart(whole[i] - contact[i]) : 0;
-    sum[1] += PetscRealPart(contact[i]);
-    sum[2] += PetscRealPart(whole[i]);
+    sum[1] += PetscRealPart(whole[i] - contact[i]);
   }
   PetscCall(VecRestoreArrayRead(diagonal, &whole));
   PetscCall(VecRestoreArrayRead(of_contact, &contact));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, m->mesh->comm));
   PetscCall(VecGetSize(diagonal, &n));
-  *softness = sum[0] > 0 && sum[1] > sum[0] ? sum[0] / sum[1] : 1;
-  *mean     = (sum[2] + (*softness - 1) * sum[1]) / n;
+  *softness = sum[0] > 0 && sum[2] > sum[0] ? sum[0] / sum[2] : 1;
+  *mean     = sum[1] / n;
   PetscCall(VecDestroy(&diagonal));
   PetscCall(VecDestroy(&of_contact));
   PetscFunctionReturn(PETSC_SUCCESS);
