@@ -187,7 +187,10 @@ PetscErrorCode ModelLinearise(Model model, KSP *ksp)
   if (model->contact) ContactForgetForeseen(model->contact);
   PetscCall(HasTangent(model, &has));
   if (!has) {
-    PetscCall(LinearSolverRenew(work->solver));
+    if (LinearSolverIterates(work->solver))
+      PetscCall(LinearSolverSetEnough(work->solver, 0)); /* the preconditioner of the step's solves serves */
+    else
+      PetscCall(LinearSolverRenew(work->solver));
     PetscCall(LinearSolverSetStart(work->solver, 0));
     PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
     PetscCall(VecDuplicate(model->x, &work->tangent_x));
