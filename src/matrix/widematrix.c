@@ -168,7 +168,8 @@ static void AddRow(WideBlock *block, PetscInt row, PetscInt to, const PetscInt *
 - term   - AIJ matrix over the rows and columns of the lender, which has an entry for each of its entries
 
   Note:
-  Another call, with the same term, puts another multiple of it in the place of the first. WideMatrixReturn() gives the lender its own values back, to the last bit.
+  Another call, with the same term, puts another multiple of it in the place of the first. WideMatrixReturn() gives the
+lender its own values back, to the last bit.
 @*/
 PetscErrorCode WideMatrixAdd(WideMatrix loan, PetscReal factor, Mat term)
 {

@@ -214,12 +214,14 @@ static PetscErrorCode ModelPenaltySlopes(Model model, int sources, Vec slope[], 
   PetscCall(ModelLinearise(model, &ksp));
   PetscCall(ModelReleaseTangent(model));
   *known = PETSC_TRUE;
+  PetscCall(LinearSolverSetPrediction(model->work->solver, PETSC_TRUE)); /* small changes of large stiff forces */
   for (int source = 0; source < sources && *known; source++) {
     PetscCall(ModelStifferForces(model, (PenaltySource)source, forces));
     PetscCall(KSPSolve(ksp, forces, slope[source]));
     *known = (PetscBool)!LinearCheckLost(model->linear);
     if (*known) PetscCall(ModelHeldOut(model, slope[source]));
   }
+  PetscCall(LinearSolverSetPrediction(model->work->solver, PETSC_FALSE));
   PetscCall(VecDestroy(&forces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,8 +2,8 @@
 
    Aggregates of both bodies of a contact would hold them together where they slide: softest of all are motions in which
    the bodies slide, and multigrid would find them last. With aggregates of their own, bodies move together only against
-   contact that is as stiff on a coarse level as the bodies are there; as stiff as on the finest level it would lock them
-   the more, the larger aggregates are. */
+   contact that is as stiff on a coarse level as the bodies are there; as stiff as on the finest level it would lock
+   them the more, the larger aggregates are. */
 #pragma once
 #include "base/petsccompat.h"
 
