@@ -11,8 +11,8 @@
 #define MULTIGRID_BODIES    "bodies_"
 #define MULTIGRID_INTERFACE "interface_"
 /* Multigrid is made anew when the interface has become this many times as large, or as small. It is not made anew for
-   contact that only moves: how stiff contact is on the coarse levels hardly matters (a hundredth of the stiffness costs
-   one iteration more in 26), but it does matter that contact is there. */
+   contact that only moves: where contact is on the coarse levels hardly matters, but it does matter that it is there.
+ */
 #define MULTIGRID_CHANGE 1.5
 /* Multigrid that was made for an older operator serves until its effort is this many times that of the first solve. The
    effort is the number of iterations for a power of ten in the residual. Coarse matrices cost as much as some ten
@@ -249,22 +249,21 @@ static PetscErrorCode ReplaceNodes(Multigrid m, Mat nodes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes the operator over all dofs from the arrays of the operator, with softer contact. The diagonal of constrained
-   dofs is the mean of the others, so that no coarse row mixes scales. */
-static PetscErrorCode BorrowNodes(Multigrid m, Mat A, PetscReal *full, WideMatrix *loan)
+/* Makes the bodies' operator over all dofs from the arrays of the operator: without the entries in which contact alone
+   is. The diagonal of constrained dofs is the mean of the others, so that no coarse row mixes scales. */
+static PetscErrorCode BorrowNodes(Multigrid m, Mat A, PetscReal *softness, WideMatrix *loan)
 {
   PetscInt    *ghost;
-  PetscReal    softness = 1, mean = 1;
+  PetscReal    mean = 1;
   Mat          nodes;
   MatNullSpace modes;
 
   PetscFunctionBeginUser;
-  PetscCall(SoftenContact(m, A, &softness, &mean));
+  PetscCall(SoftenContact(m, A, softness, &mean));
   PetscCall(NumberGhosts(m, A, &ghost));
-  PetscCall(WideMatrixBorrow(A, &(WideRows){m->n_all, m->row, ghost, mean}, m->mesh->dim, &nodes, loan));
-  PetscCall(PetscFree(ghost));
+  PetscCall(WideMatrixBorrow(A, &(WideRows){m->n_all, m->row, ghost, mean}, m->mesh->dim, loan));
   if (m->interface) PetscCall(WideMatrixAdd(*loan, -1, m->contact));
-  *full = softness;
+  PetscCall(WideMatrixCreate(*loan, PETSC_FALSE, &nodes));
   PetscCall(ReplaceNodes(m, nodes));
   if (!m->nodes_right) PetscCall(MatCreateVecs(m->nodes, &m->nodes_right, &m->nodes_left));
   PetscCall(ModesCreate(m, &modes));
@@ -368,8 +367,26 @@ static PetscErrorCode ReturnNodes(Multigrid m, WideMatrix *loan)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds contact to multigrid that was made for the bodies alone. */
-static PetscErrorCode AddContact(Multigrid m, PetscReal softness, WideMatrix loan)
+/* Forgets how the coarse matrices were made. The next ones have other entries, and memory is freed. */
+static PetscErrorCode ForgetProducts(Multigrid m)
+{
+  PetscInt levels;
+
+  PetscFunctionBeginUser;
+  PetscCall(PCMGGetLevels(m->bodies, &levels));
+  for (PetscInt l = 0; l < levels - 1; l++) {
+    KSP level;
+    Mat mat;
+
+    PetscCall(PCMGGetSmoother(m->bodies, l, &level));
+    PetscCall(KSPGetOperators(level, NULL, &mat));
+    PetscCall(MatProductClear(mat));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds contact to coarse matrices that were made for the bodies alone. */
+static PetscErrorCode AddContact(Multigrid m, PetscReal softness)
 {
   PetscInt        n, begin, *to;
   const PetscInt *from;
@@ -377,9 +394,6 @@ static PetscErrorCode AddContact(Multigrid m, PetscReal softness, WideMatrix loa
   IS              rows;
 
   PetscFunctionBeginUser;
-  PetscCall(WideMatrixAdd(loan, softness - 1, m->contact));
-  PetscCall(MatAssemblyBegin(m->nodes, MAT_FINAL_ASSEMBLY)); /* its values have changed */
-  PetscCall(MatAssemblyEnd(m->nodes, MAT_FINAL_ASSEMBLY));
   PetscCall(ISGetLocalSize(m->interface, &n));
   PetscCall(VecGetOwnershipRange(m->number, &begin, NULL));
   PetscCall(PetscMalloc1(n, &to));
@@ -394,11 +408,24 @@ static PetscErrorCode AddContact(Multigrid m, PetscReal softness, WideMatrix loa
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Puts the operator with soft contact in the place of the bodies' one, for the finest level's smoother. It has all
+   entries of the operator. */
+static PetscErrorCode AddToFinest(Multigrid m, PetscReal softness, WideMatrix loan)
+{
+  Mat nodes;
+
+  PetscFunctionBeginUser;
+  if (m->interface) PetscCall(WideMatrixAdd(loan, softness - 1, m->contact));
+  PetscCall(WideMatrixCreate(loan, PETSC_TRUE, &nodes));
+  PetscCall(ReplaceNodes(m, nodes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Makes multigrid for the operator. Its coarse spaces stay as long as the pattern does. */
 static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
 {
-  const PetscBool fresh = m->changed;
-  PetscReal       softness;
+  const PetscBool fresh    = m->changed;
+  PetscReal       softness = 1;
   WideMatrix      loan;
 
   PetscFunctionBeginUser;
@@ -411,7 +438,9 @@ static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
   m->changed = PETSC_FALSE;
   PetscCall(PCSetOperators(m->bodies, m->nodes, m->nodes));
   PetscCall(PCSetUp(m->bodies));
-  if (m->interface) PetscCall(AddContact(m, softness, loan));
+  PetscCall(ForgetProducts(m));
+  if (m->interface) PetscCall(AddContact(m, softness));
+  PetscCall(AddToFinest(m, softness, loan));
   if (fresh) PetscCall(SmoothFinest(m));
   PetscCall(ReturnNodes(m, &loan));
   m->renew  = PETSC_FALSE;

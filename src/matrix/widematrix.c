@@ -13,11 +13,16 @@ typedef struct {
   /* Entries that WideMatrixAdd() has changed: where they are, and the lender's values. */
   PetscInt     n_kept, *place;
   PetscScalar *kept;
+  /* Entries that are left out: where they were, and their columns. compact: of the wide matrix without them; NULL: none
+     is left out */
+  PetscInt *compact, n_out, *out, *out_column;
 } WideBlock;
 
 struct _n_WideMatrix {
+  MPI_Comm  comm;
   PetscInt *narrow; /* of each row of the wide matrix, the lender's; -1: it is empty */
-  PetscInt  n;
+  PetscInt *ghost;  /* of each column of other ranks, its column in the wide matrix */
+  PetscInt  n, size;
   PetscBool added;
   WideBlock block[MATRIX_BLOCKS];
 };
@@ -66,57 +71,90 @@ static void Renumber(WideBlock *block, const PetscInt *to)
   for (PetscInt k = 0; k < block->rows.ptr[block->rows.n]; k++) block->column[k] = to[block->column[k]];
 }
 
-/* Creates the wide matrix from the lender's arrays. Like any such matrix of several ranks, it counts the columns of
-   other ranks among themselves. They ascend as the lender's do, so these numbers are the lender's. */
-static PetscErrorCode MakeWide(WideMatrix loan, Mat lender, const WideRows *rows, PetscInt size, Mat *wide)
+/* Marks the nodes to which a block has entries other than 0 in the rows of a node, and the node itself. */
+static void MarkNodes(WideMatrix loan, const WideBlock *block, PetscInt node, PetscInt *mark)
 {
-  WideBlock *own = &loan->block[MATRIX_OWN], *others = &loan->block[MATRIX_OTHERS];
-  Mat        part[MATRIX_BLOCKS];
+  mark[node] = node;
+  for (PetscInt k = block->ptr[node * loan->size]; k < block->ptr[(node + 1) * loan->size]; k++)
+    if (block->value[k] != 0) mark[block->column[k] / loan->size] = node;
+}
+
+/* Takes the entries between two nodes out that all are 0. Entries of whole nodes stay together. */
+static PetscErrorCode LeaveOut(WideMatrix loan, WideBlock *block)
+{
+  PetscInt *mark, zeros = 0, to = 0;
 
   PetscFunctionBeginUser;
-  Renumber(own, rows->row);
-  Spread(loan, own, rows->diagonal);
-  if (others->rows.mat) {
-    Renumber(others, rows->ghost);
-    PetscCall(MatCreateMPIAIJWithSplitArrays(PetscObjectComm((PetscObject)lender), loan->n, loan->n, PETSC_DETERMINE,
-                                             PETSC_DETERMINE, own->ptr, own->column, own->value, others->ptr,
-                                             others->column, others->value, wide));
-    PetscCall(MatMPIAIJGetSeqAIJ(*wide, &part[MATRIX_OWN], &part[MATRIX_OTHERS], NULL));
-    PetscCall(MatSetBlockSize(part[MATRIX_OWN], size));
-    PetscCall(MatSetBlockSizes(part[MATRIX_OTHERS], size, 1));
-  } else
-    PetscCall(MatCreateSeqAIJWithArrays(PetscObjectComm((PetscObject)lender), loan->n, loan->n, own->ptr, own->column,
-                                        own->value, wide));
-  PetscCall(MatSetBlockSize(*wide, size));
+  for (PetscInt k = 0; k < block->ptr[loan->n]; k++) zeros += block->value[k] == 0;
+  PetscCall(PetscMalloc2(zeros, &block->out, zeros, &block->out_column));
+  if (!block->compact) PetscCall(PetscMalloc1(loan->n + 1, &block->compact));
+  PetscCall(PetscMalloc1(loan->n / loan->size, &mark));
+  for (PetscInt node = 0; node < loan->n / loan->size; node++) mark[node] = -1;
+  for (PetscInt i = 0; i < loan->n; i++) {
+    if (i % loan->size == 0) MarkNodes(loan, block, i / loan->size, mark);
+    block->compact[i] = to;
+    for (PetscInt k = block->ptr[i]; k < block->ptr[i + 1]; k++) {
+      if (mark[block->column[k] / loan->size] == i / loan->size) {
+        block->column[to]  = block->column[k];
+        block->value[to++] = block->value[k];
+      } else {
+        block->out[block->n_out]          = k;
+        block->out_column[block->n_out++] = block->column[k];
+      }
+    }
+  }
+  block->compact[loan->n] = to;
+  PetscCall(PetscFree(mark));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Puts the entries back that were left out. */
+static PetscErrorCode PutBack(WideMatrix loan, WideBlock *block)
+{
+  PetscInt from = block->ptr[loan->n] - block->n_out;
+
+  PetscFunctionBeginUser;
+  for (PetscInt to = block->ptr[loan->n]; block->n_out > 0;) {
+    if (block->out[block->n_out - 1] == --to) {
+      block->column[to] = block->out_column[--block->n_out];
+      block->value[to]  = 0;
+    } else {
+      block->column[to] = block->column[--from];
+      block->value[to]  = block->value[from];
+    }
+  }
+  PetscCall(PetscFree2(block->out, block->out_column));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  WideMatrixBorrow - makes a wide matrix from the arrays of a lender.
+  WideMatrixBorrow - borrows the arrays of a lender.
 
   Collective
 
   Input Parameters:
 + lender - matrix of a NodeMatrix; nobody may read it until WideMatrixReturn()
-. rows   - where its rows and columns are in the wide matrix; not needed afterwards
+. rows   - where its rows and columns are in the wide matrix; its ghost is taken over
 - size   - block size of the wide matrix
 
-  Output Parameters:
-+ wide - the wide matrix; the caller destroys it
-- loan - what WideMatrixReturn() gives back
+  Output Parameter:
+. loan - what WideMatrixReturn() gives back
 
   Note:
   A NodeMatrix has room for the entries on the diagonal if all rows of the wide matrix are dofs of nodes of which the
   lender has a row.
 @*/
-PetscErrorCode WideMatrixBorrow(Mat lender, const WideRows *rows, PetscInt size, Mat *wide, WideMatrix *loan)
+PetscErrorCode WideMatrixBorrow(Mat lender, const WideRows *rows, PetscInt size, WideMatrix *loan)
 {
   WideMatrix made;
   PetscInt   n, room;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&made));
-  made->n = rows->n;
+  made->comm  = PetscObjectComm((PetscObject)lender);
+  made->n     = rows->n;
+  made->size  = size;
+  made->ghost = rows->ghost;
   PetscCall(MatGetLocalSize(lender, &n, NULL));
   PetscCall(PetscMalloc1(rows->n, &made->narrow));
   for (PetscInt i = 0; i < rows->n; i++) made->narrow[i] = -1;
@@ -133,8 +171,49 @@ PetscErrorCode WideMatrixBorrow(Mat lender, const WideRows *rows, PetscInt size,
   PetscCall(NodeMatrixRoom(lender, &room));
   PetscCheck(made->block[MATRIX_OWN].ptr[rows->n] <= room, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE,
              "the lender has room for %" PetscInt_FMT " entries", room);
-  PetscCall(MakeWide(made, lender, rows, size, wide));
+  Renumber(&made->block[MATRIX_OWN], rows->row);
+  Spread(made, &made->block[MATRIX_OWN], rows->diagonal);
   *loan = made;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  WideMatrixCreate - makes the wide matrix from the arrays of the lender.
+
+  Collective
+
+  Input Parameters:
++ loan - from WideMatrixBorrow(); of the matrices that are made from it only the last one may be read
+- full - with entries between two nodes of this rank that all are 0
+
+  Output Parameter:
+. wide - the wide matrix; the caller destroys it
+
+  Note:
+  Like any such matrix of several ranks, it counts the columns of other ranks among themselves. They ascend as the
+  lender's do, so these numbers are the lender's: none of these columns is left out.
+@*/
+PetscErrorCode WideMatrixCreate(WideMatrix loan, PetscBool full, Mat *wide)
+{
+  WideBlock *own = &loan->block[MATRIX_OWN], *others = &loan->block[MATRIX_OTHERS];
+  PetscInt  *ptr;
+  Mat        part[MATRIX_BLOCKS];
+
+  PetscFunctionBeginUser;
+  PetscCall(PutBack(loan, own));
+  if (!full) PetscCall(LeaveOut(loan, own));
+  ptr = full ? own->ptr : own->compact;
+  if (others->rows.mat) {
+    Renumber(others, loan->ghost);
+    PetscCall(MatCreateMPIAIJWithSplitArrays(loan->comm, loan->n, loan->n, PETSC_DETERMINE, PETSC_DETERMINE, ptr,
+                                             own->column, own->value, others->ptr, others->column, others->value,
+                                             wide));
+    PetscCall(MatMPIAIJGetSeqAIJ(*wide, &part[MATRIX_OWN], &part[MATRIX_OTHERS], NULL));
+    PetscCall(MatSetBlockSize(part[MATRIX_OWN], loan->size));
+    PetscCall(MatSetBlockSizes(part[MATRIX_OTHERS], loan->size, 1));
+  } else
+    PetscCall(MatCreateSeqAIJWithArrays(loan->comm, loan->n, loan->n, ptr, own->column, own->value, wide));
+  PetscCall(MatSetBlockSize(*wide, loan->size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,8 +247,8 @@ static void AddRow(WideBlock *block, PetscInt row, PetscInt to, const PetscInt *
 - term   - AIJ matrix over the rows and columns of the lender, which has an entry for each of its entries
 
   Note:
-  Another call, with the same term, puts another multiple of it in the place of the first. WideMatrixReturn() gives the
-lender its own values back, to the last bit.
+  Another call, with the same term, puts another multiple of it in the place of the first. Matrices that were made
+before a call may not be read after it. WideMatrixReturn() gives the lender its own values back, to the last bit.
 @*/
 PetscErrorCode WideMatrixAdd(WideMatrix loan, PetscReal factor, Mat term)
 {
@@ -177,6 +256,7 @@ PetscErrorCode WideMatrixAdd(WideMatrix loan, PetscReal factor, Mat term)
 
   PetscFunctionBeginUser;
   loan->added = PETSC_TRUE;
+  PetscCall(PutBack(loan, &loan->block[MATRIX_OWN]));
   for (int b = 0; b < MATRIX_BLOCKS; b++) {
     WideBlock      *block  = &loan->block[b];
     const PetscInt *number = b == MATRIX_OWN ? loan->narrow : block->rows.global;
@@ -202,13 +282,14 @@ PetscErrorCode WideMatrixAdd(WideMatrix loan, PetscReal factor, Mat term)
 . loan - set to NULL
 
   Note:
-  The wide matrix must have been destroyed before.
+  The matrices that were made from it must have been destroyed before.
 @*/
 PetscErrorCode WideMatrixReturn(WideMatrix *loan)
 {
   WideMatrix made = *loan;
 
   PetscFunctionBeginUser;
+  PetscCall(PutBack(made, &made->block[MATRIX_OWN]));
   for (int b = 0; b < MATRIX_BLOCKS; b++)
     for (PetscInt k = 0; k < made->block[b].n_kept; k++)
       made->block[b].value[made->block[b].place[k]] = made->block[b].kept[k];
@@ -220,9 +301,11 @@ PetscErrorCode WideMatrixReturn(WideMatrix *loan)
 
     PetscCall(PetscFree2(block->place, block->kept));
     PetscCall(PetscFree(block->ptr));
+    PetscCall(PetscFree(block->compact));
     PetscCall(MatrixRowsRestore(&block->rows));
   }
   PetscCall(PetscFree(made->narrow));
+  PetscCall(PetscFree(made->ghost));
   PetscCall(PetscFree(*loan));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,8 +2,9 @@
    the other matrix lends its arrays. Its rows and columns keep their order; a row that it does not have has one entry,
    on the diagonal. Multigrid needs all dofs of a node, but the tangent has the free ones only.
 
-   WideMatrixBorrow() makes the wide matrix. WideMatrixAdd() adds a third matrix to it. WideMatrixReturn() gives the
-   arrays back as they were. In between nobody may read the lender, and nobody may read the wide matrix afterwards. */
+   WideMatrixBorrow() takes the arrays, WideMatrixAdd() adds a third matrix to their values, and WideMatrixCreate()
+   makes the wide matrix from them, with all entries or without those that are 0. WideMatrixReturn() gives the arrays
+   back as they were. In between nobody may read the lender, and nobody may read the wide matrix afterwards. */
 #pragma once
 #include "base/petsccompat.h"
 
@@ -13,10 +14,11 @@ typedef struct _n_WideMatrix *WideMatrix;
 typedef struct {
   PetscInt        n;        /* rows of this rank in the wide matrix */
   const PetscInt *row;      /* of each row of this rank, its row in the wide matrix, counted from this rank's first */
-  const PetscInt *ghost;    /* of each column of other ranks, its column in the wide matrix; NULL: there are none */
+  PetscInt       *ghost;    /* of each column of other ranks, its column in the wide matrix; NULL: there are none */
   PetscReal       diagonal; /* of the rows that the lender does not have */
 } WideRows;
 
-PetscErrorCode WideMatrixBorrow(Mat lender, const WideRows *, PetscInt size, Mat *wide, WideMatrix *loan);
+PetscErrorCode WideMatrixBorrow(Mat lender, const WideRows *, PetscInt size, WideMatrix *loan);
 PetscErrorCode WideMatrixAdd(WideMatrix loan, PetscReal factor, Mat term);
+PetscErrorCode WideMatrixCreate(WideMatrix loan, PetscBool full, Mat *wide);
 PetscErrorCode WideMatrixReturn(WideMatrix *loan);

@@ -6,7 +6,9 @@
    near ones of other ranks. Surfaces are thin, and so their factors are small.
 
    Multigrid needs whole nodes. It works on a copy of the matrix in which constrained dofs have rows of their own, and
-   gets the rigid-body modes of each node.
+   gets the rigid-body modes of each node. Its coarse spaces are those of the bodies without contact, so that each
+   aggregate belongs to one body. Contact is added to the coarse matrices afterwards, softer than it is
+   (coarsecontact.h).
 
    Create it once for a KSP. Call MultigridSetContact() before each new operator, and MultigridRenew() where nothing may
    depend on earlier solves. */
