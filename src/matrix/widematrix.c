@@ -13,8 +13,7 @@ typedef struct {
   /* Entries that WideMatrixAdd() has changed: where they are, and the lender's values. */
   PetscInt     n_kept, *place;
   PetscScalar *kept;
-  /* Entries that are left out: where they were, and their columns. compact: of the wide matrix without them; NULL: none
-     is left out */
+  /* Entries that are left out: where they were, and their columns. compact: row pointers without them */
   PetscInt *compact, n_out, *out, *out_column;
 } WideBlock;
 
