@@ -118,7 +118,8 @@ PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot
   PetscReal       wall;
 
   if (!look->listed || depth <= 0) return PETSC_FALSE;
-  if (depth > SEARCH_ENTERED * look->height) return (PetscBool)(look->one_body || !IsBeside(look, c, foot));
+  if (depth > SEARCH_ENTERED * look->height)
+    return (PetscBool)(look->one_body || depth > look->size || !IsBeside(look, c, foot));
   if (!OnOwnPiece(look, c)) return PETSC_FALSE;
   wall = ReferenceDepth(look, c);
   return (PetscBool)(wall > OWN_BODY_TOUCHES * look->size && depth > SEARCH_ENTERED * wall);
