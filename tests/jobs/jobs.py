@@ -407,6 +407,10 @@ JOBS = [
     ], steps=16, levels=(1, 1.4, 1.96), stiff=["contact.*.friction.stick.slip=0.001"], picture=["--mirror", "y"]),
     Job("vee_bend", "sheet bent in a die, with springback", [Answer("end", -3.26, 0.7, "limit")], steps=20, pairs=2,
         stiff=["contact.*.friction.stick.slip=0.001"], picture=["--mirror", "x"]),
+    Job("springs_nested", "two disc springs in one another, with friction", [
+        Answer("force", 1357.6, 0.62, "limit"),
+        Answer("spread", 0.06136, 0.27, "limit"),
+    ], steps=12, stiff=["contact.*.friction.stick.slip=0.001"], picture=["--mirror", "x"]),
     # Bodies that lie flush on each other, and no pairs named
     Job("keystone", "stone flush between two walls, no pairs named", [Answer("thrust", 86.212, 0.01, "limit")], steps=12),
     Job("tube_in_box", "rubber tube blown up in a box", [Answer("corner", 4.1137, 0.06, "limit")], steps=12),
