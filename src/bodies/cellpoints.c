@@ -286,8 +286,8 @@ PetscErrorCode ElasticityPointStates(Elasticity e, PetscInt batch, CellPoints se
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest difference of the entries of a motion between two nodes of a cell of a batch. first: number of the first node
- */
+/* Largest difference of the entries of a motion between two nodes of a cell of a batch, those from first to before
+   nodes. */
 static PetscReal LargestDifference(int first, int nodes, int dim, int lane, const PetscReal *v)
 {
   PetscReal most = 0;

@@ -4,8 +4,8 @@
    block CSR over local nodes, with ghost rows and every dof, supported ones too. It may extrapolate stresses from an
    earlier state (stressreference.h). ElasticityMatrix() passes it on to a parallel AIJ matrix over the free dofs.
    ElasticityMultiplyLocal() multiplies it by local vectors for the prescribed dofs. ElasticityReleaseTangent() frees it
-   until the next tangent. ElasticityNodalStress() gives stresses for output. ElasticityPlacePoints()
-   places the quadrature points of one cell, ElasticityPointStates() and ElasticityPointRates() show those of a batch.
+   until the next tangent. ElasticityNodalStress() gives stresses for output. ElasticityPlacePoints() places the
+   quadrature points of one cell, ElasticityPointStates() and ElasticityPointRates() show those of a batch.
 
    Mixed elements whose volume is kept exactly, or nearly so, have multipliers (volumes.c). ElasticityFollow() changes
    them in an iteration of Newton's method, ElasticityAugment() after a solve until the volume is right.

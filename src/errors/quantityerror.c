@@ -83,8 +83,8 @@ static PetscErrorCode SumOff(Mesh mesh, const PetscReal *cells, const PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Joins the parts of one quantity. shape: that of the masters; faces: that of contact within faces; off: of the cells.
- */
+/* Joins the parts of one quantity. shape: that of the masters; faces: that of contact within faces; off: as of
+   QuantityErrorsEstimate(). */
 static PetscErrorCode Join(Model model, BodyError bodies, const Adjoint *adjoint, PetscReal shape, PetscReal faces,
                            const PetscReal off[], QuantityError *error)
 {

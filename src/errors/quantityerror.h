@@ -12,10 +12,10 @@
    analytic, all of a slave is in contact. That straight edges of elements stand for curved boundaries is in no part.
 
    What is estimated by recovered fields is known to a factor of two: cells, contact surfaces, contact within faces.
-   Half of their magnitudes is what the sum may be off by. The last two correct the same gaps and count together: nodes of a
-   master that yield in waves under nodal forces are in both, with opposite signs. Behind a zone of contact the fields
-   are off besides by as much of themselves as the end of the zone is off by, over its extent (ContactZoneOff()). Where
-   all that is more than the sum, the parts cancel, and the error may be as large with either sign
+   Half of their magnitudes is what the sum may be off by. The last two correct the same gaps and count together: nodes
+   of a master that yield in waves under nodal forces are in both, with opposite signs. Behind a zone of contact the
+   fields are off besides by as much of themselves as the end of the zone is off by, over its extent (ContactZoneOff()).
+   Where all that is more than the sum, the parts cancel, and the error may be as large with either sign
    (QuantityErrorCancels()).
 
    QuantityErrorShares() serves quantities without a first variation, such as a peak or the end of a contact zone: it

@@ -7,9 +7,9 @@
    ElementStates() the numbers of each, and ElementStateVolumes() gives their volumes. ElementKernelExists() tells
    whether there is a kernel for a case. ElementBatchStates() and ElementBatchNominal() evaluate a state. The other
    functions treat one cell or one face: ElementPointState(), ElementPointStress(), ElementStress() and
-   ElementVolumeEnergy() evaluate a state,
-   ElementQuality(), CellVolume() and CellLength() a shape, FaceLoadKernel() and BodyForceKernel() the loads,
-   FaceAreaKernel() the areas of a face's nodes, FaceMassKernel() what springs on a face need.
+   ElementVolumeEnergy() evaluate a state, ElementQuality(), CellVolume() and CellLength() a shape, FaceLoadKernel() and
+   BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes, FaceMassKernel() what springs on a face
+   need.
 
    K may extrapolate the stress of its geometric part from an earlier state (stressreference.h), where
    ElementExtrapolates().

@@ -11,8 +11,7 @@
 #define MULTIGRID_BODIES    "bodies_"
 #define MULTIGRID_INTERFACE "interface_"
 /* Multigrid is made anew when the interface has become this many times as large, or as small. It is not made anew for
-   contact that only moves: where contact is on the coarse levels hardly matters, but it does matter that it is there.
- */
+   contact that only moves: where contact is on the coarse levels hardly matters, but that it is there does. */
 #define MULTIGRID_CHANGE 1.5
 /* Multigrid that was made for an older operator serves until its effort is this many times that of the first solve. The
    effort is the number of iterations for a power of ten in the residual. Coarse matrices cost as much as some ten

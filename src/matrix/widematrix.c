@@ -247,7 +247,7 @@ static void AddRow(WideBlock *block, PetscInt row, PetscInt to, const PetscInt *
 
   Note:
   Another call, with the same term, puts another multiple of it in the place of the first. Matrices that were made
-before a call may not be read after it. WideMatrixReturn() gives the lender its own values back, to the last bit.
+  before a call may not be read after it. WideMatrixReturn() gives the lender its own values back, to the last bit.
 @*/
 PetscErrorCode WideMatrixAdd(WideMatrix loan, PetscReal factor, Mat term)
 {

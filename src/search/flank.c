@@ -474,17 +474,24 @@ static PetscReal NearEdge(const Nearest *look, const Candidate *c, const Candida
   return 1 - SmoothStep(2 * FootToEdge(look, &edge, place) / look->size - 1);
 }
 
+/* How far a side of an edge stands off a surface by the cosine between their normals, opposed: 0 where it lies on it, 1
+   where it stands. */
+static PetscReal StandsOff(const Nearest *look, PetscReal cosine)
+{
+  const PetscReal stands = PetscCosReal(look->sharp), lies = PetscCosReal(FLANK_LIES * look->sharp);
+
+  return SmoothStep((lies - cosine) / (lies - stands));
+}
+
 /* Part of a slave point's area that takes part beside a sharp edge of the master, where both sides are slaves. A point
    behind the edge whose foot is on a flank that does not lie on the slave would be pressed out along that flank, square
    to the slave, with any force. The edge's own terms hold the slave there. */
 static PetscReal RidgeShare(const Nearest *look, int facing, const int *found)
 {
-  PetscReal stands, lies, off, near = 0;
+  PetscReal off, near = 0;
 
   if (!look->two_sided) return 1;
-  stands = PetscCosReal(look->sharp);
-  lies   = PetscCosReal(FLANK_LIES * look->sharp);
-  off    = SmoothStep((lies - Opposing(look, &look->candidates[look->best])) / (lies - stands));
+  off = StandsOff(look, Opposing(look, &look->candidates[look->best]));
   if (off == 0) return 1;
   for (int i = 0; i < facing; i++)
     for (int k = 0; k < i; k++)
@@ -495,14 +502,10 @@ static PetscReal RidgeShare(const Nearest *look, int facing, const int *found)
 /* Part of a point on a sharp edge of a tool that presses: 1 where no side of the edge lies on the master there. */
 static PetscReal EdgeShare(const Nearest *look)
 {
-  const PetscReal stands = PetscCosReal(look->sharp), lies = PetscCosReal(FLANK_LIES * look->sharp);
-  PetscReal       share = 1;
+  PetscReal share = 1;
 
-  for (int k = 0; k < 2 && look->slaves->sides; k++) {
-    const PetscReal cosine = -Dot(&look->slaves->sides[6 * look->q + 3 * k], look->normal);
-
-    share = PetscMin(share, SmoothStep((lies - cosine) / (lies - stands)));
-  }
+  for (int k = 0; k < 2 && look->slaves->sides; k++)
+    share = PetscMin(share, StandsOff(look, -Dot(&look->slaves->sides[6 * look->q + 3 * k], look->normal)));
   return share;
 }
 

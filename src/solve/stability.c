@@ -109,8 +109,8 @@ static PetscErrorCode FindMode(Model model, Factor factor, SolveReport *report)
 
   Note:
   The last tangent tells, or a new one where that was shifted. It is not known where the solver is iterative, where
-nodes have pressures, where soft motions were held, and where the last solves were made with an older factor. With
-friction the number is 1 where there is a negative eigenvalue.
+  nodes have pressures, where soft motions were held, and where the last solves were made with an older factor. With
+  friction the number is 1 where there is a negative eigenvalue.
 
   Source: S. Krenk, Non-linear modeling and analysis of solids and structures, Cambridge 2009, section 8.1.
 @*/

@@ -73,6 +73,7 @@ static void AssertSum(Mat mat, Mat a, Mat b)
   assert_int_equal(MatDuplicate(mat, MAT_COPY_VALUES, &rest), 0);
   assert_int_equal(MatAXPY(rest, -1, a, DIFFERENT_NONZERO_PATTERN), 0);
   if (b) assert_int_equal(MatAXPY(rest, -1, b, DIFFERENT_NONZERO_PATTERN), 0);
+  assert_int_equal(MatNorm(rest, NORM_FROBENIUS, &norm), 0);
   assert_true(norm == 0);
   assert_int_equal(MatDestroy(&rest), 0);
 }

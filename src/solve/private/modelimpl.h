@@ -10,8 +10,9 @@
    for contact. newton.c runs SNES once with the present contact lists. prediction.c finds a first iterate,
    penaltyramp.c improves it on softened penalties, dampedsolve.c solves with shifted tangents where Newton's method
    finds no equilibrium. penaltyerror.c estimates what penetration leaves of error and stiffens penalties, jump.c tells
-   an equilibrium that was reached by a jump, stability.c whether it is stable, adjoint.c weighs errors of a solution. equilibrium.c goes from an accepted
-   state to the next one. model.c holds the accepted state. Each file calls only those named before it. */
+   an equilibrium that was reached by a jump, stability.c whether it is stable, adjoint.c weighs errors of a solution.
+   equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file calls only
+   those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "extrapolation.h"
