@@ -102,7 +102,7 @@ PetscErrorCode NegativeModeFind(Factor factor, Vec mode, PetscReal *eigenvalue)
   PetscCall(VecDuplicateVecs(mode, NEGATIVE_SOLVES + 1, &v));
   PetscCall(VecCopy(mode, v[0]));
   PetscCall(FillSpace(factor, v, H, &m, &rest));
-  if (m) {
+  if (m && !PetscIsInfOrNanReal(rest)) { /* a factor that is singular to round-off gives no numbers */
     PetscCall(SolveProjected(H, m, &pairs));
     k = LargestNegative(&pairs, m, rest);
   }
