@@ -1,5 +1,7 @@
 """Contact of listed surfaces: a frame that closes on itself against its half on a plane and against two bodies, walls that
 are no partners, one's own mirror image, lists of all bodies against named pairs, refusals."""
+import math
+
 from harness import Check, arguments, run, SCENES
 
 FRAME, TUBE = SCENES / "c_strip.yaml", SCENES / "mirrored_tube.yaml"
@@ -23,6 +25,7 @@ HARD = ["bodies.1.material.E=2e6", "mesh.parameters.edge=0.03"]
 RIDGE_THRUST = 2.5e-2  # measured 7e-3 and 4e-3 in the plane, 1.6e-2 and 6e-3 in space
 RIDGE_FORCE = 1e-2  # measured 7e-3 and less
 RIDGE_HALF = 1e-3  # measured 1e-5
+RADIUS, RIDGE_RING = 1000, 1e-3  # of a ring whose section is that of the plane block; measured 2e-9
 PRESSED = ["supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_min, uz: 0}]",
            "loads=[{surface: y_max, uy: -0.1}]", "contact=[{name: own, surfaces: all}]"]
 PLATE = SCENES / "plate_block.yaml"
@@ -355,6 +358,10 @@ def blade():
             *(["supports.1={surface: left, ux: 0}"] if half else [])]).summary()["probes"]["on_blade"]
             for half in (0, 1)]
         check.near(f"half a model, order {order}", 2 * forces[1] / forces[0], 1, RIDGE_HALF)
+    plane, ring = (run(args, BLOCK_BLADE, out=geometry, overrides=[
+        f"mesh.parameters={{ring: {radius}, x: 0}}", f"geometry={geometry}"]).summary()["probes"]["on_blade"]
+        for radius, geometry in ((0, "plane_strain"), (RADIUS, "axisymmetric")))
+    check.near("a ring of large radius", ring / (2 * math.pi * RADIUS * plane), 1, RIDGE_RING)
     rubbed = run(args, EDGE, out="rubbed", must=None, overrides=[
         "mesh.order=1", *RIGID, MOVED.format(2), "contact.0.friction={mu: 0.1}"])
     check.holds("with friction the edge is warned of", "B157" in rubbed.text)
