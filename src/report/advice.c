@@ -171,6 +171,18 @@ static double MasterStandsIn(const RunFigures *figures, const PairFigures *pair,
   return 1;
 }
 
+static double EdgesPress(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  (void)figures;
+  if (!pair->quality.edges) return 0;
+  snprintf(
+    text, ADVICE_TEXT,
+    "%s: sharp edges of '%s' press on single faces of '%s': where the dent is as deep as a face, forces across an "
+    "edge may be off by a third of its force",
+    pair->name, pair->scene->master, pair->scene->slave);
+  return 1;
+}
+
 static double PressuresScatter(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   (void)figures;
@@ -453,6 +465,7 @@ static const Situation situations[] = {
   {.pair = SlipIsElastic, .changes = {CHANGE_STICK}},
   {.pair = SlaveHangsOver, .changes = {CHANGE_WHOLE_MASTER}},
   {.pair = MasterStandsIn, .changes = {CHANGE_FINER_SLAVE, CHANGE_ROLES}},
+  {.pair = EdgesPress, .changes = {CHANGE_FINER_SLAVE}},
   {.pair = PressuresScatter, .changes = {CHANGE_SURFACE, CHANGE_FINER_SLAVE}},
   {.pair = SlipTurns, .changes = {CHANGE_SHORTER}},
   {.pair = ContactTravels, .changes = {CHANGE_TRAVEL}},

@@ -16,9 +16,6 @@
 /* Ties that hold more than this part of the forces are told with what lowers that. It is a tenth of the error that a
    run without any settings may have. */
 #define TERMINAL_TIED 1e-3
-/* A state is told to be unstable that gives more than this part of its energy away over a turn by 0.1. Rings that would
-   roll on give less, and where they lie changes no force. */
-#define TERMINAL_GIVES 1e-2
 /* Motions that ties hold are unstable where their stiffness is below 0 by more than this part of their body's. The
    unevenness of meshes gives neutral ones, such as the rolling of a ball, far less. */
 #define TERMINAL_UNSTABLE 1e-2
@@ -592,7 +589,7 @@ static void PrintFreeBodies(const RunFigures *figures)
 /* Does the last state give much energy away if anything disturbs it? */
 static int EndsUnstable(const StepperReport *report)
 {
-  return report->negatives > 0 && report->gives > TERMINAL_GIVES;
+  return report->gives > MODEL_GIVES;
 }
 
 /* Says which accepted states were no stable equilibria, and what leads to those. */
@@ -604,7 +601,7 @@ static void PrintStability(const RunFigures *figures)
   printf("unstable equilibria: at the end of %lld of %lld steps, up to %lld negative eigenvalue%s of the tangent",
          (long long)report->unstable_steps, (long long)report->steps, (long long)report->most_negatives,
          report->most_negatives > 1 ? "s" : "");
-  if (report->negatives > 0 && !isinf(report->gives))
+  if (report->gives > 0 && !isinf(report->gives))
     printf("; in the last state a turn by 0.1 along the unstable motion gives %.2g of the stored energy",
            (double)report->gives);
   printf("\n");

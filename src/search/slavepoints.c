@@ -155,8 +155,8 @@ PetscErrorCode SlavePointsCreateRidge(ContactSurface surface, Loads loads, Slave
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
-  first = ridge->n * rank / size;
-  n     = ridge->n * (rank + 1) / size - first;
+  first = (PetscInt)((PetscInt64)ridge->n * rank / size);
+  n     = (PetscInt)((PetscInt64)ridge->n * (rank + 1) / size) - first;
   PetscCall(PetscNew(&points));
   points->mesh    = mesh;
   points->surface = surface;

@@ -36,7 +36,7 @@ static PetscErrorCode FillScattered(Mesh mesh, Vec start)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Factors the tangent at the solution, which shifted steps have led to. */
+/* Factors the tangent at the solution anew: the last factor was that of a shifted one. */
 static PetscErrorCode FactorAnew(Model model)
 {
   KSP ksp;
@@ -72,7 +72,7 @@ static PetscErrorCode ModeGives(Model model, Vec mode, PetscReal stiffness, Pets
   PetscCall(
     ProblemEnergy(model->problem, model->problem->trial, model->t, ENERGY_ELASTIC | ENERGY_CONTACT, &stored, &ok));
   length = turn > 0 ? STABILITY_TURN / turn : 0;
-  *share = ok && stored > 0 ? -stiffness * PetscSqr(length) / 2 / stored : INFINITY;
+  *share = !ok ? INFINITY : stored > 0 ? -stiffness * PetscSqr(length) / 2 / stored : 0;
   PetscCall(VecDestroy(&end));
   PetscCall(PetscFree(moved));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -426,13 +426,14 @@ static void PaceAdd(Pace *pace, Model model, PetscReal dt, PetscBool jumped)
 /* Notes the stability of the accepted state. Where it is not known, it is taken for that of the state before. */
 static void LoadStepperNoteStability(StepperReport *report, const SolveReport *solve)
 {
-  const PetscInt negatives = solve->negatives;
+  const PetscInt  negatives = solve->negatives;
+  const PetscReal gives     = negatives > 0 ? solve->gives : 0;
 
   if (negatives < 0) return;
-  if (negatives > 0 && report->negatives == 0) report->unstable_from = report->t;
+  if (gives > MODEL_GIVES && report->gives <= MODEL_GIVES) report->unstable_from = report->t;
   report->negatives = negatives;
-  report->gives     = negatives > 0 ? solve->gives : 0;
-  report->unstable_steps += negatives > 0;
+  report->gives     = gives;
+  report->unstable_steps += gives > MODEL_GIVES;
   report->most_negatives = PetscMax(report->most_negatives, negatives);
 }
 
@@ -652,7 +653,7 @@ static PetscErrorCode LoadStepperBound(LoadStepper stepper, PetscReal dt, PetscR
 /* Says whether a solve ended in an unstable equilibrium, after a state that was not known for one. */
 static PetscBool LosesStability(const StepperReport *report, const SolveReport *solve)
 {
-  return (PetscBool)(solve->negatives > 0 && report->negatives <= 0);
+  return (PetscBool)(solve->negatives > 0 && solve->gives > MODEL_GIVES && !(report->gives > MODEL_GIVES));
 }
 
 /* Solves for a step of dt to `end`. An unstable equilibrium counts as none where damping may lead to a stable one.
