@@ -168,6 +168,17 @@ static PetscErrorCode FindRates(BodyError b, const PetscReal *y, PointRates *rat
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where the computed values at the points of products of n cells are: among those of all cells, where these points are
+   those of the elements, else in room for new ones. Returns whether they are there. */
+static PetscBool FindComputed(BodyError b, int n, const PetscInt *cell, PetscReal *of, PetscInt width,
+                              PetscReal room[][ELEMENT_MAX_POINTS * MOST_WIDTH], PetscReal *computed[])
+{
+  const PetscBool same = SamePoints(b, cell[0]);
+
+  for (int i = 0; i < n; i++) computed[i] = same ? &of[RecoveryPoints(b->recovery, cell[i], NULL) * width] : room[i];
+  return same;
+}
+
 /* What recovered fields of the solution differ by from the computed ones at the points of products of a batch. */
 static PetscErrorCode BatchDefects(BodyError b, PetscInt batch, const PetscReal *patches)
 {
@@ -178,9 +189,7 @@ static PetscErrorCode BatchDefects(BodyError b, PetscInt batch, const PetscReal 
 
   PetscFunctionBeginUser;
   ElasticityBatch(b->elasticity, batch, &n, &cell);
-  same = SamePoints(b, cell[0]);
-  for (int i = 0; i < n; i++)
-    computed[i] = same ? &b->state[RecoveryPoints(b->recovery, cell[i], NULL) * b->state_width] : more[i];
+  same = FindComputed(b, n, cell, b->state, b->state_width, more, computed);
   if (!same) PetscCall(BatchState(b, batch, POINTS_OF_PRODUCTS, computed, NULL));
   for (int i = 0; i < n; i++) {
     PetscReal *defect = &b->defect[RecoveryProducts(b->recovery, cell[i], NULL) * b->state_width];
@@ -331,9 +340,7 @@ static PetscErrorCode BatchErrors(BodyError b, PetscInt batch, const PetscReal *
 
   PetscFunctionBeginUser;
   ElasticityBatch(b->elasticity, batch, &n, &cell);
-  same = SamePoints(b, cell[0]);
-  for (int i = 0; i < n; i++)
-    computed[i] = same ? &rates->value[RecoveryPoints(b->recovery, cell[i], NULL) * b->rate_width] : more[i];
+  same = FindComputed(b, n, cell, rates->value, b->rate_width, more, computed);
   if (!same) PetscCall(BatchRate(b, y, batch, POINTS_OF_PRODUCTS, computed, NULL));
   for (int i = 0; i < n; i++) cells[cell[i]] = CellError(b, cell[i], computed[i], rates);
   PetscFunctionReturn(PETSC_SUCCESS);
