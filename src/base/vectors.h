@@ -2,6 +2,10 @@
 #pragma once
 #include <math.h>
 
+/* Sides of a wedge are more than a right angle apart: their normals have less than this product, which leaves out
+   right-angled edges and their round-off. */
+#define VECTORS_WEDGE (-1e-3)
+
 static inline double Dot(const double a[3], const double b[3])
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

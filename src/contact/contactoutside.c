@@ -32,7 +32,8 @@ const Motion *ContactPairMotion(Contact contact, int p)
    so that the slave nodes tell everything. */
 void ContactPairHold(Contact contact, const ContactPair *pair, PetscReal t, const PetscReal *values, PetscReal *out)
 {
-  const Motion *motion = ContactPairMotion(contact, ContactIsRidge(pair) ? pair->of : (int)(pair - contact->pairs));
+  const Motion *motion =
+    ContactPairMotion(contact, ContactIsRidge(pair) ? pair->tool_pair : (int)(pair - contact->pairs));
   const NeighbourLists lists = pair->lists;
   const int            dim   = contact->mesh->dim;
   PetscReal            q[MOTION_COMPONENTS], point[3], moment[3] = {0, 0, 0};

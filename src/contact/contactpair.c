@@ -495,15 +495,15 @@ PetscErrorCode ContactPairCreateRidge(Contact contact, Elasticity elasticity, in
   PetscCall(
     RidgeSurfaceCreate(tool->master, tool->slave, scene->geometry, tool->n_mirrors, tool->mirrors, &pair->slave));
   if (!pair->slave) PetscFunctionReturn(PETSC_SUCCESS);
-  pair->of     = of;
-  pair->said   = RidgeScene(tool->scene);
-  pair->mesh   = mesh;
-  pair->scene  = &pair->said;
-  pair->tool   = tool->tool;
-  pair->facets = &Smoother_Facet;
+  pair->tool_pair   = of;
+  pair->ridge_scene = RidgeScene(tool->scene);
+  pair->mesh        = mesh;
+  pair->scene       = &pair->ridge_scene;
+  pair->tool        = tool->tool;
+  pair->facets      = &Smoother_Facet;
   /* Tools with unknowns take their part of a gap from motions of slave and tool as one body, in which frames of fits on
      the slave do not turn. */
-  pair->smoother  = pair->tool ? pair->facets : Smoothers[pair->said.smoother];
+  pair->smoother  = pair->tool ? pair->facets : Smoothers[pair->ridge_scene.smoother];
   pair->law       = tool->law;
   pair->geometry  = scene->geometry;
   pair->n_images  = tool->n_images;
@@ -512,7 +512,8 @@ PetscErrorCode ContactPairCreateRidge(Contact contact, Elasticity elasticity, in
   PetscCall(PetscArraycpy(pair->mirrors, tool->mirrors, SURFACE_MAX_IMAGES));
   PairSetFormulation(scene, mesh->order, pair);
   pair->fit = PairFitSettings(scene, pair, mesh->order);
-  PetscCall(SurfaceCreate(mesh, scene, elasticity, pair->said.path, "slave", pair->said.master, &pair->master));
+  PetscCall(
+    SurfaceCreate(mesh, scene, elasticity, pair->ridge_scene.path, "slave", pair->ridge_scene.master, &pair->master));
   PetscCall(PairComplete(mesh, scene, contact->loads, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

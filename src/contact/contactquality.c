@@ -164,7 +164,7 @@ static PetscErrorCode CountHanging(const ContactPair *pair, PetscMPIInt rank, Pe
 }
 
 /* Counts the points on edges of the tool that press, and takes their penetrations where they are deeper. */
-static PetscErrorCode AddRidge(const ContactPair *ridge, ContactPressing *pressing, ContactQuality *quality)
+static PetscErrorCode AddRidgeQuality(const ContactPair *ridge, ContactPressing *pressing, ContactQuality *quality)
 {
   ContactPressing edges;
   PetscReal      *depth;
@@ -227,7 +227,7 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   if (pair->master) quality->turned = pair->master->turned;
   PetscCall(FindPlace(contact->mesh, pair, depth, pressing.depth, &quality->deepest));
   PetscCall(PetscFree(depth));
-  if (pair->ridge) PetscCall(AddRidge(&contact->pairs[pair->ridge], &pressing, quality));
+  if (pair->ridge) PetscCall(AddRidgeQuality(&contact->pairs[pair->ridge], &pressing, quality));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
   quality->max_penetration        = pressing.depth;
   quality->max_penetration_over_h = pressing.over_h;

@@ -139,7 +139,7 @@ static PetscBool HasOuter(const ContactPair *pair)
 /* Number of the scene's pair to which a pair belongs. */
 static ptrdiff_t PairOf(Contact contact, const ContactPair *pair)
 {
-  return ContactIsRidge(pair) ? pair->of : pair - contact->pairs;
+  return ContactIsRidge(pair) ? pair->tool_pair : pair - contact->pairs;
 }
 
 /* Forces, energy and squared forces of one pair. */

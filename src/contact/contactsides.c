@@ -39,7 +39,7 @@ static PetscBool Holds(const ContactPair *pair, const ContactState *state, Petsc
 }
 
 /* Adds to the mesh's nodes of all faces near those points on edges of a tool that hold the surfaces. */
-static PetscErrorCode AddRidge(const ContactPair *pair, PetscReal *mine)
+static PetscErrorCode MarkRidgeFaces(const ContactPair *pair, PetscReal *mine)
 {
   PetscBool *holds;
 
@@ -79,7 +79,7 @@ PetscErrorCode ContactPairPressed(Contact contact, int p, PetscReal *pressed)
   for (PetscInt c = 0; c < pair->n; c++) {
     if (Holds(pair, &pair->now, c) || Holds(pair, &pair->accepted, c)) mine[pair->node[c]] = 1;
   }
-  if (pair->ridge) PetscCall(AddRidge(&contact->pairs[pair->ridge], mine));
+  if (pair->ridge) PetscCall(MarkRidgeFaces(&contact->pairs[pair->ridge], mine));
   PetscCall(MeshSumNodes(mesh, 1, mine));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) pressed[n] += mine[n];
   PetscCall(PetscFree(mine));

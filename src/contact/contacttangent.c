@@ -444,7 +444,7 @@ PetscErrorCode ContactMultiplyTransposed(Contact contact, const PetscBool pairs[
     const PetscInt n    = pair->lists->n_nodes * contact->mesh->dim;
     PetscReal     *values;
 
-    if (!pairs[ContactIsRidge(pair) ? pair->of : p]) continue;
+    if (!pairs[ContactIsRidge(pair) ? pair->tool_pair : p]) continue;
     PetscCall(PetscCalloc1(n, &values));
     PetscCall(ContactPairMove(contact, pair, x, pair->t, pair->t, values));
     for (PetscInt i = 0; i < n; i++) contact->product[p].x[i] += values[i];

@@ -7,9 +7,6 @@
 #include "scene/sceneroles.h"
 #include <string.h>
 
-/* Sides of a wedge are more than a right angle apart: cosine of their normals, less round-off of right-angled edges. */
-#define ROLES_WEDGE (-1e-3)
-
 /* A side that is square to the surface, but for round-off, does not face it: cosine of their normals. */
 #define ROLES_SQUARE 1e-3
 /* An edge stands on a surface where each of its sides is off that by more than this: cosine of 30 degrees. */
@@ -30,7 +27,7 @@ typedef struct {
 /* Finds the sides of a node that differ most, if they are those of a convex wedge. */
 static PetscBool FindWedge(PetscInt n, const NodeSide sides[], WedgeNode *wedge)
 {
-  PetscReal least = ROLES_WEDGE;
+  PetscReal least = VECTORS_WEDGE;
 
   for (PetscInt i = 0; i < n; i++) {
     for (PetscInt k = 0; k < n; k++) {
@@ -44,7 +41,7 @@ static PetscBool FindWedge(PetscInt n, const NodeSide sides[], WedgeNode *wedge)
       for (int d = 0; d < 3; d++) wedge->normal[1][d] = b[d] / length[1];
     }
   }
-  return (PetscBool)(least < ROLES_WEDGE);
+  return (PetscBool)(least < VECTORS_WEDGE);
 }
 
 /* Finds the nodes on wedges of a group, all of them on every rank: rows that are WedgeNode. */

@@ -14,9 +14,6 @@
    wide as each other lie over each other up to their motion by round-off and small strains. */
 #define DEPTH_ON_FACE 1e-3
 
-/* Faces on the edge of a wedge are more than a right angle apart: cosine of their normals, less round-off. */
-#define DEPTH_WEDGE (-1e-3)
-
 struct _n_NodeDepths {
   Mesh           mesh;
   ContactSurface slave, master;
@@ -357,7 +354,7 @@ static PetscErrorCode FindWedge(NodeDepths depths, PetscInt tag, PetscBool *wedg
   PetscCall(GatherTableCreate(depths->mesh->comm, 3, n, own, &normals));
   for (PetscInt i = 0; i < normals.n; i++)
     for (PetscInt k = 0; k < i; k++)
-      *wedge = (PetscBool)(*wedge || Dot(&normals.row[3 * i], &normals.row[3 * k]) < DEPTH_WEDGE);
+      *wedge = (PetscBool)(*wedge || Dot(&normals.row[3 * i], &normals.row[3 * k]) < VECTORS_WEDGE);
   PetscCall(GatherTableDestroy(&normals));
   PetscCall(PetscFree(own));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -6,11 +6,6 @@
 /* Points along an edge are as close as this part of a face of what they press on. */
 #define RIDGE_SPACING 0.5
 
-/* Sides of an edge are more than a right angle apart: cosine of their normals, less round-off of right-angled edges.
-   Slave points hold the surface at blunter edges: a lid on the square corners of a wall took 3 to 13 times as many
-   iterations with points on them, and its side force scattered more from mesh to mesh. */
-#define RIDGE_WEDGE (-1e-3)
-
 /* An edge of a face of the tool (an end in 2D) by its corners */
 typedef struct {
   PetscInt low, high, face;
@@ -72,7 +67,9 @@ static const SurfaceImage *PlaneOf(const RidgeSearch *s, const RidgeEdge *edge)
 }
 
 /* Finds the unit normals of the two sides of a sharp convex edge, of which `count` faces are known; one that lies in a
-   plane of symmetry has its other side beyond that. */
+   plane of symmetry has its other side beyond that. Slave points hold the surface at blunter edges: a lid on the square
+   corners of a wall took 3 to 13 times as many iterations with points on them, and its side force scattered more from
+   mesh to mesh. */
 static PetscBool FindSides(const RidgeSearch *s, const RidgeEdge *edge, PetscInt count, PetscReal sides[6])
 {
   const SurfaceImage *plane = count == 1 ? PlaneOf(s, edge) : NULL;
@@ -82,7 +79,7 @@ static PetscBool FindSides(const RidgeSearch *s, const RidgeEdge *edge, PetscInt
   if (count == 2) SurfaceEdgeFrame(s->tool, &s->tool->faces[edge[1].face], edge[1].edge, &sides[3], out);
   SurfaceEdgeFrame(s->tool, &s->tool->faces[edge[0].face], edge[0].edge, sides, out);
   for (int d = 0; d < 3 && plane; d++) sides[3 + d] = plane->sign[d] * sides[d];
-  return (PetscBool)(Dot(sides, &sides[3]) < RIDGE_WEDGE && Dot(out, &sides[3]) > 0);
+  return (PetscBool)(Dot(sides, &sides[3]) < VECTORS_WEDGE && Dot(out, &sides[3]) > 0);
 }
 
 /* Number of points along an edge of that length. */

@@ -65,8 +65,8 @@ typedef struct {
   ContactSurface      slave, master; /* master NULL: analytic, in scene */
   const MeshTool     *tool;          /* the master or the slave, where its motion has free components; else NULL */
   int                 ridge;         /* number of the pair of its tool's sharp edges; 0: there is none */
-  int                 of;            /* of such a pair: number of the one with the tool as master */
-  SceneContact        said;          /* of such a pair: what the scene would say of it */
+  int                 tool_pair;     /* of such a pair: number of the one with the tool as master */
+  SceneContact        ridge_scene;   /* of such a pair: what the scene would say of it */
   int                 n_images;      /* of the master, for fits and search */
   int             n_mirrors; /* those and the ones beyond planes at which a surface turns sharply, for its corners */
   SurfaceImage    images[SURFACE_MAX_IMAGES], mirrors[SURFACE_MAX_IMAGES];
