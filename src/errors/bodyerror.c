@@ -136,6 +136,12 @@ static void ListEntries(BodyError b)
   if (b->mesh->dim == 2) b->entry[b->entries++] = 8;
 }
 
+/* Finds where the values at the quadrature points of n cells are among those of all cells, width at a point. */
+static void FindPoints(BodyError b, int n, const PetscInt *cell, PetscReal *of, PetscInt width, PetscReal *at[])
+{
+  for (int i = 0; i < n; i++) at[i] = &of[RecoveryPoints(b->recovery, cell[i], NULL) * width];
+}
+
 /* Evaluates the solution at the points of all cells. */
 static PetscErrorCode FindStates(BodyError b)
 {
@@ -146,7 +152,7 @@ static PetscErrorCode FindStates(BodyError b)
     int             n;
 
     ElasticityBatch(b->elasticity, k, &n, &cell);
-    for (int i = 0; i < n; i++) state[i] = &b->state[RecoveryPoints(b->recovery, cell[i], NULL) * b->state_width];
+    FindPoints(b, n, cell, b->state, b->state_width, state);
     PetscCall(BatchState(b, k, POINTS_OF_ELEMENT, state, b->modes));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -162,7 +168,7 @@ static PetscErrorCode FindRates(BodyError b, const PetscReal *y, PointRates *rat
     int             n;
 
     ElasticityBatch(b->elasticity, k, &n, &cell);
-    for (int i = 0; i < n; i++) rate[i] = &rates->value[RecoveryPoints(b->recovery, cell[i], NULL) * b->rate_width];
+    FindPoints(b, n, cell, rates->value, b->rate_width, rate);
     PetscCall(BatchRate(b, y, k, POINTS_OF_ELEMENT, rate, rates->modes));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -175,7 +181,8 @@ static PetscBool FindComputed(BodyError b, int n, const PetscInt *cell, PetscRea
 {
   const PetscBool same = SamePoints(b, cell[0]);
 
-  for (int i = 0; i < n; i++) computed[i] = same ? &of[RecoveryPoints(b->recovery, cell[i], NULL) * width] : room[i];
+  if (same) FindPoints(b, n, cell, of, width, computed);
+  for (int i = 0; i < n && !same; i++) computed[i] = room[i];
   return same;
 }
 
