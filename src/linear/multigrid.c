@@ -248,8 +248,9 @@ static PetscErrorCode ReplaceNodes(Multigrid m, Mat nodes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes the bodies' operator over all dofs from the arrays of the operator: without the entries in which contact alone
-   is. The diagonal of constrained dofs is the mean of the others, so that no coarse row mixes scales. */
+/* Makes the bodies' operator over all dofs from the arrays of the operator: where there is contact, without the entries
+   in which it alone is. The diagonal of constrained dofs is the mean of the others, so that no coarse row mixes scales.
+ */
 static PetscErrorCode BorrowNodes(Multigrid m, Mat A, PetscReal *softness, WideMatrix *loan)
 {
   PetscInt    *ghost;
@@ -262,7 +263,7 @@ static PetscErrorCode BorrowNodes(Multigrid m, Mat A, PetscReal *softness, WideM
   PetscCall(NumberGhosts(m, A, &ghost));
   PetscCall(WideMatrixBorrow(A, &(WideRows){m->n_all, m->row, ghost, mean}, m->mesh->dim, loan));
   if (m->interface) PetscCall(WideMatrixAdd(*loan, -1, m->contact));
-  PetscCall(WideMatrixCreate(*loan, PETSC_FALSE, &nodes));
+  PetscCall(WideMatrixCreate(*loan, (PetscBool)!m->interface, &nodes));
   PetscCall(ReplaceNodes(m, nodes));
   if (!m->nodes_right) PetscCall(MatCreateVecs(m->nodes, &m->nodes_right, &m->nodes_left));
   PetscCall(ModesCreate(m, &modes));
@@ -414,7 +415,7 @@ static PetscErrorCode AddToFinest(Multigrid m, PetscReal softness, WideMatrix lo
   Mat nodes;
 
   PetscFunctionBeginUser;
-  if (m->interface) PetscCall(WideMatrixAdd(loan, softness - 1, m->contact));
+  PetscCall(WideMatrixAdd(loan, softness - 1, m->contact));
   PetscCall(WideMatrixCreate(loan, PETSC_TRUE, &nodes));
   PetscCall(ReplaceNodes(m, nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -438,8 +439,10 @@ static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
   PetscCall(PCSetOperators(m->bodies, m->nodes, m->nodes));
   PetscCall(PCSetUp(m->bodies));
   PetscCall(ForgetProducts(m));
-  if (m->interface) PetscCall(AddContact(m, softness));
-  PetscCall(AddToFinest(m, softness, loan));
+  if (m->interface) {
+    PetscCall(AddContact(m, softness));
+    PetscCall(AddToFinest(m, softness, loan));
+  }
   if (fresh) PetscCall(SmoothFinest(m));
   PetscCall(ReturnNodes(m, &loan));
   m->renew  = PETSC_FALSE;
