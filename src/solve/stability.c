@@ -122,9 +122,10 @@ PetscErrorCode ModelFindStability(Model model, SolveReport *report)
   PetscFunctionBeginUser;
   report->negatives = -1;
   report->gives     = 0;
+  if (work->hold.n || model->mesh->saddle) PetscFunctionReturn(PETSC_SUCCESS);
   if (report->damped) PetscCall(FactorAnew(model));
   PetscCall(LinearSolverOwnFactor(work->solver, &factor));
-  if (!factor || work->hold.n || model->mesh->saddle) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!factor) PetscFunctionReturn(PETSC_SUCCESS);
   report->negatives = FactorIsSymmetric(factor) ? FactorNegatives(factor) : FactorParity(factor);
   if (report->negatives) report->gives = INFINITY;
   if (report->negatives || !FactorIsSymmetric(factor)) PetscCall(FindMode(model, factor, report));
