@@ -25,52 +25,59 @@ def noise(fields):
     return float(numpy.max(numpy.abs(pressure[inner] / numpy.sqrt(numpy.polyval(line, x[inner] ** 2)) - 1)))
 
 
-args = arguments()
-check = Check()
-for slave, swap in SLAVES.items():
-    for smoother, degree in (("diffuse", 4), ("diffuse", 2), ("facet", 4)):
-        name = f"{slave} as slave, {smoother}" + (f" {degree}" if smoother == "diffuse" else "")
-        finished = run(args, SCENES.parent.parent / "runs" / "hertz_line.yaml", out=name.replace(" ",
-                                                                                                 "_").replace(",", ""),
-                       overrides=[f"contact.0.smoother={smoother}", f"contact.0.degree={degree}", *swap])
-        probes, deviation = finished.summary()["probes"], noise(finished.fields())
-        check.near(f"{name}: force", probes["force"], FORCE, 1e-6 * FORCE)
-        if smoother == "diffuse":
-            check.near(f"{name}: half-width", probes["half_width"] / HALF_WIDTH, 1, BOUND)
-            check.near(f"{name}: peak pressure", probes["peak_pressure"] / PEAK, 1, BOUND)
-            check.holds(f"{name}: noise", deviation <= NOISE, f"{100 * deviation:.2f} %, allowed {100 * NOISE:.0f} %")
-        print(
-            f"     half-width {probes['half_width']:.4f} ({100 * (probes['half_width'] / HALF_WIDTH - 1):+.2f} %), "
-            f"peak pressure {probes['peak_pressure']:.1f} ({100 * (probes['peak_pressure'] / PEAK - 1):+.2f} %), noise "
-            f"{100 * deviation:.2f} %"
-        )
-for order, faces in ((1, 12), (2, 3)):  # elements of the block along the half-width, which is 1
-    name, scale = f"surface to surface, order {order}", HALF_WIDTH**2
-    mesh = ["formulation=surface_to_surface", "penalty.scale=100"]
-    probes = run(
-        args, SCENES.parent.parent / "runs" / "hertz_line.yaml", out=f"surface_{order}", overrides=[
+def run_line(args, out, overrides):
+    return run(args, SCENES.parent.parent / "runs" / "hertz_line.yaml", out=out, overrides=overrides)
+
+
+def line(args, check):
+    for slave, swap in SLAVES.items():
+        for smoother, degree in (("diffuse", 4), ("diffuse", 2), ("facet", 4)):
+            name = f"{slave} as slave, {smoother}" + (f" {degree}" if smoother == "diffuse" else "")
+            finished = run_line(args, name.replace(" ", "_").replace(",", ""),
+                                [f"contact.0.smoother={smoother}", f"contact.0.degree={degree}", *swap])
+            probes, deviation = finished.summary()["probes"], noise(finished.fields())
+            width, peak = probes["half_width"] / HALF_WIDTH, probes["peak_pressure"] / PEAK
+            percent = f"{100 * deviation:.2f} %"
+            check.near(f"{name}: force", probes["force"], FORCE, 1e-6 * FORCE)
+            if smoother == "diffuse":
+                check.near(f"{name}: half-width", width, 1, BOUND)
+                check.near(f"{name}: peak pressure", peak, 1, BOUND)
+                check.holds(f"{name}: noise", deviation <= NOISE, f"{percent}, allowed {100 * NOISE:.0f} %")
+            print(f"     half-width {100 * (width - 1):+.2f} %, peak {100 * (peak - 1):+.2f} %, noise {percent}")
+
+
+def coarse(args, check):
+    for order, faces in ((1, 12), (2, 3)):  # elements of the block along the half-width, which is 1
+        name, scale = f"surface to surface, order {order}", HALF_WIDTH**2
+        probes = run_line(args, f"surface_{order}", [
             f"mesh.order={order}", f"mesh.parameters={{h: {1 / (0.8 * faces):.8g}, zone: 1.3}}",
-            f"loads.0.pressure={350 / scale:.8g}", *(f"contact.0.{value}" for value in mesh)
+            f"loads.0.pressure={350 / scale:.8g}", "contact.0.formulation=surface_to_surface",
+            "contact.0.penalty.scale=100"
         ]).summary()["probes"]
-    check.near(f"{name}: force", probes["force"], FORCE / scale, 1e-6 * FORCE / scale)
-    check.near(f"{name}: half-width", probes["half_width"], 1, 0.2 / faces)
-    check.near(f"{name}: peak pressure", probes["peak_pressure"] / PEAK * HALF_WIDTH, 1, COARSE)
-probes = run(
-    args, SCENES.parent.parent / "runs" / "hertz_line.yaml", out="rows", overrides=[
-        "mesh.order=2", f"mesh.parameters={{h: {1 / (0.8 * 3):.8g}, zone: 1.3, core: 1.3, growth: 0.5, jitter: 0.25}}",
-        f"loads.0.pressure={350 / HALF_WIDTH**2:.8g}", "contact.0.formulation=surface_to_surface",
-        "contact.0.penalty.scale=1000"
+        check.near(f"{name}: force", probes["force"], FORCE / scale, 1e-6 * FORCE / scale)
+        check.near(f"{name}: half-width", probes["half_width"], 1, 0.2 / faces)
+        check.near(f"{name}: peak pressure", probes["peak_pressure"] / PEAK * HALF_WIDTH, 1, COARSE)
+    mesh = f"{{h: {1 / (0.8 * 3):.8g}, zone: 1.3, core: 1.3, growth: 0.5, jitter: 0.25}}"
+    probes = run_line(args, "rows", [
+        "mesh.order=2", f"mesh.parameters={mesh}", f"loads.0.pressure={350 / HALF_WIDTH**2:.8g}",
+        "contact.0.formulation=surface_to_surface", "contact.0.penalty.scale=1000"
     ]).summary()["probes"]
-check.near("even rows, moved nodes: peak pressure", probes["peak_pressure"] / PEAK * HALF_WIDTH, 1, BOUND)
-force = 1.50240 * 16 * 16  # a quarter of the sphere
-for name, faces, share, mesh in (("sphere", 2, 0.2, []), ("sphere, free", 3, 0.3,
-                                                          ["mesh.file=../meshes/hertz_sphere_free.geo"
-                                                           ])):  # faces along the radius, which is 1
-    probes = run(args, SCENES.parent.parent / "runs" / "hertz_sphere.yaml", out=name.replace(", ", "_"),
-                 overrides=[*mesh, f"mesh.parameters.n={faces}"]).summary()["probes"]
-    check.near(f"{name}: force", probes["force"], force, 1e-6 * force)
-    check.near(f"{name}: radius", probes["radius"], 1, share / faces)
-joined = run(args, SCENES.parent.parent / "runs" / "hertz_sphere.yaml", out="joined",
-             overrides=["mesh.file=../meshes/hertz_sphere_free.geo", "mesh.parameters={n: 2, apart: 0}"])
-check.holds("bodies that the mesher has joined are told of", "have 1 node in common" in joined.text, "no warning")
+    check.near("even rows, moved nodes: peak pressure", probes["peak_pressure"] / PEAK * HALF_WIDTH, 1, BOUND)
+
+
+def sphere(args, check):
+    scene, free = SCENES.parent.parent / "runs" / "hertz_sphere.yaml", "mesh.file=../meshes/hertz_sphere_free.geo"
+    force = 1.50240 * 16 * 16  # a quarter of the sphere
+    # faces along the radius, which is 1
+    for name, faces, share, mesh in (("sphere", 2, 0.2, []), ("sphere, free", 3, 0.3, [free])):
+        probes = run(args, scene, out=name.replace(", ", "_"),
+                     overrides=[*mesh, f"mesh.parameters.n={faces}"]).summary()["probes"]
+        check.near(f"{name}: force", probes["force"], force, 1e-6 * force)
+        check.near(f"{name}: radius", probes["radius"], 1, share / faces)
+    joined = run(args, scene, out="joined", overrides=[free, "mesh.parameters={n: 2, apart: 0}"])
+    check.holds("bodies that the mesher has joined are told of", "have 1 node in common" in joined.text, "no warning")
+
+
+args, check = arguments(("case", "which contact", ("line", "coarse", "sphere"))), Check()
+{"line": line, "coarse": coarse, "sphere": sphere}[args.case](args, check)
 check.finish()

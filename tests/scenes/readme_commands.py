@@ -43,8 +43,8 @@ LIKE = {
     "mpicc tests/library/library.c $(pkg-config --cflags --libs burnish) -o library",
 }
 
-# Runs whose output no page shows: in the quick set these words behind them, which solve nothing, in the full set as they
-# stand. The words before the command tell which.
+# Runs whose output no page shows: in the quick set these words behind them, which solve nothing, in the full set as
+# they stand. The words before the command tell which.
 CHECKED = {
     "build/burnish tests/jobs/": "-check",
     "build/burnish tests/scenes/pin_pressed.yaml": "-check",
@@ -149,7 +149,8 @@ FULL = {
     f"{PYTHON} scripts/compare_calculix.py --table runs/records/calculix_laws.csv",
     f"{PYTHON} scripts/calculix_table.py --repeats 1 --limit 150 --record runs/records/calculix_ratios.csv":
     printed("calculix_table", "calculix_ratios"),
-    f"{PYTHON} scripts/figures_table.py --repeats 8 --record runs/records/figures.csv": printed("figures_table", "figures"),
+    f"{PYTHON} scripts/figures_table.py --repeats 8 --record runs/records/figures.csv":
+    printed("figures_table", "figures"),
     f"{PYTHON} scripts/fit_rubber.py runs/rubber/treloar": None,
     f"{PYTHON} scripts/wish_table.py --record runs/records/wish.csv": printed("wish_table", "wish"),
     f"{PYTHON} scripts/deck_table.py --record runs/records/decks.csv": printed("deck_table", "decks"),
@@ -158,6 +159,8 @@ FULL = {
                                                                                       "all_overhead"),
     f"{PYTHON} scripts/search_table.py --record runs/records/search.csv": printed("search_table", "search"),
     f"{PYTHON} scripts/ranks_table.py --record runs/records/ranks.csv": printed("ranks_table", "ranks"),
+    f"{PYTHON} scripts/mesh_memory_table.py --record runs/records/mesh_memory.csv":
+    f"{PYTHON} scripts/mesh_memory_table.py --print --record runs/records/mesh_memory.csv",
     f"{PYTHON} tests/hard/run.py --group guards":
     f"{PYTHON} tests/hard/run.py {BURNISH} --out $WORK/out/hard --case 'corner of two walls' --ranks 1",
     f"{PYTHON} tests/hard/run.py --record runs/records/hard.csv":
