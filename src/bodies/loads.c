@@ -331,7 +331,8 @@ static PetscErrorCode GroupArea(Loads loads, const MeshGroup *group, PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds what a force is shared out over: the area of its group, or the number of nodes where it has no faces. */
+/* Finds what a force is shared out over: the area of its group, or the number of nodes where it has no faces or these
+   lie on the axis. Round-off of r is an area there, and its sign the force's direction. */
 static PetscErrorCode DeadLoadMeasure(Loads loads, DeadLoad *dead)
 {
   const Mesh  mesh = loads->mesh;
@@ -339,6 +340,8 @@ static PetscErrorCode DeadLoadMeasure(Loads loads, DeadLoad *dead)
 
   PetscFunctionBeginUser;
   PetscCall(GroupArea(loads, dead->group, &dead->area));
+  if (loads->scene->geometry == GEOMETRY_AXISYMMETRIC && dead->area < LOADS_ON_AXIS * PetscSqr(mesh->size))
+    dead->area = 0;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   for (PetscInt i = 0; i < dead->group->n_nodes; i++) dead->nodes += mesh->node_owner[dead->group->nodes[i]] == rank;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &dead->nodes, 1, MPIU_INT, MPI_SUM, mesh->comm));

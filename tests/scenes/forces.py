@@ -31,6 +31,8 @@ even = bar(SQUARE, f"{{surface: y_max, traction: [0, {5 / math.pi}]}}", "geometr
            "supports=[{surface: y_min, uy: 0}]", ROD)
 check.near("axisymmetric: over 360 degrees", ring.summary()["probes"]["held"], -5, 1e-11)
 check.near("axisymmetric: as the traction F/A", ring.fields()["displacement"], even.fields()["displacement"], 1e-13)
+axis = bar(SQUARE, "{surface: x_min, force: [0, 5]}", "geometry=axisymmetric", "supports=[{surface: y_min, uy: 0}]", ROD)
+check.near("axisymmetric: on the axis", axis.summary()["probes"]["held"], -5, 1e-11)
 point = bar(SQUARE, "{surface: end_x, force: [0, 4]}", "supports=[{surface: x_min, ux: 0, uy: 0}]",
             "probes=[{name: held, reaction: x_min, component: y}]")
 check.near("on a point", point.summary()["probes"]["held"], -4, 1e-11)
