@@ -58,15 +58,43 @@ static void SchemaAllowed(const SchemaKey *key, char *text, size_t size)
   if (key->unit) Append(text, size, ", ", key->unit);
 }
 
+/* Appends the keys of the map at a path; a name of several is a name of each. */
+static void AppendKeys(const char *path, char *text, size_t size)
+{
+  char word[80];
+
+  for (int i = 0; i < SchemaKeysCount; i++) {
+    if (!SchemaKeyIsChild(&SchemaKeys[i], path)) continue;
+    for (const char *key = SchemaKeyName(&SchemaKeys[i]); *key;) {
+      const size_t n = strcspn(key, "|");
+
+      snprintf(word, sizeof word, "%.*s", (int)n, key);
+      Append(text, size, ", ", word);
+      key += n + (key[n] == '|');
+    }
+  }
+}
+
+/* Writes what a key at a path allows, for messages: the keys of its map, too. */
+static void SchemaAllowedAt(const SchemaKey *key, const char *path, char *text, size_t size)
+{
+  char keys[600] = "";
+
+  SchemaAllowed(key, text, size);
+  if (!(key->type & MAP)) return;
+  AppendKeys(path, keys, sizeof keys);
+  if (*keys) Append(text, size, " of ", keys);
+}
+
 /* Refuses the value of a key, with what is wrong and what is allowed. */
 static PetscErrorCode SchemaRefuse(Document *document, const SchemaKey *key, Node node, const char *path,
                                    const char *wrong)
 {
   static const char *const Kinds[] = {"", "this list ", "this map "};
-  char                     allowed[400];
+  char                     allowed[1000];
 
   PetscFunctionBeginUser;
-  SchemaAllowed(key, allowed, sizeof allowed);
+  SchemaAllowedAt(key, path, allowed, sizeof allowed);
   if (node->kind == NODE_SCALAR && node->plain && !*node->text)
     PetscCall(DocumentRefuseNode(document, node, path, "has no value; allowed: %s", allowed));
   if (node->kind == NODE_SCALAR)
@@ -293,7 +321,7 @@ static const struct {
 static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path,
                                           const char *unknown)
 {
-  char        allowed[600] = "", word[80];
+  char        allowed[600] = "";
   const char *nearest      = "";
   int         least = 1000, length = 0;
 
@@ -306,8 +334,6 @@ static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const c
       const size_t n = strcspn(key, "|");
       const int    d = WordDistance(unknown, strlen(unknown), key, n);
 
-      snprintf(word, sizeof word, "%.*s", (int)n, key);
-      Append(allowed, sizeof allowed, ", ", word);
       if (d < least) {
         least   = d;
         nearest = key;
@@ -316,6 +342,7 @@ static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const c
       key += n + (key[n] == '|');
     }
   }
+  AppendKeys(parent, allowed, sizeof allowed);
   PetscCall(
     DocumentRefuseNode(document, node, path, "unknown key, did you mean %.*s? allowed: %s", length, nearest, allowed));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -323,11 +350,11 @@ static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const c
 
 static PetscErrorCode SchemaRefuseMissing(Document *document, const SchemaKey *key, Node node, const char *path)
 {
-  char allowed[400], missing[KEY_PATH_LENGTH];
+  char allowed[1000], missing[KEY_PATH_LENGTH];
 
   PetscFunctionBeginUser;
-  SchemaAllowed(key, allowed, sizeof allowed);
   KeyPathJoin(missing, path, SchemaKeyName(key));
+  SchemaAllowedAt(key, missing, allowed, sizeof allowed);
   PetscCall(DocumentRefuseNode(document, node, missing, "is missing; allowed: %s", allowed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
