@@ -9,6 +9,8 @@
 #define CONTACT_NO_SHAPE_AREA 1e-3
 /* Facets whose nodes are this part of their size off a plane are flat: meshes are often written with 7 digits. */
 #define CONTACT_FLAT 1e-5
+/* A plane of symmetry is at zero if it is within this part of the model's size: coordinates of a mesh are rounded. */
+#define CONTACT_ROUND 1e-12
 
 /* Nodes outside the window of their penalty, all pairs; -1: no pair has a window. */
 static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)
@@ -684,9 +686,11 @@ static void AppendPlanes(const ContactPair *pair, char *text, size_t size)
     const size_t        used  = strlen(text);
 
     for (int d = 0; d < pair->mesh->dim; d++) {
+      const PetscReal at = image->shift[d] / 2 + pair->mesh->centre[d];
+
       if (image->sign[d] > 0 || (pair->geometry == GEOMETRY_AXISYMMETRIC && image->shift[d] == 0 && d == 0)) continue;
       snprintf(text + used, size - used, "%s %c = %g", word, "xyz"[d],
-               (double)(image->shift[d] / 2 + pair->mesh->centre[d]));
+               PetscAbsReal(at) > CONTACT_ROUND * pair -> mesh -> size ? (double)at : 0.0);
       word = " and";
     }
   }

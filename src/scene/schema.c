@@ -308,6 +308,16 @@ static int WordDistance(const char *a, size_t na, const char *b, size_t nb)
   return row[nb];
 }
 
+/* How unlike a key of n letters a word is: their edit distance, less the letters with which both begin, from three on.
+ */
+static int WordUnlike(const char *word, const char *key, size_t n)
+{
+  size_t same = 0;
+
+  while (same < n && word[same] && word[same] == key[same]) same++;
+  return WordDistance(word, strlen(word), key, n) - (same >= 3 ? (int)same : 0);
+}
+
 /* Keys that other programs have and that users look for, and what there is instead. */
 static const struct {
   const char *key, *instead;
@@ -316,8 +326,8 @@ static const struct {
              "are planes of symmetry, held by supports and named by symmetry under contact, or the whole part"},
 };
 
-/* Refuses an unknown key and names the most similar key and all keys that are allowed, or what there is in its place.
- */
+/* Refuses an unknown key and names all keys that are allowed and the most similar one, if half of its letters are
+   right, or what there is in its place. */
 static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path,
                                           const char *unknown)
 {
@@ -332,7 +342,7 @@ static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const c
     if (!SchemaKeyIsChild(&SchemaKeys[i], parent)) continue;
     for (const char *key = SchemaKeyName(&SchemaKeys[i]); *key;) {
       const size_t n = strcspn(key, "|");
-      const int    d = WordDistance(unknown, strlen(unknown), key, n);
+      const int    d = WordUnlike(unknown, key, n);
 
       if (d < least) {
         least   = d;
@@ -343,8 +353,10 @@ static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const c
     }
   }
   AppendKeys(parent, allowed, sizeof allowed);
-  PetscCall(
-    DocumentRefuseNode(document, node, path, "unknown key, did you mean %.*s? allowed: %s", length, nearest, allowed));
+  if (2 * least <= (int)strlen(unknown))
+    PetscCall(DocumentRefuseNode(document, node, path, "unknown key, did you mean %.*s? allowed: %s", length, nearest,
+                                 allowed));
+  PetscCall(DocumentRefuseNode(document, node, path, "unknown key; allowed: %s", allowed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
