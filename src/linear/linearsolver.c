@@ -236,7 +236,7 @@ PetscErrorCode LinearSolverNext(LinearSolver solver, const PetscReal *u, Mat C, 
   if (solver->turn) PetscCall(CorotationMove(solver->turn, u));
   if (solver->kept) PetscCall(ReusedFactorNext(solver->kept, changes, pattern, older));
   if (!solver->kept && pattern) PetscCall(KSPReset(solver->ksp));
-  if (solver->multigrid && C) PetscCall(MultigridSetContact(solver->multigrid, C, pattern));
+  if (solver->multigrid && C) PetscCall(MultigridSetContact(solver->multigrid, C));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

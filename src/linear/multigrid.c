@@ -48,7 +48,7 @@ struct _n_Multigrid {
   Vec        number;          /* of each free dof: its number among all dofs of all ranks */
   Mat        nodes;           /* the operator with all dofs of a node */
   Mat        swept;           /* stands for the smoother's copy of it; NULL: options have replaced the smoother */
-  PetscBool  changed, renew;  /* the operator has another pattern than nodes; nodes must get its values */
+  PetscBool  renew;           /* nodes must get the operator's values */
   PetscBool  released;        /* nodes has no entries: the smoother's copy is the only one */
   PetscInt   solves, applied; /* operators since multigrid was made; iterations for the last of them */
   PetscReal  usual;           /* effort of the first solve that was long enough to measure it; 0: none yet */
@@ -240,7 +240,6 @@ static PetscErrorCode SoftenContact(Multigrid m, Mat A, PetscReal *softness, Pet
 static PetscErrorCode ReplaceNodes(Multigrid m, Mat nodes)
 {
   PetscFunctionBeginUser;
-  if (m->changed) PetscCall(MatDestroy(&m->nodes));
   if (m->nodes)
     PetscCall(MatHeaderReplace(m->nodes, &nodes));
   else
@@ -278,7 +277,6 @@ static PetscErrorCode CreateBodies(Multigrid m)
   PetscReal zero = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PCDestroy(&m->bodies)); /* levels of other sizes would survive a reset */
   PetscCall(PCCreate(m->mesh->comm, &m->bodies));
   PetscCall(PCSetOptionsPrefix(m->bodies, MULTIGRID_BODIES));
   PetscCall(PCSetType(m->bodies, PCGAMG));
@@ -421,10 +419,11 @@ static PetscErrorCode AddToFinest(Multigrid m, PetscReal softness, WideMatrix lo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes multigrid for the operator. Its coarse spaces stay as long as the pattern does. */
+/* Makes multigrid for the operator. Its coarse spaces stay: they are those of the bodies, whose pattern does not change
+   where contact's does. */
 static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
 {
-  const PetscBool fresh    = m->changed;
+  const PetscBool fresh    = m->bodies ? PETSC_FALSE : PETSC_TRUE;
   PetscReal       softness = 1;
   WideMatrix      loan;
 
@@ -435,7 +434,6 @@ static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
     PetscCall(HoldBodies(m, PETSC_FALSE));
   FreeMemoryReturn();
   PetscCall(BorrowNodes(m, A, &softness, &loan));
-  m->changed = PETSC_FALSE;
   PetscCall(PCSetOperators(m->bodies, m->nodes, m->nodes));
   PetscCall(PCSetUp(m->bodies));
   PetscCall(ForgetProducts(m));
@@ -534,16 +532,14 @@ static PetscErrorCode FindCoupling(Mat C, PetscInt row, PetscInt begin, PetscInt
   Collective
 
   Input Parameters:
-+ m       - the preconditioner
-. C       - contact part; its non-zero rows are the interface. Borrowed until the next call.
-- changed - the operator has another pattern than the last one
++ m - the preconditioner
+- C - contact part; its non-zero rows are the interface. Borrowed until the next call.
 @*/
-PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
+PetscErrorCode MultigridSetContact(Multigrid m, Mat C)
 {
   PetscInt begin, end, n[2] = {0, 0}, all[2], *rows; /* rows of the interface; of these, coupled to other ranks */
 
   PetscFunctionBeginUser;
-  m->changed = (PetscBool)(m->changed || changed);
   m->contact = C;
   PetscCall(ForgetInterface(m));
   PetscCall(MatGetOwnershipRange(C, &begin, &end));
@@ -807,7 +803,7 @@ PetscErrorCode MultigridCreate(Mesh mesh, PetscBool axisymmetric, PetscBool symm
   m->mesh         = mesh;
   m->axisymmetric = axisymmetric;
   m->symmetric    = symmetric;
-  m->changed = m->renew = PETSC_TRUE;
+  m->renew        = PETSC_TRUE;
   PetscCall(MultigridNumberNodes(m));
   PetscCall(KSPSetResidualHistory(ksp, NULL, PETSC_DECIDE, PETSC_TRUE));
   PetscCall(KSPGetPC(ksp, &pc));

@@ -19,6 +19,6 @@ typedef struct _n_Multigrid *Multigrid;
 
 PetscErrorCode MultigridCreate(Mesh, PetscBool axisymmetric, PetscBool symmetric, KSP, Multigrid *);
 PetscErrorCode MultigridDestroy(Multigrid *);
-PetscErrorCode MultigridSetContact(Multigrid, Mat C, PetscBool changed);
+PetscErrorCode MultigridSetContact(Multigrid, Mat C);
 PetscErrorCode MultigridRelease(Multigrid);
 PetscErrorCode MultigridRenew(Multigrid);
