@@ -47,8 +47,12 @@ struct _n_LinearSolver {
    flexible kind keeps the preconditioned directions, so that the solution needs no iteration more. Directions are made
    orthogonal twice where once is not enough: else the residual rises after each restart where contact has come in far,
    and the solve of a pipe's first step ends after 1000 iterations. */
-static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, PetscBool axisymmetric, PetscBool symmetric)
+static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, Scene scene, PetscBool symmetric)
 {
+  const PetscBool axisymmetric = scene->geometry == GEOMETRY_AXISYMMETRIC ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool constant     = (PetscBool)(scene->kinematics == KINEMATICS_SMALL && !SceneIsPlastic(scene) &&
+                                         !SceneHasRoutine(scene) && !SceneSupportsChange(scene));
+
   PetscFunctionBeginUser;
   FreeMemoryAtOnce();
   PetscCall(KSPSetType(solver->ksp, KSPFGMRES));
@@ -56,7 +60,7 @@ static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, PetscBool axi
   PetscCall(KSPGMRESSetRestart(solver->ksp, LINEAR_RESTART));
   PetscCall(KSPGMRESSetCGSRefinementType(solver->ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
   PetscCall(KSPSetTolerances(solver->ksp, LINEAR_TOLERANCE, 0, PETSC_DEFAULT, LINEAR_ITERATIONS));
-  PetscCall(MultigridCreate(mesh, axisymmetric, symmetric, solver->ksp, &solver->multigrid));
+  PetscCall(MultigridCreate(mesh, axisymmetric, symmetric, constant, solver->ksp, &solver->multigrid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -81,8 +85,7 @@ static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, PetscBool axi
 @*/
 PetscErrorCode LinearSolverCreate(KSP ksp, Mesh mesh, Scene scene, PetscBool symmetric, LinearSolver *solver)
 {
-  SolverType      type         = scene->solver.type;
-  const PetscBool axisymmetric = scene->geometry == GEOMETRY_AXISYMMETRIC ? PETSC_TRUE : PETSC_FALSE;
+  SolverType type = scene->solver.type;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(solver));
@@ -97,7 +100,7 @@ PetscErrorCode LinearSolverCreate(KSP ksp, Mesh mesh, Scene scene, PetscBool sym
     if ((*solver)->kept && scene->kinematics == KINEMATICS_FINITE) PetscCall(CorotationCreate(mesh, &(*solver)->turn));
     if ((*solver)->turn) PetscCall(ReusedFactorSetCorotation((*solver)->kept, (*solver)->turn));
   } else
-    PetscCall(SetIterative(*solver, mesh, axisymmetric, symmetric));
+    PetscCall(SetIterative(*solver, mesh, scene, symmetric));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,7 @@
 /* Algebraic multigrid for the bodies and a direct solve for the contact interface, one after the other. */
 #include "multigrid.h"
 #include "base/freememory.h"
+#include "base/hash.h"
 #include "linear/directsolver.h"
 #include "coarsecontact.h"
 #include "gaussseidel.h"
@@ -41,7 +42,7 @@
 
 struct _n_Multigrid {
   Mesh       mesh;
-  PetscBool  axisymmetric, symmetric;
+  PetscBool  axisymmetric, symmetric, constant;
   PetscInt   n_free, n_all;   /* rows of this rank: free dofs, all dofs of nodes that have a free one */
   PetscInt   first;           /* number of this rank's first dof of n_all among those of all ranks */
   PetscInt  *row;             /* of each free dof of this rank: its row among all dofs, counted from first */
@@ -49,7 +50,8 @@ struct _n_Multigrid {
   Mat        nodes;           /* the operator with all dofs of a node */
   Mat        swept;           /* stands for the smoother's copy of it; NULL: options have replaced the smoother */
   PetscBool  renew;           /* nodes must get the operator's values */
-  PetscBool  released;        /* nodes has no entries: the smoother's copy is the only one */
+  PetscInt   made;            /* how often the bodies' coarse matrices were made */
+  uint64_t   pattern;         /* of nodes, as a hash, from the second time on that they were made */
   PetscInt   solves, applied; /* operators since multigrid was made; iterations for the last of them */
   PetscReal  usual;           /* effort of the first solve that was long enough to measure it; 0: none yet */
   KSP        outer;           /* whose preconditioner this is */
@@ -400,7 +402,7 @@ static PetscErrorCode AddContact(Multigrid m, PetscReal softness)
   PetscCall(ISRestoreIndices(m->interface, &from));
   PetscCall(ISCreateGeneral(m->mesh->comm, n, to, PETSC_OWN_POINTER, &rows));
   PetscCall(MatCreateSubMatrix(m->contact, m->interface, m->interface, MAT_INITIAL_MATRIX, &contact));
-  PetscCall(CoarseContactAdd(m->bodies, contact, rows, softness, m->mesh->dim));
+  PetscCall(CoarseContactAdd(m->bodies, contact, rows, softness, m->mesh->dim, (PetscBool)(m->made > 1)));
   PetscCall(MatDestroy(&contact));
   PetscCall(ISDestroy(&rows));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -419,9 +421,49 @@ static PetscErrorCode AddToFinest(Multigrid m, PetscReal softness, WideMatrix lo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds whether the bodies' operator has another pattern than that of the last call. An entry may come or go in which
+   the bodies' stiffness is 0, and to nodes of other ranks entries are there where contact alone is. */
+static PetscErrorCode PatternChanges(Multigrid m, PetscBool *changes)
+{
+  uint64_t hash = HASH_START;
+  int      same;
+
+  PetscFunctionBeginUser;
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    MatrixRows rows;
+
+    PetscCall(MatrixRowsGet(m->nodes, b, &rows));
+    if (!rows.mat) continue;
+    for (PetscInt i = 0; i < rows.n; i++) hash = HashFinish(hash ^ (uint64_t)rows.ptr[i + 1]);
+    for (PetscInt k = 0; k < rows.ptr[rows.n]; k++) hash = HashFinish(hash ^ (uint64_t)MatrixRowsColumn(&rows, 0, k));
+    PetscCall(MatrixRowsRestore(&rows));
+  }
+  same       = hash == m->pattern;
+  m->pattern = hash;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_LAND, m->mesh->comm));
+  *changes = same ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes the coarse matrices of the bodies. The first ones are made without anything that would serve the next ones:
+   most of the largest runs need no others, and it is a part of all memory. */
+static PetscErrorCode MakeCoarse(Multigrid m)
+{
+  PetscBool changes = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  if (m->made) PetscCall(PatternChanges(m, &changes));
+  if (m->made && changes) PetscCall(ForgetProducts(m));
+  PetscCall(PCSetOperators(m->bodies, m->nodes, m->nodes));
+  PetscCall(PCSetUp(m->bodies));
+  if (!m->made) PetscCall(ForgetProducts(m));
+  m->made++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Makes multigrid for the operator. Its coarse spaces stay: they are those of the bodies, whose pattern does not change
-   where contact's does. */
-static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
+   where contact's does. Of bodies whose stiffness stays the coarse matrices stay, too, unless multigrid has aged. */
+static PetscErrorCode SetUpBodies(Multigrid m, Mat A, PetscBool aged)
 {
   const PetscBool fresh    = m->bodies ? PETSC_FALSE : PETSC_TRUE;
   PetscReal       softness = 1;
@@ -430,13 +472,13 @@ static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
   PetscFunctionBeginUser;
   if (fresh)
     PetscCall(CreateBodies(m));
-  else
+  else {
     PetscCall(HoldBodies(m, PETSC_FALSE));
+    PetscCall(CoarseContactRemove(m->bodies));
+  }
   FreeMemoryReturn();
   PetscCall(BorrowNodes(m, A, &softness, &loan));
-  PetscCall(PCSetOperators(m->bodies, m->nodes, m->nodes));
-  PetscCall(PCSetUp(m->bodies));
-  PetscCall(ForgetProducts(m));
+  if (!m->constant || m->made < 2 || aged) PetscCall(MakeCoarse(m));
   if (m->interface) {
     PetscCall(AddContact(m, softness));
     PetscCall(AddToFinest(m, softness, loan));
@@ -750,7 +792,7 @@ static PetscErrorCode MultigridSetUp(PC pc)
   PetscCall(PCShellGetContext(pc, &m));
   PetscCall(PCGetOperators(pc, NULL, &A));
   PetscCall(IsAged(m, &aged));
-  if (m->renew || aged) PetscCall(SetUpBodies(m, A));
+  if (m->renew || aged) PetscCall(SetUpBodies(m, A, aged));
   PetscCall(SetUpInterface(m, A));
   m->applied = 0;
   m->solves++;
@@ -783,6 +825,7 @@ static PetscErrorCode MultigridApply(PC pc, Vec right, Vec left)
 + mesh         - borrowed, its constraints set
 . axisymmetric - the only rigid-body mode is the one along the axis
 . symmetric    - all operators are symmetric
+. constant     - the bodies' stiffness stays the same, but for little
 - ksp          - of matrices over the mesh's free dofs; it keeps its residuals for the preconditioner
 
   Output Parameter:
@@ -792,7 +835,8 @@ static PetscErrorCode MultigridApply(PC pc, Vec right, Vec left)
 + -bodies_pc_..., -bodies_mg_...         - multigrid for the bodies
 - -interface_ksp_..., -interface_pc_... - direct solve for the interface
 @*/
-PetscErrorCode MultigridCreate(Mesh mesh, PetscBool axisymmetric, PetscBool symmetric, KSP ksp, Multigrid *out)
+PetscErrorCode MultigridCreate(Mesh mesh, PetscBool axisymmetric, PetscBool symmetric, PetscBool constant, KSP ksp,
+                               Multigrid *out)
 {
   Multigrid m;
   PC        pc;
@@ -803,6 +847,7 @@ PetscErrorCode MultigridCreate(Mesh mesh, PetscBool axisymmetric, PetscBool symm
   m->mesh         = mesh;
   m->axisymmetric = axisymmetric;
   m->symmetric    = symmetric;
+  m->constant     = constant;
   m->renew        = PETSC_TRUE;
   PetscCall(MultigridNumberNodes(m));
   PetscCall(KSPSetResidualHistory(ksp, NULL, PETSC_DECIDE, PETSC_TRUE));

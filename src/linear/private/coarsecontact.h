@@ -7,4 +7,5 @@
 #pragma once
 #include "base/petsccompat.h"
 
-PetscErrorCode CoarseContactAdd(PC, Mat contact, IS rows, PetscReal softness, int dim);
+PetscErrorCode CoarseContactAdd(PC, Mat contact, IS rows, PetscReal softness, int dim, PetscBool keep);
+PetscErrorCode CoarseContactRemove(PC);

@@ -17,7 +17,7 @@
 
 typedef struct _n_Multigrid *Multigrid;
 
-PetscErrorCode MultigridCreate(Mesh, PetscBool axisymmetric, PetscBool symmetric, KSP, Multigrid *);
+PetscErrorCode MultigridCreate(Mesh, PetscBool axisymmetric, PetscBool symmetric, PetscBool constant, KSP, Multigrid *);
 PetscErrorCode MultigridDestroy(Multigrid *);
 PetscErrorCode MultigridSetContact(Multigrid, Mat C);
 PetscErrorCode MultigridRelease(Multigrid);
