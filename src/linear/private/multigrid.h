@@ -8,7 +8,8 @@
    Multigrid needs whole nodes. It works on a copy of the matrix in which constrained dofs have rows of their own, and
    gets the rigid-body modes of each node. Its coarse spaces are those of the bodies without contact, so that each
    aggregate belongs to one body. Contact is added to the coarse matrices afterwards, softer than it is
-   (coarsecontact.h).
+   (coarsecontact.h). The coarse spaces stay for the whole run, and of bodies whose stiffness stays the coarse matrices,
+   too.
 
    Create it once for a KSP. Call MultigridSetContact() before each new operator, and MultigridRenew() where nothing may
    depend on earlier solves. */
