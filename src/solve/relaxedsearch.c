@@ -293,9 +293,9 @@ static void LengthenBound(RelaxedStep *step, PetscReal turn)
 
 /* Takes the step as far as cells may turn in it and lists reach, although the energy rises. *taken: it could be. The
    pressures of stiff volumes change along the step as the step's linear problem says, however far it goes, and whether
-   it leads to a minimum or away from a saddle. Where the energy falls over the shortened step, the next one may still
-   be judged from its start; not so where there is no energy, and the work on the way tells less. It has paid then: a
-   bound that an earlier step left grows again, or a solve would crawl along a soft motion. */
+   it leads to a minimum or away from a saddle. Where the energy falls over the shortened step, the next one is still
+   judged from its start. It may end where a tangent leads nowhere: a thin rubber disc that a pressure bulges, whose work
+   falls over each part of a step that cells may turn, would crawl. */
 static PetscErrorCode Relax(const Search *s, PetscReal rise, PetscReal slope, PetscBool *taken)
 {
   ModelWork *work = s->model->work;
@@ -310,10 +310,7 @@ static PetscErrorCode Relax(const Search *s, PetscReal rise, PetscReal slope, Pe
     if (rise < PETSC_MAX_REAL) PetscCall(Try(s, lambda, taken));
   }
   if (!*taken) PetscFunctionReturn(PETSC_SUCCESS);
-  if (ProblemConservative(s->model->problem) || rise > -SEARCH_FALL * lambda * slope)
-    PetscCall(Keep(s, rise, slope, lambda * turn));
-  else
-    LengthenBound(&work->relaxed, lambda * turn);
+  PetscCall(Keep(s, rise, slope, lambda * turn));
   work->relaxed.linear = PETSC_TRUE;
   work->uphill         = PETSC_FALSE;
   PetscCall(Take(s, lambda));
