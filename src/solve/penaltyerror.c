@@ -42,6 +42,9 @@
 /* Friction below this part of the pressure's forces is measured by this part of them: its own error hardly counts. */
 #define PENALTY_LIGHT_FRICTION 0.02
 
+/* Raises are judged by source, those for the depth of nodes by one source more. */
+enum { BY_DEPTH = PENALTY_SOURCES, PENALTY_JUDGED };
+
 /* No estimate */
 static const PenaltyError unknown =
   {.force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN, .slip_force = NAN, .slip_displacement = NAN};
@@ -51,9 +54,9 @@ PetscErrorCode ModelCreatePenaltyError(Model model)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(ContactPairs(model->contact), &model->work->penalty_error));
-  PetscCall(PetscCalloc3(PENALTY_SOURCES * ContactPairs(model->contact), &model->work->stiffened_at,
-                         PENALTY_SOURCES * ContactPairs(model->contact), &model->work->stiffened_by,
-                         PENALTY_SOURCES * ContactPairs(model->contact), &model->work->accepted_stays));
+  PetscCall(PetscCalloc3(PENALTY_JUDGED * ContactPairs(model->contact), &model->work->stiffened_at,
+                         PENALTY_JUDGED * ContactPairs(model->contact), &model->work->stiffened_by,
+                         PENALTY_JUDGED * ContactPairs(model->contact), &model->work->accepted_stays));
   ModelForgetPenaltyError(model, PETSC_TRUE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -66,7 +69,7 @@ void ModelForgetPenaltyError(Model model, PetscBool anew)
   const int n = ContactPairs(model->contact);
 
   model->work->weighs_pressure = anew;
-  for (int k = 0; k < PENALTY_SOURCES * n; k++) {
+  for (int k = 0; k < PENALTY_JUDGED * n; k++) {
     model->work->stiffened_at[k] = 0;
     model->work->stiffened_by[k] = anew ? 0 : model->work->accepted_stays[k];
   }
@@ -76,7 +79,7 @@ void ModelForgetPenaltyError(Model model, PetscBool anew)
 /* Accepts which penalties stay as they are. */
 void ModelAcceptPenaltyError(Model model)
 {
-  for (int k = 0; k < PENALTY_SOURCES * ContactPairs(model->contact); k++)
+  for (int k = 0; k < PENALTY_JUDGED * ContactPairs(model->contact); k++)
     model->work->accepted_stays[k] = PetscMin(0, model->work->stiffened_by[k]);
 }
 
@@ -89,8 +92,8 @@ PetscErrorCode ModelArchivePenaltyError(Model model, Archive archive)
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(
     ArchiveReals(archive, "model/penalty_error", PENALTY_ERROR_VALUES * n, &model->work->penalty_error[0].force));
-  PetscCall(ArchiveReals(archive, "model/penalty_stiffened", PENALTY_SOURCES * n, model->work->stiffened_by));
-  PetscCall(ArchiveReals(archive, "model/penalty_stays", PENALTY_SOURCES * n, model->work->accepted_stays));
+  PetscCall(ArchiveReals(archive, "model/penalty_stiffened", PENALTY_JUDGED * n, model->work->stiffened_by));
+  PetscCall(ArchiveReals(archive, "model/penalty_stays", PENALTY_JUDGED * n, model->work->accepted_stays));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -371,12 +374,12 @@ static PetscReal WorstError(Model model, int pair, PenaltySource source)
   return PetscMax(PetscMax(error->displacement, error->force), press);
 }
 
-/* Notes whether the last raise of a pair's penalties in this solve has brought too little of what was forecast. */
-static void JudgeStiffening(Model model, PenaltySource source, int pair)
+/* Notes whether the last raise of a pair's penalties in this solve has brought too little of what was forecast. worst:
+   what it was to lower. */
+static void JudgeStiffening(Model model, int source, int pair, PetscReal worst)
 {
-  const int       k     = source * ContactPairs(model->contact) + pair;
-  const PetscReal worst = WorstError(model, pair, source);
-  PetscReal      *at = &model->work->stiffened_at[k], *by = &model->work->stiffened_by[k];
+  const int  k  = source * ContactPairs(model->contact) + pair;
+  PetscReal *at = &model->work->stiffened_at[k], *by = &model->work->stiffened_by[k];
 
   if (*by > 0 && worst > *at * PetscPowReal(*by, -PENALTY_GAIN)) *by = -*by;
 }
@@ -396,7 +399,8 @@ PetscErrorCode ModelEstimatePenalty(Model model)
   for (int p = 0; p < ContactPairs(model->contact); p++) model->work->penalty_error[p] = unknown;
   for (int source = 0; source < sources && known; source++) {
     PetscCall(ModelFillErrors(model, (PenaltySource)source, slope[source]));
-    for (int p = 0; p < ContactPairs(model->contact); p++) JudgeStiffening(model, (PenaltySource)source, p);
+    for (int p = 0; p < ContactPairs(model->contact); p++)
+      JudgeStiffening(model, source, p, WorstError(model, p, (PenaltySource)source));
   }
   for (int source = 0; source < sources; source++) PetscCall(VecDestroy(&slope[source]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -530,7 +534,9 @@ PetscErrorCode ModelPredictStiffer(Model model, const PetscReal factor[], PetscB
 }
 
 /* Chooses how much stiffer penalties become that the run may choose and that let nodes stand deep in faces. factor[] is
-   that of ModelStiffen(). *stiffened: some are. No estimate says what this is to bring, so that none judges it. */
+   that of ModelStiffen(). *stiffened: some are. A depth that a raise has hardly lowered is that of nodes of a tool
+   between the slave's on a coarse mesh. Such a pair is raised no more: each step would raise it anew, a hundred million
+   times in all for a plug that is drawn through a hole. */
 PetscErrorCode ModelStiffenDeep(Model model, PetscReal factor[], PetscBool *stiffened)
 {
   const int       pairs   = ContactPairs(model->contact);
@@ -541,10 +547,16 @@ PetscErrorCode ModelStiffenDeep(Model model, PetscReal factor[], PetscBool *stif
   *stiffened = PETSC_FALSE;
   for (int k = 0; k < PENALTY_SOURCES * pairs; k++) factor[k] = 1;
   for (int p = 0; p < pairs; p++) {
+    const int k = BY_DEPTH * pairs + p;
+
     if (!MayStiffen(ContactPairScene(model->contact, p), BY_PENETRATION)) continue;
     PetscCall(ContactPairDepth(model->contact, p, &over_h));
-    if (!(over_h > PENALTY_DEEP * allowed)) continue;
+    JudgeStiffening(model, BY_DEPTH, p, over_h);
+    if (!(over_h > PENALTY_DEEP * allowed) || model->work->stiffened_by[k] < 0) continue;
     factor[p] = PetscMin(PENALTY_MOST_STIFFER, over_h / (PENALTY_SHALLOW * allowed));
+
+    model->work->stiffened_at[k] = over_h;
+    model->work->stiffened_by[k] = factor[p];
     PetscCall(PetscInfo(model->snes, "contact '%s': %g of a face deep, penalties %g times as stiff\n",
                         ContactPairName(model->contact, p), (double)over_h, (double)factor[p]));
     *stiffened = PETSC_TRUE;
