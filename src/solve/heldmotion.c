@@ -10,6 +10,11 @@
    Newton's method may find no way from there. Once a load step has failed that moved motions on, they stay unless they
    take as much as dry rubber has at least. */
 #define HELD_FRICTION_FIRM 0.1
+/* The same holds for the rest of a load step once moves do not pay: Newton's method has taken more than so many steps
+   from one to the next solution, or so many moves in a row have not brought the coefficient below this part of what it
+   was. The next lumps hold as much then, and moves would go on among them. */
+enum { HELD_DEAR = 8, HELD_IDLE = 6 };
+#define HELD_PAYS 0.5
 /* What takes more than that moves on, at first so far that it turns cells by this part of MODEL_FARTHEST. The next move
    may be as much longer if the force keeps its sign, and is as much shorter if it has changed. */
 #define HELD_FIRST 0.25
@@ -58,6 +63,7 @@ static PetscErrorCode MoveOn(Model model, Vec y)
   PetscCall(VecDestroy(&z));
   held->moves  = PETSC_FALSE;
   held->moving = PETSC_TRUE;
+  held->steps  = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -82,6 +88,7 @@ PetscErrorCode ModelHoldInStep(Model model, Vec y)
   held->ready  = PETSC_FALSE;
   held->moving = PETSC_FALSE;
   if (!held->wanted) PetscFunctionReturn(PETSC_SUCCESS);
+  held->steps++;
   PetscCall(ModelHeldTakeOut(model, y));
   if (held->moves) PetscCall(MoveOn(model, y));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -277,6 +284,18 @@ void ModelReleaseHeld(Model model)
   held->released                       = PETSC_TRUE;
 }
 
+/* Notes whether moves in space pay. */
+static void WeighMoves(Model model, HeldMotion *held)
+{
+  if (model->mesh->dim < 3 || held->friction <= HELD_FRICTION) return;
+  if (!held->rested && held->steps > HELD_DEAR) held->stays = PETSC_TRUE;
+  if (held->rested || held->friction <= HELD_PAYS * held->least) {
+    held->least = held->friction;
+    held->idle  = 0;
+  } else if (++held->idle >= HELD_IDLE || held->times >= HELD_MOVES)
+    held->stays = PETSC_TRUE;
+}
+
 /* Bounds the next move. It may be longer than the last one if the force has not turned since, and is shorter if it
    has. Where the force was small enough in between, its direction says nothing of the last move. */
 static PetscErrorCode BoundMove(HeldMotion *held)
@@ -323,7 +342,8 @@ PetscErrorCode ModelJudgeHeld(Model model, PetscBool *holds)
   *holds = PETSC_TRUE;
   if (model->work->soft) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelHeldFriction(model, &held->friction));
-  *holds = (PetscBool)(held->friction <= (held->firm ? HELD_FRICTION_FIRM : HELD_FRICTION));
+  WeighMoves(model, held);
+  *holds = (PetscBool)(held->friction <= (held->firm || held->stays ? HELD_FRICTION_FIRM : HELD_FRICTION));
   PetscCall(PetscInfo(model->snes, "%d soft motions are held as by a coefficient of friction of %g%s\n", held->known,
                       (double)held->friction, *holds ? "" : ", too much"));
   if (!*holds) {

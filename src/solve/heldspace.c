@@ -48,6 +48,8 @@ void ModelHeldBegin(Model model)
   held->ready    = PETSC_FALSE;
   held->released = PETSC_FALSE;
   held->moves    = PETSC_FALSE;
+  held->stays    = PETSC_FALSE;
+  held->idle     = 0;
   held->times    = 0;
   held->rested   = PETSC_TRUE;
 }

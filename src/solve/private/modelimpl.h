@@ -80,6 +80,10 @@ typedef struct {
   int       known;                 /* how many b are motions of this load step */
   PetscBool released;              /* in this load step they take too much force */
   PetscBool firm;                  /* a load step has failed that moved them on: they are held by more friction */
+  PetscBool stays;                 /* in this load step moves did not pay: they are held as firmly */
+  PetscReal least;                 /* coefficient of friction that would hold them, after the last move that paid */
+  PetscInt  idle;                  /* moves since then */
+  PetscInt  steps;                 /* of Newton's method since the last move */
   PetscBool anew;                  /* they are found anew with the next tangent */
   PetscBool futile;                /* in this solve a step went too far, however many motions were held */
   PetscBool ready;                 /* the n motions are those of the step at hand */
