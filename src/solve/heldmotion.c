@@ -12,7 +12,8 @@
 #define HELD_FRICTION_FIRM 0.1
 /* The same holds for the rest of a load step once moves do not pay: Newton's method has taken more than so many steps
    from one to the next solution, or so many moves in a row have not brought the coefficient below this part of what it
-   was. The next lumps hold as much then, and moves would go on among them. */
+   was. The next lumps hold as much then, and moves would go on among them. In later load steps one such move is enough.
+ */
 enum { HELD_DEAR = 8, HELD_IDLE = 6 };
 #define HELD_PAYS 0.5
 /* What takes more than that moves on, at first so far that it turns cells by this part of MODEL_FARTHEST. The next move
@@ -287,13 +288,14 @@ void ModelReleaseHeld(Model model)
 /* Notes whether moves in space pay. */
 static void WeighMoves(Model model, HeldMotion *held)
 {
+  const PetscBool pays = (PetscBool)(held->rested || held->friction <= HELD_PAYS * held->least);
+
   if (model->mesh->dim < 3 || held->friction <= HELD_FRICTION) return;
-  if (!held->rested && held->steps > HELD_DEAR) held->stays = PETSC_TRUE;
-  if (held->rested || held->friction <= HELD_PAYS * held->least) {
-    held->least = held->friction;
-    held->idle  = 0;
-  } else if (++held->idle >= HELD_IDLE || held->times >= HELD_MOVES)
-    held->stays = PETSC_TRUE;
+  held->idle = pays ? 0 : held->idle + 1;
+  if (pays) held->least = held->friction;
+  if ((!held->rested && held->steps > HELD_DEAR) || held->idle >= (held->dull ? 1 : HELD_IDLE) ||
+      held->times >= HELD_MOVES)
+    held->stays = held->dull = PETSC_TRUE;
 }
 
 /* Bounds the next move. It may be longer than the last one if the force has not turned since, and is shorter if it

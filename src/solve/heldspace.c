@@ -108,7 +108,7 @@ static PetscErrorCode MakeRoom(HeldMotion *held, int i, Vec like)
 PetscErrorCode ModelHeldArchive(Model model, Archive archive, const Hdf5Table *nodes)
 {
   HeldMotion *held     = &model->work->hold;
-  PetscInt    accepted = held->accepted, firm = held->firm;
+  PetscInt    accepted = held->accepted, firm = held->firm, dull = held->dull;
   PetscReal  *b;
 
   PetscFunctionBeginUser;
@@ -117,7 +117,9 @@ PetscErrorCode ModelHeldArchive(Model model, Archive archive, const Hdf5Table *n
              "%" PetscInt_FMT " held motions", accepted);
   held->accepted = (int)accepted;
   PetscCall(ArchiveIntegers(archive, "model/held_firmly", 1, &firm));
+  PetscCall(ArchiveIntegers(archive, "model/held_moves_futile", 1, &dull));
   held->firm = (PetscBool)firm;
+  held->dull = (PetscBool)dull;
   PetscCall(PetscCalloc1(model->mesh->n_nodes * model->mesh->dim, &b));
   for (int i = 0; Remain(model) && i < held->accepted; i++) {
     char name[32];

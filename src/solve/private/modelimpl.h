@@ -81,6 +81,7 @@ typedef struct {
   PetscBool released;              /* in this load step they take too much force */
   PetscBool firm;                  /* a load step has failed that moved them on: they are held by more friction */
   PetscBool stays;                 /* in this load step moves did not pay: they are held as firmly */
+  PetscBool dull;                  /* in this load step or one before they did not */
   PetscReal least;                 /* coefficient of friction that would hold them, after the last move that paid */
   PetscInt  idle;                  /* moves since then */
   PetscInt  steps;                 /* of Newton's method since the last move */
