@@ -108,6 +108,13 @@ JOBS = [
     Job("dovetail_ring", "square seal in a dovetail groove", [
         Answer("force", 13.400, 0.14, "limit"),
     ], steps=12, pairs=2),
+    Job("band_drawn", "rubber band drawn out by two pins, in space", [
+        Answer("pull", 4.0585, 0.03, "limit"),
+    ], steps=10, levels=(1, 1.33, 1.67)),
+    Job("diaphragm", "diaphragm bulged onto a plate and into its hole", [
+        Answer("held", 730.4, 1, "limit"),
+        Answer("bulge", 6.917, 1, "limit"),
+    ], steps=14, picture=["--mirror", "x"]),
     # Balls
     Job("ball_in_cone", "ball in a cone by force", [
         Answer("peak_pressure", 83.00, 0.1, "limit"),  # Hertz, for a ring of infinite radius: 84.42
