@@ -433,9 +433,9 @@ static PetscBool FitStrays(const Nearest *look, const FitResult *result)
                      PetscAbsReal(result->gap - look->foot.gap) > FIT_STRAYS * look->size);
 }
 
-/* Is the slave point past a free edge of the master: its foot on the facets lies there, and the way to it leads along
-   the facet? */
-static PetscBool FootPast(const Nearest *look)
+/* Is the slave point past an end of the master: its foot on the facets lies on an edge of the nearest one at which the
+   flank ends, and the way to it leads along that facet? */
+static PetscBool FootPast(const Nearest *look, int ends)
 {
   const Foot      *foot   = &look->foot;
   const Candidate *best   = &look->candidates[look->best];
@@ -443,8 +443,7 @@ static PetscBool FootPast(const Nearest *look)
   PetscReal        cosine = 0;
 
   if (foot->beyond > 0) return PETSC_TRUE;
-  if (foot->region == FOOT_INTERIOR || !(edge ? best->facet.free_edges >> foot->feature & 1 : best->facet.free_edges))
-    return PETSC_FALSE;
+  if (foot->region == FOOT_INTERIOR || !(edge ? ends >> foot->feature & 1 : ends)) return PETSC_FALSE;
   for (int d = 0; d < look->lists->dim; d++) cosine += foot->normal[d] * best->normal[d];
   return (PetscBool)(PetscAbsReal(foot->gap) * PetscSqrtReal(PetscMax(0, 1 - cosine * cosine)) >
                      SEARCH_FIT_TIE * look->size);
@@ -471,6 +470,7 @@ static void KeepFrame(const FitSupport *fit, PetscInt q, FitFoot *at)
 + fit   - the prepared fits
 . look  - the slave point's nearest facet and foot
 . q     - the slave point
+. ends  - edges of that facet at which the flank ends, besides its free ones, as bits like free_edges
 - first - start of its list of points
 
   Input/Output Parameter:
@@ -479,10 +479,11 @@ static void KeepFrame(const FitSupport *fit, PetscInt q, FitFoot *at)
   Note:
   Without a fit the rung of the slave point is RUNG_FACET, and its list is left as it is.
 @*/
-PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q, PetscInt first, ListBuffer *buffer)
+PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q, int ends, PetscInt first,
+                               ListBuffer *buffer)
 {
   NeighbourLists lists = fit->lists;
-  FitFoot        at    = {.facet = look->best, .xi = {look->foot.xi[0], look->foot.xi[1]}, .past = FootPast(look)};
+  FitFoot        at    = {.facet = look->best, .xi = {look->foot.xi[0], look->foot.xi[1]}};
   FitProblem     problem;
   FitResult      result;
 
@@ -494,6 +495,7 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
     at.u[d]    = lists->slave_u[q * lists->dim + d];
     at.foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
   }
+  at.past = FootPast(look, ends | look->candidates[look->best].facet.free_edges);
   KeepFrame(fit, q, &at);
   TimingBegin(TIMING_FIT); /* these two readings of the clock cost 0.1 % of a ladder */
   PetscCall(FitSupportClimb(fit, &at, fit->s->first_rung ? fit->s->first_rung[q] : RUNG_PLAIN, &problem, &result,

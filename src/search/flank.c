@@ -466,12 +466,33 @@ static PetscReal Opposing(const Nearest *look, const Candidate *c)
    is; fades up to a whole face. */
 static PetscReal NearEdge(const Nearest *look, const Candidate *c, const Candidate *o)
 {
-  PetscReal cosine = 0, place[3];
+  PetscReal place[3];
   FlankEdge edge;
 
-  for (int d = 0; d < look->lists->dim; d++) cosine += c->normal[d] * o->normal[d];
-  if (cosine >= PetscCosReal(look->sharp) || !SharedEdge(look, c, o, &edge) || !edge.convex) return 0;
+  if (!SharedEdge(look, c, o, &edge) || !edge.convex) return 0;
   return 1 - SmoothStep(2 * FootToEdge(look, &edge, place) / look->size - 1);
+}
+
+/* Is the slave point's foot within half a face of a sharp convex edge between any two of the facets that face it? 1
+   where it is; fades up to a whole face, so that facets farther away need not be looked at. */
+static PetscReal NearRidge(const Nearest *look, int facing, const int *found)
+{
+  const int       dim   = look->lists->dim;
+  const PetscReal sharp = PetscCosReal(look->sharp);
+  PetscReal       foot[3], near = 0;
+
+  for (int d = 0; d < dim; d++) foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
+  for (int i = 0; i < facing; i++) {
+    const Candidate *c = &look->candidates[found[i]];
+
+    if (CandidateBoxDistance(dim, c, foot) > look->size) continue;
+    for (int k = 0; k < i; k++) {
+      const Candidate *o = &look->candidates[found[k]];
+
+      if (Dot(c->normal, o->normal) < sharp) near = PetscMax(near, NearEdge(look, c, o));
+    }
+  }
+  return near;
 }
 
 /* How far a side of an edge stands off a surface by the cosine between their normals, opposed: 0 where it lies on it, 1
@@ -488,15 +509,12 @@ static PetscReal StandsOff(const Nearest *look, PetscReal cosine)
    to the slave, with any force. The edge's own terms hold the slave there. */
 static PetscReal RidgeShare(const Nearest *look, int facing, const int *found)
 {
-  PetscReal off, near = 0;
+  PetscReal off;
 
   if (!look->two_sided) return 1;
   off = StandsOff(look, Opposing(look, &look->candidates[look->best]));
   if (off == 0) return 1;
-  for (int i = 0; i < facing; i++)
-    for (int k = 0; k < i; k++)
-      near = PetscMax(near, NearEdge(look, &look->candidates[found[i]], &look->candidates[found[k]]));
-  return 1 - off * near;
+  return 1 - off * NearRidge(look, facing, found);
 }
 
 /* Part of a point on a sharp edge of a tool that presses: 1 where no side of the edge lies on the master there. */

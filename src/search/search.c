@@ -216,7 +216,7 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   for (int i = 0; i < facing; i++)
     if (found[i] == look->best) lists->nearest[q] = i;
   if (fit && !FlankNearRidge(look, fit->neighbourhoods, facing, found))
-    PetscCall(FitSupportSlave(fit, look, q, first, buffer));
+    PetscCall(FitSupportSlave(fit, look, q, lists->nearest[q] < 0 ? 0 : ends[lists->nearest[q]], first, buffer));
   PetscCall(ListAddFacets(look, facing, found, ends, field->records, first, buffer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -12,6 +12,8 @@
 #define SEARCH_FARTHEST 4
 /* A body that has moved by this part of a pass's move in it was not in touch with anything. */
 #define SEARCH_FREE 0.9
+/* A body that a pass moves this many times as far as it may is pushed out by gaps that contradict each other. */
+#define SEARCH_BEYOND 2
 /* Bodies rest where a pass moves them by less than this part of a face size, or by SEARCH_SLOW of what it allows, for
    SEARCH_RESTS passes. The loads then press them onto their contacts within this angle. */
 #define SEARCH_REST  1e-7
@@ -155,22 +157,42 @@ static PetscErrorCode Bounds(FreeBodies b, const PetscReal *u, PetscReal t, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The motion nearest to the wish within the bounds, into wish. The first rank's result serves all. */
-static PetscErrorCode Bound(FreeBodies b, Pass *pass)
+/* The motion nearest to `wanted` within the bounds, into wish: both in the coordinates in which a product is the sum of
+   the products of the numbers. The first rank's result serves all. */
+static PetscErrorCode Project(FreeBodies b, const double wanted[], Pass *pass)
 {
-  const int n = pass->n;
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(pass->wish, wanted, pass->n));
+  HalfspacesProject(pass->n, (int)pass->n_terms, pass->normal, pass->bound, SEARCH_REST * b->face, pass->wish);
+  RigidBackward(pass->n, pass->factor, pass->wish);
+  PetscCallMPI(MPI_Bcast(pass->wish, pass->n, MPI_DOUBLE, 0, b->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The motion nearest to the wish within the bounds, into wish, and its longest velocity on each piece. Where bodies fit
+   so closely that gaps around them contradict each other by what faces leave of their shape, a motion that opens all
+   overlaps is longer than the way for which the terms were chosen, or it is none at all. What presses stays as deep as
+   it is then, so that no motion at all is within the bounds. */
+static PetscErrorCode Bound(FreeBodies b, const PetscReal *u, PetscReal move, Pass *pass, PetscReal *longest)
+{
+  const int n   = pass->n;
+  PetscBool far = PETSC_FALSE;
+  double   *wanted;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &wanted));
   for (PetscInt i = 0; i < pass->n_terms; i++) RigidForward(n, pass->factor, &pass->normal[i * n]);
-  for (int i = 0; i < n; i++) { /* L^T wish; what is overwritten is not needed any more */
-    double sum = 0;
-
-    for (int k = i; k < n; k++) sum += pass->factor[k * n + i] * pass->wish[k];
-    pass->wish[i] = sum;
+  for (int i = 0; i < n; i++)
+    for (int k = i; k < n; k++) wanted[i] += pass->factor[k * n + i] * pass->wish[k];
+  PetscCall(Project(b, wanted, pass));
+  PetscCall(FreeBodiesLongest(b, u, pass->wish, longest));
+  for (PetscInt p = 0; p < b->n_pieces; p++) far = (PetscBool)(far || longest[p] > SEARCH_BEYOND * move);
+  if (far) {
+    for (PetscInt i = 0; i < pass->n_terms; i++) pass->bound[i] = PetscMin(pass->bound[i], 0);
+    PetscCall(Project(b, wanted, pass));
+    PetscCall(FreeBodiesLongest(b, u, pass->wish, longest));
   }
-  HalfspacesProject(n, (int)pass->n_terms, pass->normal, pass->bound, SEARCH_REST * b->face, pass->wish);
-  RigidBackward(n, pass->factor, pass->wish);
-  PetscCallMPI(MPI_Bcast(pass->wish, n, MPI_DOUBLE, 0, b->mesh->comm));
+  PetscCall(PetscFree(wanted));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -281,9 +303,8 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
     PetscCall(ContactGather(b->contact, u, t, t, move));
     PetscCall(Bounds(b, u, t, move, (PetscBool)!it, &pass, presses ? NULL : &overlap));
     for (int k = 0; k < b->n; k++) wished += pass.force[k] * pass.wish[k];
-    PetscCall(Bound(b, &pass));
+    PetscCall(Bound(b, u, move, &pass, longest));
     for (int k = 0; k < b->n; k++) work += pass.force[k] * pass.wish[k];
-    PetscCall(FreeBodiesLongest(b, u, pass.wish, longest));
     for (PetscInt p = 0; p < b->n_pieces; p++) {
       most = PetscMax(most, longest[p]);
       travel[p] += longest[p];

@@ -201,7 +201,7 @@ PetscErrorCode SearchPartnersFree(ContactSearch);
 PetscReal      SearchFitReach(ContactSearch);
 PetscErrorCode FitSupportCreate(ContactSearch, NeighbourLists, const SearchField *, FitSupport *);
 PetscErrorCode FitSupportDestroy(FitSupport *);
-PetscErrorCode FitSupportSlave(FitSupport *, const Nearest *, PetscInt q, PetscInt first, ListBuffer *);
+PetscErrorCode FitSupportSlave(FitSupport *, const Nearest *, PetscInt q, int ends, PetscInt first, ListBuffer *);
 PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, int first, FitProblem *, FitResult *, int *rung);
 /* searchfield.c */
 PetscReal        SearchListsDistance(ContactSearch, PetscReal motion);
