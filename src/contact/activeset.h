@@ -31,6 +31,7 @@ typedef struct {
   PetscReal         stiffness; /* in the tangent; 0: the term takes no part in it */
   PetscReal         penalty;   /* stiffness when pressed */
   PetscReal         area;      /* on which its pressure acts */
+  PetscReal         share;     /* of the area that the slave has there; the rest is past an end of the master */
   ActiveSetFriction friction;
 } ActiveSetTerm;
 

@@ -73,6 +73,15 @@ static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Part of the area around a term that is not past an end of the master. */
+static PetscReal TermShare(const ContactPair *pair, PetscInt c, PetscReal area)
+{
+  PetscReal whole = 0;
+
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) whole += pair->term_weight[k];
+  return whole > 0 ? area / whole : 0;
+}
+
 /* Adds a term of a pair, in its state at the last projection and without its variation, if the step may reach its
    gap. With friction all at which it acts are added, because each may begin or cease to slip. */
 static PetscErrorCode AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
@@ -92,7 +101,8 @@ static PetscErrorCode AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
                                             .pressure  = value.pressure,
                                             .stiffness = pair->stiffness[c],
                                             .penalty   = state.penalty,
-                                            .area      = step->area[step->mine]};
+                                            .area      = step->area[step->mine],
+                                            .share     = TermShare(pair, c, step->area[step->mine])};
   if (pair->friction)
     PetscCall(FrictionStepTerm(pair, c, t, &step->terms[step->mine].friction, step->tangent[step->mine]));
   step->pair[step->mine]   = p;

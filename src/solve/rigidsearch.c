@@ -26,6 +26,10 @@
 #define SEARCH_WORK 0.1
 /* Surfaces that overlap at the start by more than this part of a face size do so on purpose, and are left so. */
 #define SEARCH_OVERLAP 0.1
+/* What overlaps a master by more than SEARCH_STRAY of a face, with no more than this part of its area, is past an end
+   of that master, where gaps are wrong by what the last faces leave of its shape. It is in nothing's way. */
+#define SEARCH_PAST  0.25
+#define SEARCH_STRAY 1e-3
 /* Bodies turn this many times less readily than they move along, until they rest. Where they touch at one point that is
    not quite below their loads, which depends on the mesh, they would fall over it. */
 #define SEARCH_HEAVY 100
@@ -112,6 +116,12 @@ static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is a term in the way of a body? */
+static PetscBool InTheWay(FreeBodies b, const ActiveSetTerm *term)
+{
+  return (PetscBool) !(term->share <= SEARCH_PAST && term->opening < -SEARCH_STRAY * b->face);
+}
+
 /* The contact terms that the bodies at (u, t) may reach by a move, as bounds to it. In: *overlap is the deepest overlap
    that is left as it is; first: it is measured here. NULL: terms that press stay as deep as they are. */
 static PetscErrorCode Bounds(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal move, PetscBool first, Pass *pass,
@@ -144,6 +154,7 @@ static PetscErrorCode Bounds(FreeBodies b, const PetscReal *u, PetscReal t, Pets
     PetscReal moves = 0;
 
     for (int k = 0; k < n; k++) moves = PetscMax(moves, PetscAbsReal(pass->normal[i * n + k]));
+    if (!InTheWay(b, &terms[i])) moves = 0;
     if (first && overlap && moves > 0 && terms[i].opening < -SEARCH_OVERLAP * b->face)
       *overlap = PetscMax(*overlap, -terms[i].opening);
     pass->bound[i] = moves > 0 ? -terms[i].opening : -PETSC_MAX_REAL;
