@@ -215,7 +215,8 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   lists->kappa[q] = ListCurvature(look, facing, found);
   for (int i = 0; i < facing; i++)
     if (found[i] == look->best) lists->nearest[q] = i;
-  if (fit && !FlankNearRidge(look, fit->neighbourhoods, facing, found))
+  /* What takes no part needs no fit. Past an end of the flank none would hold, after all rungs have been tried. */
+  if (fit && lists->share[q] > 0 && !FlankNearRidge(look, fit->neighbourhoods, facing, found))
     PetscCall(FitSupportSlave(fit, look, q, lists->nearest[q] < 0 ? 0 : ends[lists->nearest[q]], first, buffer));
   PetscCall(ListAddFacets(look, facing, found, ends, field->records, first, buffer));
   PetscFunctionReturn(PETSC_SUCCESS);

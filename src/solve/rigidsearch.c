@@ -290,6 +290,7 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
 {
   PetscReal move = SEARCH_FIRST * b->face, overlap = 0, way = 0, *longest, *travel;
   PetscBool any = PETSC_FALSE, presses = PETSC_FALSE, heavy = PETSC_TRUE;
+  PetscBool rubs  = ContactHasFriction(b->contact);
   PetscInt  rests = 0, touched = 0;
   Pass      pass;
 
@@ -308,10 +309,10 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
     PetscReal most = 0, work = 0, wished = 0;
 
     PetscCall(FreeBodiesCentre(b, u));
-    if (ContactHasFriction(b->contact)) PetscCall(ContactGather(b->contact, u, t, t, move));
+    if (rubs) PetscCall(ContactGather(b->contact, u, t, t, move));
     PetscCall(Wish(b, u, t, t_loads, move, heavy, &pass, &any));
     if (!any) break;
-    PetscCall(ContactGather(b->contact, u, t, t, move));
+    if (!rubs) PetscCall(ContactGather(b->contact, u, t, t, move));
     PetscCall(Bounds(b, u, t, move, (PetscBool)!it, &pass, presses ? NULL : &overlap));
     for (int k = 0; k < b->n; k++) wished += pass.force[k] * pass.wish[k];
     PetscCall(Bound(b, u, move, &pass, longest));
