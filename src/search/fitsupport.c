@@ -470,7 +470,7 @@ static void KeepFrame(const FitSupport *fit, PetscInt q, FitFoot *at)
 + fit   - the prepared fits
 . look  - the slave point's nearest facet and foot
 . q     - the slave point
-. ends  - edges of that facet at which the flank ends, besides its free ones, as bits like free_edges
+. ends  - convex edges of that facet at which the flank ends, besides its free ones, as bits like free_edges
 - first - start of its list of points
 
   Input/Output Parameter:

@@ -558,7 +558,8 @@ static PetscBool MayEnd(const Nearest *look, const Facet *facet)
 - found  - their numbers, as FlankSort() left them
 
   Output Parameter:
-. ends - ends[facing]: for each facet that faces the point the edges at which the flank ends, as bits like free_edges
+. ends - ends[facing]: for each facet that faces the point the edges at which the flank ends, as bits like free_edges;
+         FLANK_CONVEX times those of convex edges in addition
 
   Note:
   Returns 1 where the normals oppose each other, and neither a convex end nor a free edge that the slave overhangs is
@@ -578,7 +579,7 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
       FlankEdge        edge;
 
       if (!SharedEdge(look, &look->candidates[found[i]], beyond, &edge)) continue;
-      ends[i] |= 1 << edge.edge;
+      ends[i] |= (edge.convex ? 1 + FLANK_CONVEX : 1) << edge.edge;
       if (edge.convex) share = PetscMin(share, ConvexShare(look, &look->candidates[found[i]], beyond, &edge));
     }
   }

@@ -170,7 +170,7 @@ static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *
       PetscCall(ListBufferAddPoint(buffer, first, facet.nodes[a]));
       facet.nodes[a] = (int)(buffer->position[facet.nodes[a]] - first);
     }
-    facet.free_edges |= ends[i];
+    facet.free_edges |= ends[i] % FLANK_CONVEX;
     buffer->size[buffer->n]    = records[c->record].size;
     buffer->facet[buffer->n++] = facet;
   }
@@ -215,9 +215,9 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   lists->kappa[q] = ListCurvature(look, facing, found);
   for (int i = 0; i < facing; i++)
     if (found[i] == look->best) lists->nearest[q] = i;
-  /* What takes no part needs no fit. Past an end of the flank none would hold, after all rungs have been tried. */
-  if (fit && lists->share[q] > 0 && !FlankNearRidge(look, fit->neighbourhoods, facing, found))
-    PetscCall(FitSupportSlave(fit, look, q, lists->nearest[q] < 0 ? 0 : ends[lists->nearest[q]], first, buffer));
+  if (fit && !FlankNearRidge(look, fit->neighbourhoods, facing, found))
+    PetscCall(
+      FitSupportSlave(fit, look, q, lists->nearest[q] < 0 ? 0 : ends[lists->nearest[q]] / FLANK_CONVEX, first, buffer));
   PetscCall(ListAddFacets(look, facing, found, ends, field->records, first, buffer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

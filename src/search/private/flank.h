@@ -9,6 +9,9 @@
 #pragma once
 #include "searchimpl.h"
 
+/* Bits of convex ends begin here in what FlankShare() says; those of all ends are below. */
+enum { FLANK_CONVEX = 16 };
+
 PetscBool FlankFaces(const Nearest *, const Candidate *);
 PetscBool FlankIsOwn(const Nearest *, const Candidate *);
 int       FlankSort(const Nearest *, int *n, int *found);
