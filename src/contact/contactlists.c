@@ -232,7 +232,7 @@ static PetscErrorCode PairFree(ContactPair *pair, PetscBool *changed)
 
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
-  if (pair->undamped) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->undamped || n <= 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt q = 0; q < n; q++) *changed = (PetscBool)(*changed || pair->first_rung[q]);
   for (PetscInt i = 0; i < 3 * n; i++) *changed = (PetscBool)(*changed || pair->frame_kept[i] != 0);
   PetscCall(PetscArrayzero(pair->first_rung, n));
