@@ -162,9 +162,10 @@ static const Explanation Input[] = {
   {"B105",
    {"the mesh has no", "has no volume group", "has no cells of a volume group", "is needed: "},
    "the mesh has no group of this name",
-   "The scene names a body or a surface that is no physical group of the mesh, or one of another dimension. Upper and "
-   "lower case differ.",
-   "Take one of the names that the message lists, or name the entity in the geometry with `Physical Surface`."},
+   "The scene names a body or a surface that is no physical group of the mesh, or one of another dimension, or one "
+   "without elements. Upper and lower case differ.",
+   "Take one of the names that the message lists, or name the entity in the geometry with `Physical Surface`. A group "
+   "is empty if the list or box that chooses its entities finds none."},
   {"B104",
    {"there is no such file", "cannot be read", "there is no file '", "' is no file"},
    "a file is not there or cannot be read",

@@ -147,7 +147,8 @@ static void ListGroups(Mesh mesh, int dim, char list[MESH_TEXT])
   Note:
   Of several groups with the name, the one of the largest dimension is returned. The refusal says which groups there
   are. A rigid tool is returned too; it is not attached and has no nodes and faces, see MeshFindRigid(). Any other group
-  is refused if some of its elements do not lie on a body.
+  is refused if some of its elements do not lie on a body, and each that has no elements: gmsh writes the names of
+  groups without entities, too.
 @*/
 PetscErrorCode MeshGetGroup(Mesh mesh, Scene scene, const char *path, const char *key, const char *name, int dim,
                             MeshGroup **found)
@@ -167,6 +168,9 @@ PetscErrorCode MeshGetGroup(Mesh mesh, Scene scene, const char *path, const char
   if (g < 0)
     PetscCall(RefuseInput(mesh->comm, "%s: the mesh has no %s '%s'; it has: %s", SceneWhere(scene, path, key),
                           DimensionName(mesh->dim, dim), name, list));
+  if (!mesh->groups[g].n_elements)
+    PetscCall(RefuseInput(mesh->comm, "%s: '%s' has no elements in the mesh; a %s with some is needed: %s",
+                          SceneWhere(scene, path, key), name, DimensionName(mesh->dim, dim), list));
   if (mesh->groups[g].n_loose) {
     PetscCall(RefuseInput(
       mesh->comm,

@@ -50,6 +50,9 @@ empty = good.with_name("empty.msh")
 count = int(re.search(r"\$PhysicalNames\n(\d+)", text)[1])
 empty.write_text(text.replace(f"$PhysicalNames\n{count}\n", f'$PhysicalNames\n{count + 1}\n1 99 "hollow"\n'))
 refused("empty contact surface", "hollow", f"mesh.file={empty}", "contact=[{name: pair, slave: hollow, master: x_max}]")
+for where in ("supports=[{surface: hollow, ux: 0}]", "loads=[{surface: hollow, ux: 0.1}]",
+              "loads=[{surface: hollow, force: [1, 0]}]", "probes=[{name: pull, reaction: hollow, component: x}]"):
+    refused(f"empty surface: {where}", "'hollow' has no elements", f"mesh.file={empty}", where)
 broken = good.with_name("broken.geo")
 broken.write_text("Point(1) = {0, 0, 0;\n")
 refused("a .geo that gmsh rejects", "broken.geo", f"mesh.file={broken}")
