@@ -12,7 +12,8 @@
 
 /* Stands in the place of a load's index where the axisymmetric geometry itself holds u_r on the axis. */
 enum { LOADS_AXIS = 0x7fffffff };
-/* A node is on the axis if it is within this fraction of the model's size from r = 0. */
+/* A node is on the axis if it is within this fraction of the model's size from r = 0. A surface is there if its area is
+   within this fraction of the square of that size. */
 #define LOADS_ON_AXIS 1e-9
 /* Two expressions for one dof agree if they differ by no more than this part of the largest value of either. It stands
    for the round-off of expressions that say the same in other words. */
@@ -49,7 +50,7 @@ typedef struct {
   const History   *history;       /* NULL where it varies */
   LoadShares       shares;
   PetscReal        area;  /* of a force: area of the group's faces, of all ranks */
-  PetscInt         nodes; /* of a force on a group without faces: its nodes, of all ranks */
+  PetscInt         nodes; /* of a force on a group without area: its nodes, of all ranks */
 } DeadLoad;
 
 typedef struct {
@@ -348,7 +349,7 @@ static PetscErrorCode DeadLoadMeasure(Loads loads, DeadLoad *dead)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives each node of a group without faces an equal part of a force. Each rank does so for its own nodes. */
+/* Gives each node of a group without area an equal part of a force. Each rank does so for its own nodes. */
 static PetscErrorCode DeadLoadNodes(Loads loads, PetscReal t, DeadLoad *dead)
 {
   Mesh             mesh = loads->mesh;
@@ -373,7 +374,7 @@ static PetscErrorCode DeadLoadNodes(Loads loads, PetscReal t, DeadLoad *dead)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Spreads a force evenly over the faces of its group, or over its nodes where it has no faces. */
+/* Spreads a force evenly over the faces of its group, or over its nodes where it has no area. */
 static PetscErrorCode DeadLoadForce(Loads loads, PetscReal t, DeadLoad *dead)
 {
   const PetscInt  n         = loads->mesh->n_nodes * loads->mesh->dim;

@@ -42,6 +42,16 @@ struct _n_LinearSolver {
   PetscReal    usual; /* tolerance outside of predictions */
 };
 
+/* Is the stiffness of the bodies the same in all steps? */
+static PetscBool StiffnessStays(Scene scene)
+{
+  PetscBool stays = (PetscBool)(scene->kinematics == KINEMATICS_SMALL && !SceneIsPlastic(scene) &&
+                                !SceneHasRoutine(scene) && !SceneSupportsChange(scene));
+
+  for (int s = 0; s < scene->n_supports; s++) stays = (PetscBool)(stays && !scene->supports[s].history.n);
+  return stays;
+}
+
 /* Sets an iterative solver up. GMRES, as a tangent may be indefinite far from equilibrium, and as the preconditioner is
    not symmetric, whatever the tangent is. The preconditioner is on the right, so that the residual is the true one. The
    flexible kind keeps the preconditioned directions, so that the solution needs no iteration more. Directions are made
@@ -50,8 +60,6 @@ struct _n_LinearSolver {
 static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, Scene scene, PetscBool symmetric)
 {
   const PetscBool axisymmetric = scene->geometry == GEOMETRY_AXISYMMETRIC ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool constant     = (PetscBool)(scene->kinematics == KINEMATICS_SMALL && !SceneIsPlastic(scene) &&
-                                         !SceneHasRoutine(scene) && !SceneSupportsChange(scene));
 
   PetscFunctionBeginUser;
   FreeMemoryAtOnce();
@@ -60,7 +68,7 @@ static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, Scene scene, 
   PetscCall(KSPGMRESSetRestart(solver->ksp, LINEAR_RESTART));
   PetscCall(KSPGMRESSetCGSRefinementType(solver->ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
   PetscCall(KSPSetTolerances(solver->ksp, LINEAR_TOLERANCE, 0, PETSC_DEFAULT, LINEAR_ITERATIONS));
-  PetscCall(MultigridCreate(mesh, axisymmetric, symmetric, constant, solver->ksp, &solver->multigrid));
+  PetscCall(MultigridCreate(mesh, axisymmetric, symmetric, StiffnessStays(scene), solver->ksp, &solver->multigrid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -244,7 +252,7 @@ PetscErrorCode LinearSolverNext(LinearSolver solver, const PetscReal *u, Mat C, 
 }
 
 /*@
-  LinearSolverRenew - forgets everything that was made for past operators.
+  LinearSolverRenew - forgets what was made for past operators.
 
   Not collective
 
@@ -252,7 +260,9 @@ PetscErrorCode LinearSolverNext(LinearSolver solver, const PetscReal *u, Mat C, 
 . solver - the linear solver
 
   Note:
-  What follows does not depend on what was solved before, so that a step repeats itself to the last bit.
+  With the direct solver what follows does not depend on what was solved before, so that a step repeats itself to the
+  last bit. The iterative solver keeps the coarse spaces of multigrid: a step repeats itself to the tolerance of the
+  linear solves.
 @*/
 PetscErrorCode LinearSolverRenew(LinearSolver solver)
 {

@@ -282,9 +282,9 @@ static PetscErrorCode CreateBodies(Multigrid m)
   PetscCall(PCCreate(m->mesh->comm, &m->bodies));
   PetscCall(PCSetOptionsPrefix(m->bodies, MULTIGRID_BODIES));
   PetscCall(PCSetType(m->bodies, PCGAMG));
-  PetscCall(PCGAMGSetReuseInterpolation(m->bodies, PETSC_TRUE));
   PetscCall(PCGAMGSetThreshold(m->bodies, &zero, 1));
   PetscCall(PCSetFromOptions(m->bodies));
+  PetscCall(PCGAMGSetReuseInterpolation(m->bodies, PETSC_TRUE)); /* SmoothFinest() is done once for all */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -458,6 +458,8 @@ static PetscErrorCode MakeCoarse(Multigrid m)
   PetscCall(PCSetUp(m->bodies));
   if (!m->made) PetscCall(ForgetProducts(m));
   m->made++;
+  m->usual  = 0;
+  m->solves = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -485,9 +487,8 @@ static PetscErrorCode SetUpBodies(Multigrid m, Mat A, PetscBool aged)
   }
   if (fresh) PetscCall(SmoothFinest(m));
   PetscCall(ReturnNodes(m, &loan));
-  m->renew  = PETSC_FALSE;
-  m->usual  = 0;
-  m->solves = m->coupled = 0;
+  m->renew   = PETSC_FALSE;
+  m->coupled = 0;
   if (m->interface) PetscCall(ISGetSize(m->interface, &m->coupled));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -620,7 +621,7 @@ PetscErrorCode MultigridRelease(Multigrid m)
 }
 
 /*@
-  MultigridRenew - has multigrid made for the next operator, so that nothing depends on what was solved before.
+  MultigridRenew - has multigrid made for the next operator.
 
   Not collective
 

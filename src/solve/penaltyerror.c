@@ -36,6 +36,8 @@
    of what the certificate allows. They are made so stiff that the second part is to be expected. */
 #define PENALTY_DEEP    0.6
 #define PENALTY_SHALLOW 0.2
+/* A pair whose depth a raise has hardly lowered is raised for it again where it is so many times as deep. */
+#define PENALTY_DEEPER 2
 /* A pair whose forces are below this part of those of the most loaded pair does not stiffen its penalty, because its
    own error hardly counts in the model. Its errors are measured by this part of the forces and pressures there. */
 #define PENALTY_LIGHT_PAIR 1e-3
@@ -374,14 +376,19 @@ static PetscReal WorstError(Model model, int pair, PenaltySource source)
   return PetscMax(PetscMax(error->displacement, error->force), press);
 }
 
-/* Notes whether the last raise of a pair's penalties in this solve has brought too little of what was forecast. worst:
-   what it was to lower. */
-static void JudgeStiffening(Model model, int source, int pair, PetscReal worst)
+/* Has a raise by a factor, 0 or less for none, brought too little of what it was to lower, from `at` to `worst`? */
+static PetscBool BroughtLittle(PetscReal at, PetscReal by, PetscReal worst)
 {
-  const int  k  = source * ContactPairs(model->contact) + pair;
-  PetscReal *at = &model->work->stiffened_at[k], *by = &model->work->stiffened_by[k];
+  return (PetscBool)(by > 0 && worst > at * PetscPowReal(by, -PENALTY_GAIN));
+}
 
-  if (*by > 0 && worst > *at * PetscPowReal(*by, -PENALTY_GAIN)) *by = -*by;
+/* Notes whether the last raise of a pair's penalties in this solve has brought too little of what was forecast. */
+static void JudgeStiffening(Model model, PenaltySource source, int pair)
+{
+  const int k = source * ContactPairs(model->contact) + pair;
+
+  if (BroughtLittle(model->work->stiffened_at[k], model->work->stiffened_by[k], WorstError(model, pair, source)))
+    model->work->stiffened_by[k] *= -1;
 }
 
 /* Estimates the errors at the trial state, in which the step has converged. The state stays as it is. */
@@ -399,8 +406,7 @@ PetscErrorCode ModelEstimatePenalty(Model model)
   for (int p = 0; p < ContactPairs(model->contact); p++) model->work->penalty_error[p] = unknown;
   for (int source = 0; source < sources && known; source++) {
     PetscCall(ModelFillErrors(model, (PenaltySource)source, slope[source]));
-    for (int p = 0; p < ContactPairs(model->contact); p++)
-      JudgeStiffening(model, source, p, WorstError(model, p, (PenaltySource)source));
+    for (int p = 0; p < ContactPairs(model->contact); p++) JudgeStiffening(model, (PenaltySource)source, p);
   }
   for (int source = 0; source < sources; source++) PetscCall(VecDestroy(&slope[source]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -480,11 +486,16 @@ PetscErrorCode ModelStiffen(Model model, PetscReal factor[], PetscBool *stiffene
 /* After ModelUnstiffen(): factor[] becomes its square roots. */
 PetscErrorCode ModelStiffenLess(Model model, PetscReal factor[], PetscBool forecast)
 {
+  const int pairs = ContactPairs(model->contact);
+
   PetscFunctionBeginUser;
-  for (int k = 0; k < PENALTY_SOURCES * ContactPairs(model->contact); k++) {
+  for (int k = 0; k < PENALTY_SOURCES * pairs; k++) {
     if (factor[k] == 1) continue;
     factor[k] = PetscSqrtReal(factor[k]);
-    if (forecast) model->work->stiffened_by[k] = factor[k];
+    if (forecast)
+      model->work->stiffened_by[k] = factor[k];
+    else if (k < pairs) /* a raise for depth */
+      model->work->stiffened_by[BY_DEPTH * pairs + k] = factor[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -535,8 +546,8 @@ PetscErrorCode ModelPredictStiffer(Model model, const PetscReal factor[], PetscB
 
 /* Chooses how much stiffer penalties become that the run may choose and that let nodes stand deep in faces. factor[] is
    that of ModelStiffen(). *stiffened: some are. A depth that a raise has hardly lowered is that of nodes of a tool
-   between the slave's on a coarse mesh. Such a pair is raised no more: each step would raise it anew, a hundred million
-   times in all for a plug that is drawn through a hole. */
+   between the slave's on a coarse mesh. Such a pair is raised no more until it is much deeper: each step would raise it
+   anew, in all by 4e8 for a plug that is drawn through a hole. */
 PetscErrorCode ModelStiffenDeep(Model model, PetscReal factor[], PetscBool *stiffened)
 {
   const int       pairs   = ContactPairs(model->contact);
@@ -547,16 +558,15 @@ PetscErrorCode ModelStiffenDeep(Model model, PetscReal factor[], PetscBool *stif
   *stiffened = PETSC_FALSE;
   for (int k = 0; k < PENALTY_SOURCES * pairs; k++) factor[k] = 1;
   for (int p = 0; p < pairs; p++) {
-    const int k = BY_DEPTH * pairs + p;
+    PetscReal *at = &model->work->stiffened_at[BY_DEPTH * pairs + p];
+    PetscReal *by = &model->work->stiffened_by[BY_DEPTH * pairs + p];
 
     if (!MayStiffen(ContactPairScene(model->contact, p), BY_PENETRATION)) continue;
     PetscCall(ContactPairDepth(model->contact, p, &over_h));
-    JudgeStiffening(model, BY_DEPTH, p, over_h);
-    if (!(over_h > PENALTY_DEEP * allowed) || model->work->stiffened_by[k] < 0) continue;
-    factor[p] = PetscMin(PENALTY_MOST_STIFFER, over_h / (PENALTY_SHALLOW * allowed));
-
-    model->work->stiffened_at[k] = over_h;
-    model->work->stiffened_by[k] = factor[p];
+    if (BroughtLittle(*at, *by, over_h)) *by = -over_h;
+    if (!(over_h > PENALTY_DEEP * allowed) || over_h < -PENALTY_DEEPER * *by) continue;
+    *at = over_h;
+    *by = factor[p] = PetscMin(PENALTY_MOST_STIFFER, over_h / (PENALTY_SHALLOW * allowed));
     PetscCall(PetscInfo(model->snes, "contact '%s': %g of a face deep, penalties %g times as stiff\n",
                         ContactPairName(model->contact, p), (double)over_h, (double)factor[p]));
     *stiffened = PETSC_TRUE;

@@ -264,7 +264,7 @@ static PetscErrorCode Shorten(const Search *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Keeps the start of a step over which the energy rises. */
+/* Keeps the start of a step, from which the next one is judged. */
 static PetscErrorCode Keep(const Search *s, PetscReal rise, PetscReal slope, PetscReal turn)
 {
   RelaxedStep *step = &s->model->work->relaxed;

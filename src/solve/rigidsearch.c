@@ -26,8 +26,9 @@
 #define SEARCH_WORK 0.1
 /* Surfaces that overlap at the start by more than this part of a face size do so on purpose, and are left so. */
 #define SEARCH_OVERLAP 0.1
-/* What overlaps a master by more than SEARCH_STRAY of a face, with no more than this part of its area, is past an end
-   of that master, where gaps are wrong by what the last faces leave of its shape. It is in nothing's way. */
+/* What overlaps a master by more than SEARCH_STRAY of a face, with no more than this part of its area, is mostly past
+   an end of that master, where gaps are wrong by what the last faces leave of its shape. It is in nothing's way, unless
+   a body that goes on without it meets nothing. */
 #define SEARCH_PAST  0.25
 #define SEARCH_STRAY 1e-3
 /* Bodies turn this many times less readily than they move along, until they rest. Where they touch at one point that is
@@ -48,6 +49,8 @@ typedef struct {
   double    *force, *scale, *wish; /* n each */
   PetscReal *weight;               /* of each piece */
   PetscBool *driven;               /* by loads, of each piece */
+  PetscBool  strict;               /* all terms are in the way of bodies */
+  PetscBool  spared;               /* some were not */
   PetscInt   n_terms;
   double    *normal, *bound; /* n_terms*n; n_terms */
 } Pass;
@@ -154,7 +157,10 @@ static PetscErrorCode Bounds(FreeBodies b, const PetscReal *u, PetscReal t, Pets
     PetscReal moves = 0;
 
     for (int k = 0; k < n; k++) moves = PetscMax(moves, PetscAbsReal(pass->normal[i * n + k]));
-    if (!InTheWay(b, &terms[i])) moves = 0;
+    if (moves > 0 && !pass->strict && !InTheWay(b, &terms[i])) {
+      moves        = 0;
+      pass->spared = PETSC_TRUE;
+    }
     if (first && overlap && moves > 0 && terms[i].opening < -SEARCH_OVERLAP * b->face)
       *overlap = PetscMax(*overlap, -terms[i].opening);
     pass->bound[i] = moves > 0 ? -terms[i].opening : -PETSC_MAX_REAL;
@@ -259,52 +265,22 @@ static void NoteMoved(FreeBodies b, PetscReal t, const PetscReal *travel)
   }
 }
 
-/*@
-  FreeBodiesSettle - moves the bodies along their loads, as rigid ones and without force, until they rest on what is in
-  their way.
-
-  Collective
-
-  Input Parameters:
-+ b       - the bodies
-. t       - load parameter of the state
-. t_loads - load parameter at which the loads are taken
-- first   - bodies that touch already may move too; otherwise only where some body has no contact at all, or loads come
-            to drive one along a motion that was tied
-
-  Input/Output Parameter:
-. u - local displacements u[n_nodes*dim] of the state (length)
-
-  Output Parameter:
-. result - whether they were moved, or one of them meets nothing and is driven on and on
-
-  Notes:
-  Each pass asks where the loads would take the bodies, and moves them to the nearest point that the gaps allow, to
-  first order. Bodies without a load stay where they are until another one pushes them. The contact's lists and gaps
-  are left as they were for the last pass; its state is not touched.
-
-  Source: Gauss's principle of least constraint, with the contact conditions as inequalities.
-@*/
-PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, PetscBool first, PetscReal *u,
-                                SettleResult *result)
+/* The passes of FreeBodiesSettle(). presses: what presses stays as deep as it is. strict: all terms are in the way.
+   travel[]: how far each piece came. *spared: some terms were not in the way. */
+static PetscErrorCode Search(FreeBodies b, PetscReal t, PetscReal t_loads, PetscBool presses, PetscBool strict,
+                             PetscReal *u, PetscReal travel[], SettleResult *result, PetscBool *spared)
 {
-  PetscReal move = SEARCH_FIRST * b->face, overlap = 0, way = 0, *longest, *travel;
-  PetscBool any = PETSC_FALSE, presses = PETSC_FALSE, heavy = PETSC_TRUE;
-  PetscBool rubs  = ContactHasFriction(b->contact);
+  PetscReal move = SEARCH_FIRST * b->face, overlap = 0, way = 0, *longest;
+  PetscBool any = PETSC_FALSE, heavy = PETSC_TRUE, rubs = ContactHasFriction(b->contact);
   PetscInt  rests = 0, touched = 0;
   Pass      pass;
 
   PetscFunctionBeginUser;
   *result = SETTLE_NONE;
-  if (!b->n) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!first) {
-    PetscCall(Untouched(b, &any));
-    if (!any) PetscCall(ComesToFall(b, u, t, t_loads, &presses));
-    if (!any && !presses) PetscFunctionReturn(PETSC_SUCCESS);
-  }
   PetscCall(PassCreate(b, &pass));
+  pass.strict = strict;
   PetscCall(PetscMalloc1(b->n_pieces, &longest));
-  PetscCall(PetscCalloc1(b->n_pieces, &travel));
+  PetscCall(PetscArrayzero(travel, b->n_pieces));
   for (PetscInt it = 0; rests < SEARCH_RESTS && touched < SEARCH_PASSES; it++) {
     PetscReal most = 0, work = 0, wished = 0;
 
@@ -349,9 +325,61 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
     move  = SEARCH_FIRST * b->face;
   }
   if (*result == SETTLE_MOVED && way <= SEARCH_REST * b->face) *result = SETTLE_NONE;
-  NoteMoved(b, t, travel);
+  *spared = pass.spared;
   PetscCall(PetscFree(longest));
-  PetscCall(PetscFree(travel));
   PetscCall(PassDestroy(&pass));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeBodiesSettle - moves the bodies along their loads, as rigid ones and without force, until they rest on what is in
+  their way.
+
+  Collective
+
+  Input Parameters:
++ b       - the bodies
+. t       - load parameter of the state
+. t_loads - load parameter at which the loads are taken
+- first   - bodies that touch already may move too; otherwise only where some body has no contact at all, or loads come
+            to drive one along a motion that was tied
+
+  Input/Output Parameter:
+. u - local displacements u[n_nodes*dim] of the state (length)
+
+  Output Parameter:
+. result - whether they were moved, or one of them meets nothing and is driven on and on
+
+  Notes:
+  Each pass asks where the loads would take the bodies, and moves them to the nearest point that the gaps allow, to
+  first order. Bodies without a load stay where they are until another one pushes them. The contact's lists and gaps
+  are left as they were for the last pass; its state is not touched.
+
+  Source: Gauss's principle of least constraint, with the contact conditions as inequalities.
+@*/
+PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, PetscBool first, PetscReal *u,
+                                SettleResult *result)
+{
+  const PetscInt size = b->mesh->n_nodes * b->mesh->dim;
+  PetscBool      any = PETSC_FALSE, presses = PETSC_FALSE, spared;
+  PetscReal     *start, *travel;
+
+  PetscFunctionBeginUser;
+  *result = SETTLE_NONE;
+  if (!b->n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!first) {
+    PetscCall(Untouched(b, &any));
+    if (!any) PetscCall(ComesToFall(b, u, t, t_loads, &presses));
+    if (!any && !presses) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscMalloc2(size, &start, b->n_pieces, &travel));
+  PetscCall(PetscArraycpy(start, u, size));
+  PetscCall(Search(b, t, t_loads, presses, PETSC_FALSE, u, travel, result, &spared));
+  if (*result == SETTLE_ADRIFT && spared) {
+    PetscCall(PetscArraycpy(u, start, size));
+    PetscCall(Search(b, t, t_loads, presses, PETSC_TRUE, u, travel, result, &spared));
+  }
+  NoteMoved(b, t, travel);
+  PetscCall(PetscFree2(start, travel));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

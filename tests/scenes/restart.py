@@ -37,7 +37,7 @@ OF_RANKS = ("ranks", "partition", "linear.largest_residual", "certificate.residu
             "certificate.moment_balance")
 
 args = arguments(("part", "what is shown", ("kills", "sliding", *ELEMENTS, "signals", "refusals", "flips",
-                                            "states", "options")),
+                                            "states", "options", "iterative")),
                  ("count", "how many kills, or flipped bits"))
 out = pathlib.Path(args.out)
 SCENE = PUSHED if args.part in ELEMENTS else SLIDING
@@ -553,6 +553,21 @@ def states():
             same_summary(f"{what}, on {ranks}", directory, reference, 0 if ranks == 1 else 1e-5)
 
 
+def iterative():
+    """Multigrid keeps its coarse spaces, which a restart makes anew: equal to the tolerance of the linear solves."""
+    path = SCENES / "../../runs/ring_in_ring_3d.yaml"
+    overrides = ["mesh.parameters={n_inner: 10, n_outer: 12, n_len: 4}", "solver.type=iterative",
+                 "stepping={control: fixed, initial: 0.125}"]
+    reference = run(args, path, out="whole", ranks=1, overrides=overrides).directory
+    for ranks in (1, 2):
+        directory = run(args, path, out=f"part on {ranks}", ranks=1,
+                        overrides=[*overrides, "output.checkpoint=5"]).directory
+        again = go_on(directory, ranks=ranks)
+        check.holds(f"on {ranks}: goes on", again.status == 0 and "restart  after step" in again.text,
+                    again.text if again.status else "")
+        same_results(f"on {ranks}", directory, reference, 1e-8)
+
+
 {
     "kills": kills,
     "sliding": sliding,
@@ -561,6 +576,7 @@ def states():
     "refusals": refusals,
     "flips": flips,
     "states": states,
-    "options": options
+    "options": options,
+    "iterative": iterative
 }[args.part]()
 check.finish()

@@ -11,8 +11,8 @@
    (coarsecontact.h). The coarse spaces stay for the whole run, and of bodies whose stiffness stays the coarse matrices,
    too.
 
-   Create it once for a KSP. Call MultigridSetContact() before each new operator, and MultigridRenew() where nothing may
-   depend on earlier solves. */
+   Create it once for a KSP. Call MultigridSetContact() before each new operator, and MultigridRenew() at the
+   start of a step. Solutions then depend on earlier solves within the tolerance of the linear solves only. */
 #pragma once
 #include "mesh/mesh.h"
 

@@ -128,9 +128,10 @@ typedef struct _n_ModelWork {
   PetscBool  searched;       /* it was tried to move them */
 
   PenaltyError *penalty_error; /* of each pair, once the load is at its end */
-  /* Of each pair for penetration, then of each for elastic slip: */
+  /* Of each pair for penetration, then of each for elastic slip, then of each for the depth of nodes: */
   PetscReal *stiffened_at;    /* its worst estimate when this solve stiffened it for it last; 0: it has not */
-  PetscReal *stiffened_by;    /* the factor by which it did; negative: that brought too little, and it stays */
+  PetscReal *stiffened_by;    /* the factor by which it did; negative: that brought too little, and it stays. For the
+                                 depth of nodes it is the negative depth then, in faces */
   PetscReal *accepted_stays;  /* the negative ones of stiffened_by in the accepted state; else 0 */
   PetscBool  weighs_pressure; /* the error of pressures counts in this solve, not on the way alone */
 
