@@ -166,7 +166,10 @@ PetscErrorCode ModelUnstiffen(Model model, const PetscReal factor[], PetscBool f
 
       if (factor[k] == 1) continue;
       PetscCall(StiffenPair(model, (PenaltySource)source, p, 1 / factor[k]));
-      if (forecast) model->work->stiffened_by[k] = -factor[k];
+      if (forecast)
+        model->work->stiffened_by[k] = -factor[k];
+      else if (source == BY_PENETRATION)
+        model->work->stiffened_by[BY_DEPTH * pairs + p] = 0; /* nothing has been raised that could be judged */
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
