@@ -379,7 +379,7 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
     PetscCall(PetscArraycpy(u, start, size));
     PetscCall(Search(b, t, t_loads, presses, PETSC_TRUE, u, travel, result, &spared));
   }
-  NoteMoved(b, t, travel);
+  if (*result == SETTLE_MOVED) NoteMoved(b, t, travel); /* the run takes no state in which a body is adrift */
   PetscCall(PetscFree2(start, travel));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
