@@ -455,14 +455,20 @@ static PetscErrorCode LeastResidual(Halvings *h, int *best)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Chooses the part of the step: the first of 1, 1/2, 1/4, ... that serves. *stands: w and G are those of that part. */
+/* Chooses the part of the step: the first of 1, 1/2, 1/4, ... that serves. *stands: w and G are those of that part. A
+   step of no length, which only asks for new contact lists, is taken. */
 static PetscErrorCode ChoosePart(Model model, Halvings *h, int *best, PetscBool *stands)
 {
   PetscBool serves = PETSC_FALSE, end = PETSC_FALSE;
+  PetscReal length;
+  Vec       y;
 
   PetscFunctionBeginUser;
   *best   = 0;
   *stands = PETSC_FALSE;
+  PetscCall(SNESLineSearchGetVecs(h->search, NULL, NULL, &y, NULL, NULL));
+  PetscCall(VecNorm(y, NORM_2, &length));
+  if (length == 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (int i = 0; i <= LINE_HALVINGS && h->slope > 0 && !serves; i++)
     PetscCall(PartServes(h, *best = i, &serves, stands));
   if (serves && *best == 0) PetscFunctionReturn(PETSC_SUCCESS);
