@@ -2,7 +2,7 @@
 #include "contact/contactcycle.h"
 #include "contactimpl.h"
 #include "base/gathertable.h"
-#include <stdint.h>
+#include "base/hash.h"
 
 /* Longest period that is looked for. Those seen in runs have 2 or 3. Two of the longest fit into the default number
    of iterations. */
@@ -84,16 +84,6 @@ PetscErrorCode ContactCycleStart(ContactCycle cycle)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Spreads a node's number over 64 bits, so that sums of such numbers tell sets apart (the finaliser of Steele, Lea
-   and Flood's SplitMix, 2014). */
-static uint64_t HashFinish(uint64_t x)
-{
-  x += 0x9e3779b97f4a7c15;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return x ^ (x >> 31);
-}
-
 /* Takes the present set: its number, which is the same on all ranks, and this rank's part of it. */
 static PetscErrorCode TakeSet(ContactCycle cycle, PetscInt slot)
 {
@@ -110,7 +100,7 @@ static PetscErrorCode TakeSet(ContactCycle cycle, PetscInt slot)
       const PetscBool slips = (PetscBool)(pair->friction && pair->now.slips[c]);
 
       *state = pair->now.status[c] != CONTACT_CLOSED ? TERM_OPEN : slips ? TERM_SLIPS : TERM_STICKS;
-      if (*state++ != TERM_OPEN) sum += HashFinish(2 * id + slips);
+      if (*state++ != TERM_OPEN) sum += HashFinish(HASH_START ^ (2 * id + slips));
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, contact->mesh->comm));
