@@ -196,7 +196,7 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   const PetscInt    q = look->q, first = buffer->n_points;
   const BoxTreeSide side  = {&lists->slave_normal[3 * q], look->one_body ? 0 : -INFINITY, OwnBodyBehind(look), 0, 0};
   double            bound = look->least + look->tie, margin;
-  int               count, facing;
+  int               count, facing, convex = 0;
 
   PetscFunctionBeginUser;
   if (possible && !possible[q]) PetscFunctionReturn(PETSC_SUCCESS);
@@ -213,11 +213,13 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   lists->share[q] = FlankShare(look, facing, count, found, ends);
   if (lists->share[q] == 0 && !look->one_body) lists->averse[q] = FlankIsBeside(look, facing, count, found);
   lists->kappa[q] = ListCurvature(look, facing, found);
-  for (int i = 0; i < facing; i++)
-    if (found[i] == look->best) lists->nearest[q] = i;
+  for (int i = 0; i < facing; i++) {
+    if (found[i] != look->best) continue;
+    lists->nearest[q] = i;
+    convex            = ends[i] / FLANK_CONVEX;
+  }
   if (fit && !FlankNearRidge(look, fit->neighbourhoods, facing, found))
-    PetscCall(
-      FitSupportSlave(fit, look, q, lists->nearest[q] < 0 ? 0 : ends[lists->nearest[q]] / FLANK_CONVEX, first, buffer));
+    PetscCall(FitSupportSlave(fit, look, q, convex, first, buffer));
   PetscCall(ListAddFacets(look, facing, found, ends, field->records, first, buffer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
