@@ -331,28 +331,25 @@ static const struct {
 static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path,
                                           const char *unknown)
 {
-  char        allowed[600] = "";
-  const char *nearest      = "";
+  char        allowed[1000] = "";
+  const char *nearest       = "";
   int         least = 1000, length = 0;
 
   PetscFunctionBeginUser;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(Wanted); i++)
     if (!strcmp(unknown, Wanted[i].key)) PetscCall(DocumentRefuseNode(document, node, path, "%s", Wanted[i].instead));
-  for (int i = 0; i < SchemaKeysCount; i++) {
-    if (!SchemaKeyIsChild(&SchemaKeys[i], parent)) continue;
-    for (const char *key = SchemaKeyName(&SchemaKeys[i]); *key;) {
-      const size_t n = strcspn(key, "|");
-      const int    d = WordUnlike(unknown, key, n);
-
-      if (d < least) {
-        least   = d;
-        nearest = key;
-        length  = (int)n;
-      }
-      key += n + (key[n] == '|');
-    }
-  }
   AppendKeys(parent, allowed, sizeof allowed);
+  for (const char *key = allowed; *key;) {
+    const size_t n = strcspn(key, ",");
+    const int    d = WordUnlike(unknown, key, n);
+
+    if (d < least) {
+      least   = d;
+      nearest = key;
+      length  = (int)n;
+    }
+    key += n + strspn(&key[n], ", ");
+  }
   if (2 * least <= (int)strlen(unknown))
     PetscCall(DocumentRefuseNode(document, node, path, "unknown key, did you mean %.*s? allowed: %s", length, nearest,
                                  allowed));
