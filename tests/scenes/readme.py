@@ -138,8 +138,9 @@ class Workplace:
         if command in LIKE:
             return LIKE[command]
         if command not in FULL and command not in NOT_HERE:
-            if "--record runs/records" in command:  # runs for minutes
+            if "--record runs/records" in command:  # it would run for minutes
                 self.check.holds(f"{command}: readme_commands.py lists it", False)
+                return None
             more = [words for start, words in CHECKED.items() if command.startswith(start)]
             return " ".join([command, *more]) if self.args.part == "quick" else command
         if self.args.part == "quick":
