@@ -11,6 +11,9 @@
 /* Points of a face are tested one by one where more facets than this are in sight of them together: a tree finds the
    nearest ones of many sooner than a row. */
 enum { PARTNERS_TOGETHER = 128 };
+/* Normals of a facet are compared at few places. Elsewhere on it they have turned by at most this many times as much:
+   the largest sum of the absolute shape functions between three points of a rule, for both directions. */
+#define PARTNERS_TURN_BETWEEN 4
 /* Where the middle nodes of a quadratic facet deviate from the one through its corners, the facet exceeds its nodes by
    at most this much of the largest deviation: sum of the absolute shape functions of these nodes. */
 #define PARTNERS_BULGE 1.6
@@ -114,12 +117,30 @@ static PetscBool LiesBehind(const PointTest *test, const Candidate *c)
                      PetscMax(-most, CandidateBoxDistance(dim, c, test->x)) > side->behind);
 }
 
+/* Does the point lie wholly behind a candidate, farther than what can have been entered? */
+static PetscBool PointIsBehind(const PointTest *test, const Candidate *c)
+{
+  const BoxTreeSide *side = test->side;
+  const int          dim  = test->lists->dim;
+  PetscReal          x[3] = {0, 0, 0}, square = 0;
+
+  for (int d = 0; d < dim; d++) {
+    x[d] = test->x[d];
+    square += PetscSqr(x[d] - c->hull.centre[d]);
+  }
+  return (PetscBool)(FacetHullSide(&c->hull, x,
+                                   side->shift + PARTNERS_TURN_BETWEEN * side->lean *
+                                                   (PetscSqrtReal(square) + c->hull.radius)) < 0 &&
+                     CandidateBoxDistance(dim, c, x) > side->behind);
+}
+
 /* May a candidate be a partner? */
 static int TestFacet(void *context, int index)
 {
   const PointTest *test = context;
+  const Candidate *c    = &test->field->candidates[index];
 
-  return !LiesBehind(test, &test->field->candidates[index]);
+  return !LiesBehind(test, c) && !PointIsBehind(test, c);
 }
 
 /* Visitor of BoxTreeClosest(), which ends with the first facet that may be a partner. */
