@@ -89,6 +89,15 @@ PetscBool OwnBodyIsWedge(const Nearest *look, const Candidate *c)
   return (PetscBool)(foot.gap < 0 && cosine < OWN_BODY_SHARP);
 }
 
+/* How far a foot lies behind the plane of the slave point's own face (length); negative before it. */
+static PetscReal BehindOwnFace(const Nearest *look, const Foot *foot)
+{
+  PetscReal along = 0;
+
+  for (int d = 0; d < look->lists->dim; d++) along += look->outward[d] * foot->normal[d];
+  return foot->gap * along;
+}
+
 /* Is a slave point beside a facet of another body, on whose edge it has its foot? */
 static PetscBool IsBeside(const Nearest *look, const Candidate *c, const Foot *foot)
 {
@@ -110,7 +119,9 @@ static PetscBool IsBeside(const Nearest *look, const Candidate *c, const Foot *f
 
   Note:
   Always PETSC_FALSE where the scene names slave and master. The distance to another body's facet that the point is
-  beside is no depth. Without the facets at an edge of that body, the point would be taken for one behind the next ones.
+  beside is no depth, unless it leads through the point's own body, as from the bore of a pipe to the end of a plate
+  that lies on the pipe. Without the facets at an edge of that body, the point would be taken for one behind the next
+  ones.
 @*/
 PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot)
 {
@@ -119,7 +130,8 @@ PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot
 
   if (!look->listed || depth <= 0) return PETSC_FALSE;
   if (depth > SEARCH_ENTERED * look->height)
-    return (PetscBool)(look->one_body || depth > look->size || !IsBeside(look, c, foot));
+    return (PetscBool)(look->one_body || depth > look->size || !IsBeside(look, c, foot) ||
+                       BehindOwnFace(look, foot) > SEARCH_ENTERED * look->height);
   if (!OnOwnPiece(look, c)) return PETSC_FALSE;
   wall = ReferenceDepth(look, c);
   return (PetscBool)(wall > OWN_BODY_TOUCHES * look->size && depth > SEARCH_ENTERED * wall);
