@@ -146,6 +146,19 @@ def walls():
     patch()
 
 
+def bore():
+    """A pipe pinched by a plate that is narrower than the flattened pipe: the bore is below the plate's end, beyond its
+    own wall, and no partner. While it was one the list took 125 iterations."""
+    mesh = ["mesh.parameters={n_arc: 12, n_wall: 1, n_len: 5}", "output.every=0",
+            "probes=[{name: force, reaction: plate_top, component: y, absolute: true}]"]
+    how = "smoother: diffuse, formulation: surface_to_surface, penalty: {initial: auto, scale: 1000}"
+    listed, named = (run(args, PIPE, out=f"bore_{name}", overrides=[*mesh, f"contact=[{{name: c, {sides}, {how}}}]"]).summary()
+                     for name, sides in (("all", "surfaces: all"), ("named", "slave: plate_bottom, master: pipe_outer")))
+    check.near("pinched pipe: force of a list", listed["probes"]["force"] / named["probes"]["force"], 1, ROLES)
+    check.holds("pinched pipe: iterations", listed["newton_iterations"] <= ITERATIONS * named["newton_iterations"],
+                f"{listed['newton_iterations']} and {named['newton_iterations']}")
+
+
 def patch_fields(name, contact, fine=1):
     """Flat blocks that do not match, on a mesh that is so many times as fine as that of the scene."""
     sizes = ", ".join(f"{key}: {value * fine}" for key, value in PATCH.items())
@@ -470,7 +483,7 @@ def refusals():
         f"contact=[{{name: a, surfaces: [inner_contact, outer_contact]}}, {both}]", "probes=[]"])
 
 
-args = arguments(("case", "frame, refined, mirror, walls, keystone, joined, edge, chamfer, ranks, refusals, override, friction, overlap, bumper, edges, knife, blade, live, still, parts or "
+args = arguments(("case", "frame, refined, mirror, walls, bore, keystone, joined, edge, chamfer, ranks, refusals, override, friction, overlap, bumper, edges, knife, blade, live, still, parts or "
                               "tools"))
 check = Check()
 if args.case == "frame":
@@ -481,7 +494,7 @@ elif args.case == "mirror":
     mirror("node_to_surface")
     mirror("surface_to_surface")
 else:
-    {"walls": walls, "keystone": keystone, "joined": joined, "edge": edge, "chamfer": chamfer, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
+    {"walls": walls, "bore": bore, "keystone": keystone, "joined": joined, "edge": edge, "chamfer": chamfer, "ranks": ranks, "refusals": refusals, "override": override, "friction": friction,
      "overlap": overlap, "bumper": bumper, "edges": edges, "knife": knife, "blade": blade, "live": live, "parts": parts, "refined": refined, "still": still,
      "tools": tools}[args.case]()
 check.finish()
