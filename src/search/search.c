@@ -152,7 +152,8 @@ static PetscReal ListCurvature(const Nearest *look, PetscInt n, const int *found
 }
 
 /* Appends the found candidates to the slave point's list, which starts at first. The nodes of the facets become
-   positions in that list, and the ends of the flank become free edges. */
+   positions in that list, the ends of the flank become free edges, and those at facets that were dropped become cut
+   ones. */
 static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *found, const int *ends,
                                     const FaceRecord *records, PetscInt first, ListBuffer *buffer)
 {
@@ -171,6 +172,7 @@ static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *
       facet.nodes[a] = (int)(buffer->position[facet.nodes[a]] - first);
     }
     facet.free_edges |= ends[i] % FLANK_CONVEX;
+    facet.cut_edges            = ends[i] / FLANK_CUT;
     buffer->size[buffer->n]    = records[c->record].size;
     buffer->facet[buffer->n++] = facet;
   }
@@ -196,7 +198,7 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   const PetscInt    q = look->q, first = buffer->n_points;
   const BoxTreeSide side  = {&lists->slave_normal[3 * q], look->one_body ? 0 : -INFINITY, OwnBodyBehind(look), 0, 0};
   double            bound = look->least + look->tie, margin;
-  int               count, facing, convex = 0;
+  int               count, facing, dropped, convex = 0;
 
   PetscFunctionBeginUser;
   if (possible && !possible[q]) PetscFunctionReturn(PETSC_SUCCESS);
@@ -207,16 +209,17 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   if (look->best < 0) PetscFunctionReturn(PETSC_SUCCESS);
   margin = SEARCH_MARGIN * PetscMax(look->size, field->records[look->candidates[look->best].record].size);
   count  = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
-  facing = FlankSort(look, &count, found);
+  facing = FlankSort(look, &count, found, &dropped);
   FlankLeaveCorner(look, facing, found);
   TakeNormal(look, fit);
   lists->share[q] = FlankShare(look, facing, count, found, ends);
+  FlankCuts(look, facing, found, dropped, &found[count], ends);
   if (lists->share[q] == 0 && !look->one_body) lists->averse[q] = FlankIsBeside(look, facing, count, found);
   lists->kappa[q] = ListCurvature(look, facing, found);
   for (int i = 0; i < facing; i++) {
     if (found[i] != look->best) continue;
     lists->nearest[q] = i;
-    convex            = ends[i] / FLANK_CONVEX;
+    convex            = ends[i] % FLANK_CUT / FLANK_CONVEX;
   }
   if (fit && !FlankNearRidge(look, fit->neighbourhoods, facing, found))
     PetscCall(FitSupportSlave(fit, look, q, convex, first, buffer));
@@ -249,13 +252,13 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   const int  dim = lists->dim;
   BoxTree    tree;
   int       *found, *ends;
-  PetscInt  *aversed, next = 0;
+  PetscInt  *marked, next = 0;
   ListBuffer buffer = {.room        = s->room + s->room / LIST_ROOM,
                        .points_room = s->points_room + s->points_room / LIST_ROOM};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(field->n_candidates, &found, field->n_candidates, &ends, lists->n_points, &buffer.position));
-  PetscCall(PetscCalloc1(lists->n_points, &aversed));
+  PetscCall(PetscCalloc1(lists->n_points, &marked));
   PetscCall(PetscMalloc1(buffer.room, &buffer.facet));
   PetscCall(PetscMalloc1(buffer.room, &buffer.size));
   PetscCall(PetscMalloc1(buffer.points_room, &buffer.point));
@@ -276,7 +279,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                            .sharp      = s->fit->feature_angle,
                            .marks      = s->marks ? s->marks[q] : 0,
                            .best       = -1,
-                           .aversed    = aversed,
+                           .marked     = marked,
                            .least      = s->reach + motion,
                            .tie        = FACET_TIE * (s->reach + motion)};
 
@@ -294,7 +297,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscCall(SearchPartnersLearn(s, lists, field, tree));
   BoxTreeDestroy(&tree);
   PetscCall(PetscFree3(found, ends, buffer.position));
-  PetscCall(PetscFree(aversed));
+  PetscCall(PetscFree(marked));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

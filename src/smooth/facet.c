@@ -69,6 +69,20 @@ static unsigned FreeSides(const Candidate *candidate)
   return candidate->region == FOOT_INTERIOR ? 0 : candidate->point.active & (unsigned)candidate->facet->free_edges;
 }
 
+/* Does the foot of a candidate lie on a side at which the list is cut? */
+static int IsCut(const Candidate *candidate)
+{
+  return candidate->region != FOOT_INTERIOR && candidate->point.active & (unsigned)candidate->facet->cut_edges;
+}
+
+/* Takes a foot to be outside, if it is not. */
+static void TakeOutside(int dim, Foot *foot)
+{
+  if (foot->gap >= 0) return;
+  foot->gap = -foot->gap;
+  for (int k = 0; k < dim; ++k) foot->normal[k] = -foot->normal[k];
+}
+
 /* Lets the foot of a candidate leave its facet across its free sides. *ended is set where the foot reached the end
    of the extension. */
 static void Extend(int dim, const double *x, Candidate *candidate, int *ended)
@@ -143,7 +157,7 @@ static void Decide(int dim, const double *x, int n, const Candidate candidates[]
   const Candidate *best = &candidates[0], *edge = NULL;
   double           pseudo[3] = {0}, free_pseudo[3] = {0};
   Candidate        extended = {.size = 0};
-  int              ended    = 0;
+  int              ended = 0, cut = 0;
 
   for (int i = 1; i < n; ++i)
     if (Preferred(&candidates[i], best)) best = &candidates[i];
@@ -153,6 +167,7 @@ static void Decide(int dim, const double *x, int n, const Candidate candidates[]
 
     if (FacetDistance(c->point.x, best->point.x) > FACET_COINCIDENT * best->size) continue;
     AddNormal(dim, x, c, 1, pseudo);
+    cut |= IsCut(c);
     if (FreeSides(c)) {
       Candidate trial = *c;
       int       trial_ended;
@@ -167,16 +182,14 @@ static void Decide(int dim, const double *x, int n, const Candidate candidates[]
   }
   if (!edge) {
     SetGap(dim, x, best, pseudo, foot);
+    if (cut) TakeOutside(dim, foot);
     return;
   }
   SetGap(dim, x, &extended, free_pseudo, foot);
   foot->beyond = FacetDistance(extended.point.x, edge->point.x);
   if (ended) {
     foot->beyond = fmax(foot->beyond, extended.size);
-    if (foot->gap < 0) {
-      foot->gap = -foot->gap;
-      for (int k = 0; k < dim; ++k) foot->normal[k] = -foot->normal[k];
-    }
+    TakeOutside(dim, foot);
   }
 }
 

@@ -11,7 +11,10 @@
    Beyond a free edge of the surface (a bit of free_edges) the facet is extended. The foot may leave the reference
    domain there, and `beyond` gives the distance (a length), so that the caller can fade the contact out. The facet
    is chosen by the distance to the true facets without extension. An extension therefore never hides a facet that is
-   really there. */
+   really there.
+
+   At an edge where the list of facets ends, though the surface goes on (a bit of cut_edges), a slave point is never
+   inside: what is there is not its master. A foot on such an edge has a positive gap. */
 #pragma once
 #include "kernels/element.h"
 
@@ -50,7 +53,8 @@ typedef struct {
   /* Bit e is set if there is no neighbour at edge e (3D; ElementGet(type)->edge_corners) or at end e (2D): the
      surface ends there. */
   int  free_edges;
-  long tag; /* does not depend on the ranks; ties go to the smallest */
+  int  cut_edges; /* the same bits: the neighbour there is left out of the list, and the foot ends there */
+  long tag;       /* does not depend on the ranks; ties go to the smallest */
 } Facet;
 
 typedef enum { FOOT_INTERIOR, FOOT_EDGE, FOOT_VERTEX } FootRegion;

@@ -1,5 +1,5 @@
-"""A rubber block with nine holes jumps aside where its walls buckle. Static steps get no farther than that; damped ones
-do, and the run says what the jump lost."""
+"""A rubber block with nine holes jumps aside where its walls buckle, and then touches itself inside its holes: static
+steps get to the end. Of second order it creases within faces."""
 import re
 
 from harness import Check, arguments, run, SCENES
@@ -8,14 +8,11 @@ args = arguments()
 check = Check()
 scene = SCENES / "holes_block.yaml"
 
-damped = run(args, scene, out="holes_block", overrides=("stepping.damping=auto", )).summary()
-check.holds("damped: some steps", damped["damping"]["steps"] >= 1, str(damped["damping"]))
-check.holds("damped: jumps", damped["jumps"]["found"] >= 1, str(damped["jumps"]))
-share = damped["damping"]["energy_taken"] / damped["damping"]["stored_energy"]
-check.holds("damped: little is lost", 0 < share < 0.1, f"{share:.3g}")
-energy = damped["energy"]
-total = sum(energy[name] for name in ("elastic", "contact", "damping"))
-check.near("damped: energies balance", energy["external"] / total, 1, 0.01)
+crushed = run(args, scene, out="holes_block", overrides=("stepping.damping=none", )).summary()
+check.holds("crushed: jumps", crushed["jumps"]["found"] >= 1, str(crushed["jumps"]))
+check.holds("crushed: few iterations", crushed["newton_iterations"] < 150, str(crushed["newton_iterations"]))
+energy = crushed["energy"]
+check.near("crushed: energies balance", energy["external"] / (energy["elastic"] + energy["contact"]), 1, 0.01)
 
 # The block of second order creases within faces. None of them folds over itself in an accepted step.
 FOLDS = r"contact 'any': face \d+ of 'skin of block' folds over itself about node \d+ \(\d[^)]*, 0\); .*\[B125\]\n"

@@ -497,6 +497,34 @@ static void TestFan(void **state)
   }
 }
 
+/* Where the list is cut at an edge of its last facet, a slave point past that edge is outside, however deep it is.
+   Above and below the facet nothing changes. */
+static void TestCutEdges(void **state)
+{
+  static const ElementType types[] = {ELEMENT_EDGE2, ELEMENT_TRI3, ELEMENT_QUAD4};
+
+  (void)state;
+  for (int t = 0; t < 3; ++t) {
+    Surface surface;
+    Facet  *facet;
+
+    Roof(types[t], 0.5, &surface);
+    facet          = surface.facet;
+    surface.facets = 1; /* the facet on the side of x > 0 in 3D, on that of x < 0 in 2D; both end at x = 0 */
+    for (int cut = 0; cut < 2; ++cut) {
+      Foot past, over;
+
+      facet->cut_edges = cut ? (1 << (surface.dim == 2 ? 2 : ElementGet(types[t])->corners)) - 1 : 0;
+      Closest(&surface, surface.dim == 2 ? (double[3]){0.1, -0.2} : (double[3]){-0.1, 0.4, -0.2}, &past);
+      Closest(&surface, surface.dim == 2 ? (double[3]){-0.5, -0.2} : (double[3]){0.5, 0.4, -0.2}, &over);
+      assert_true(past.region != FOOT_INTERIOR && over.region == FOOT_INTERIOR);
+      assert_true(cut ? past.gap > 0.2 : past.gap < -0.2);
+      assert_true(past.gap * past.normal[surface.dim - 1] < 0); /* slave - foot = gap * normal points down */
+      assert_true(over.gap < 0);
+    }
+  }
+}
+
 /* At an edge or vertex that holds the slave point, the normal is the mean of the normals of its facets. */
 static void TestTouching(void **state)
 {
@@ -810,11 +838,19 @@ static void TestFeatures(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(TestFeatures),         cmocka_unit_test(TestVariations), cmocka_unit_test(TestRigidMotion),
-    cmocka_unit_test(TestDistance),         cmocka_unit_test(TestEdges),      cmocka_unit_test(TestFan),
-    cmocka_unit_test(TestTouching),         cmocka_unit_test(TestFreeEdges),  cmocka_unit_test(TestFreeEnds),
-    cmocka_unit_test(TestFarAndDegenerate), cmocka_unit_test(TestExtruded),   cmocka_unit_test(TestOrder)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestFeatures),
+                                     cmocka_unit_test(TestVariations),
+                                     cmocka_unit_test(TestRigidMotion),
+                                     cmocka_unit_test(TestDistance),
+                                     cmocka_unit_test(TestEdges),
+                                     cmocka_unit_test(TestCutEdges),
+                                     cmocka_unit_test(TestFan),
+                                     cmocka_unit_test(TestTouching),
+                                     cmocka_unit_test(TestFreeEdges),
+                                     cmocka_unit_test(TestFreeEnds),
+                                     cmocka_unit_test(TestFarAndDegenerate),
+                                     cmocka_unit_test(TestExtruded),
+                                     cmocka_unit_test(TestOrder)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,18 +4,21 @@
    node over the edge keeps the half of its area that lies on the flank.
 
    FlankSort() finds the facets of the flank. FlankLeaveCorner() chooses between two of them that form a hollow.
-   FlankShare() finds its ends, and how far the point takes part. FlankIsBeside() says whether the point is beside what
-   it does not face, and FlankNearRidge() whether it is near a sharp edge between two facets that both face it. */
+   FlankShare() finds its ends, and how far the point takes part, and FlankCuts() where it ends at facets that are none
+   of its. FlankIsBeside() says whether the point is beside what it does not face, and FlankNearRidge() whether it is
+   near a sharp edge between two facets that both face it. */
 #pragma once
 #include "searchimpl.h"
 
-/* Bits of convex ends begin here in what FlankShare() says; those of all ends are below. */
-enum { FLANK_CONVEX = 16 };
+/* Bits of convex ends begin here in what FlankShare() says, and those of FlankCuts() after them; those of all ends are
+   below. */
+enum { FLANK_CONVEX = 16, FLANK_CUT = 256 };
 
 PetscBool FlankFaces(const Nearest *, const Candidate *);
 PetscBool FlankIsOwn(const Nearest *, const Candidate *);
-int       FlankSort(const Nearest *, int *n, int *found);
+int       FlankSort(const Nearest *, int *n, int *found, int *dropped);
 PetscReal FlankShare(const Nearest *, int facing, int n, const int *found, int *ends);
+void      FlankCuts(const Nearest *, int facing, const int *found, int n, const int *dropped, int *ends);
 void      FlankLeaveCorner(Nearest *, int facing, const int *found);
 PetscBool FlankIsBeside(const Nearest *, int facing, int n, const int *found);
 PetscBool FlankNearRidge(const Nearest *, Neighbourhoods, int facing, const int *found);

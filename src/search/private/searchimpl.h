@@ -108,7 +108,7 @@ typedef struct {
   Foot      foot;      /* on the best candidate */
   PetscReal normal[3]; /* of the master there: where there are fits, one that does not jump from facet to facet */
   PetscBool averse;    /* a candidate within a face of the slave does not face the point */
-  PetscInt *aversed;   /* of every point of the lists: 1 + the last slave point that does not face a facet there */
+  PetscInt *marked;    /* of every point of the lists: 1 + the last slave point for which facets there may be ends */
 } Nearest;
 
 /* Growing lists of all slave points. */
