@@ -141,13 +141,15 @@ static void NearestGap(const ContactPair *pair, PetscInt q, PointGaps *gaps)
 }
 
 /* Says whether slave point q, which is open, is behind the very facet that was nearest to it when the lists were
-   made. It has then passed through the master, and another part of it is nearer now. */
+   made. It has then passed through the master, and another part of it is nearer now. A fit that reaches there knows no
+   other part, and lies off the facets of a coarse round body. */
 static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, PointGaps *gaps,
                                 ContactLost *lost)
 {
   const PetscReal offset = ContactTermOffset(pair, c, t);
 
   if (!(pair->point_gap[q] - offset >= 0)) return PETSC_FALSE;
+  if (pair->lists->fit_n[q] && NeighbourListsSlip(pair->lists, q) <= NEIGHBOUR_LISTS_MARGIN) return PETSC_FALSE;
   NearestGap(pair, q, gaps);
   *lost = (ContactLost){offset - gaps->gap[q], pair->point_gap[q] - offset, pair->size[c], ContactTermTag(pair, c)};
   return (PetscBool)(gaps->past[q] <= LOST_ON_FACET * lost->size && lost->depth > DepthThatCounts(pair, c, q));

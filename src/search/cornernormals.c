@@ -151,3 +151,48 @@ void CornerNormalsAt(CornerNormals cn, PetscInt facet, const double *xi, PetscRe
   length = PetscSqrtReal(length);
   for (int d = 0; d < 3; d++) normal[d] = length > 0 ? normal[d] / length : cn->view->normals[3 * facet + d];
 }
+
+/* Unit vector of a corner's normal; 0 where normals cancel. */
+static void UnitCorner(CornerNormals cn, PetscInt facet, int a, PetscReal normal[3])
+{
+  const PetscReal *corner = &cn->normal[3 * (CORNERS * facet + a)];
+  PetscReal        length = 0;
+
+  for (int d = 0; d < 3; d++) length += PetscSqr(corner[d]);
+  length = PetscSqrtReal(length);
+  for (int d = 0; d < 3; d++) normal[d] = length > 0 ? corner[d] / length : 0;
+}
+
+/*@
+  CornerNormalsBulge - estimates how far a smooth surface with these normals is off a facet of first order.
+
+  Not collective
+
+  Input Parameters:
++ cn    - the normals
+- facet - the facet
+
+  Note:
+  Returns a length: along each edge the height of a parabola whose ends have these normals, and across a face the
+heights along two edges. Facets of second order are curved themselves: 0.
+@*/
+PetscReal CornerNormalsBulge(CornerNormals cn, PetscInt facet)
+{
+  const SurfaceView *view = cn->view;
+  const Facet       *f    = &view->facets[facet];
+  const int          dim = view->dim, n = ElementGet(f->type)->corners;
+  PetscReal          largest = 0;
+
+  if (ElementGet(f->type)->order > 1) return 0;
+  for (int a = 0; a < (dim == 2 ? 1 : n); a++) {
+    const int b    = (a + 1) % n;
+    PetscReal turn = 0, from[3], to[3];
+
+    UnitCorner(cn, facet, a, from);
+    UnitCorner(cn, facet, b, to);
+    for (int d = 0; d < dim; d++)
+      turn += (to[d] - from[d]) * (view->x[f->nodes[b] * dim + d] - view->x[f->nodes[a] * dim + d]);
+    largest = PetscMax(largest, PetscAbsReal(turn) / 8);
+  }
+  return (dim - 1) * largest;
+}

@@ -92,6 +92,7 @@ typedef struct {
   NeighbourLists   lists;
   SlavePoints      slaves;
   const Candidate *candidates;
+  CornerNormals    corners;            /* of the candidates; NULL: their surface is not smoothed */
   PetscReal        x[3], size, height; /* of the slave's face, and of the element below it (length) */
   PetscReal        outward[3];         /* unit normal out of the slave's body; 0 where it has none */
   PetscBool        listed, one_body;   /* as in the search */
