@@ -98,13 +98,27 @@ static PetscReal BehindOwnFace(const Nearest *look, const Foot *foot)
   return foot->gap * along;
 }
 
-/* Is a slave point beside a facet of another body, on whose edge it has its foot? */
-static PetscBool IsBeside(const Nearest *look, const Candidate *c, const Foot *foot)
+/* How much of the way between a slave point and its foot on a facet leads along the normal of that. */
+static PetscReal AlongNormal(const Nearest *look, const Candidate *c, const Foot *foot)
 {
   PetscReal along = 0;
 
   for (int d = 0; d < look->lists->dim; d++) along += c->normal[d] * foot->normal[d];
-  return (PetscBool)(PetscAbsReal(along) < OWN_BODY_BESIDE);
+  return PetscAbsReal(along);
+}
+
+/* Is a slave point beside a facet of another body, on whose edge it has its foot? */
+static PetscBool IsBeside(const Nearest *look, const Candidate *c, const Foot *foot)
+{
+  return (PetscBool)(AlongNormal(look, c, foot) < OWN_BODY_BESIDE);
+}
+
+/* Is a slave point behind the plane of such a facet by so little that it may have entered the body there? Coarse facets
+   of a bore stand in it by their sagitta, and past its rim a pin that touches it is behind their planes. */
+static PetscBool IsLittleBehind(const Nearest *look, const Candidate *c, const Foot *foot)
+{
+  return (PetscBool)(AlongNormal(look, c, foot) * -foot->gap <=
+                     PetscMin(OWN_BODY_BESIDE * look->size, SEARCH_ENTERED * look->height));
 }
 
 /* Is a depth behind a facet more than what can have been entered of it? Of another body half the height of the point's
@@ -142,7 +156,8 @@ PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot
 
   if (!look->listed || depth <= 0) return PETSC_FALSE;
   if (depth > SEARCH_ENTERED * look->height && IsDeep(look, c, depth))
-    return (PetscBool)(look->one_body || depth > look->size || !IsBeside(look, c, foot) ||
+    return (PetscBool)(look->one_body || depth > look->size ||
+                       !(IsBeside(look, c, foot) || IsLittleBehind(look, c, foot)) ||
                        BehindOwnFace(look, foot) > SEARCH_ENTERED * look->height);
   if (!OnOwnPiece(look, c)) return PETSC_FALSE;
   wall = ReferenceDepth(look, c);
