@@ -27,6 +27,11 @@
    there is friction, a tool that little holds may turn by small parts of steps. */
 #define NEWTON_CRAWL  0.05
 #define NEWTON_CRAWLS 4
+/* With friction a solve ends where its least residual has not fallen to NEWTON_STALL of itself within NEWTON_WAITS of
+   the iterations that it may take. Of a hundred ordinary scenes none converged after that; in piles of loose bodies,
+   where most attempts of long steps fail, it saves a third of what these take. */
+#define NEWTON_STALL 0.9
+#define NEWTON_WAITS 0.5
 /* Where a viscous restraint may help, a solve ends after so many iterations in a row whose tangents are indefinite.
    Newton's method then wanders between equilibria that lie below the one that is lost, and each of them is as good to
    it as the one to which the bodies would move. Where it comes to one at once, it has taken fewer. */
@@ -279,6 +284,24 @@ static PetscErrorCode ModelStopCrawl(Model model, SNESConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Ends a solve with friction whose residuals do not fall any more. They may rise for long where what sticks begins to
+   slip, so that the last of them tells nothing, but the least of them does. */
+static PetscErrorCode ModelStopStall(Model model, PetscInt it, PetscReal fnorm, SNESConvergedReason *reason)
+{
+  ModelWork *work = model->work;
+  PetscInt   most;
+
+  PetscFunctionBeginUser;
+  if (!ContactHasFriction(model->contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (it == 0 || fnorm < NEWTON_STALL * work->least) {
+    work->least    = fnorm;
+    work->least_at = it;
+  }
+  PetscCall(SNESGetTolerances(model->snes, NULL, NULL, NULL, &most, NULL));
+  if (it - work->least_at > NEWTON_WAITS * most) *reason = SNES_DIVERGED_MAX_IT;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Notes whether tangents with friction on the way were those of no stable state. Without friction ModelStopUnstable()
    and the line search look at that. */
 static PetscErrorCode ModelNoteIndefinite(Model model)
@@ -359,6 +382,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   if (model->contact && !*reason) PetscCall(ModelBreakCycle(model, fnorm, reason));
   if (it > 0 && !*reason && !model->work->shift.on) PetscCall(ModelStopCrawl(model, reason));
   if (it > 0 && !*reason && !model->work->shift.on) PetscCall(ModelStopUnstable(model, reason));
+  if (!*reason && !model->work->shift.on) PetscCall(ModelStopStall(model, it, fnorm, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -518,7 +518,7 @@ PetscErrorCode ModelPredictStiffer(Model model, const PetscReal factor[], PetscB
   PetscInt  its;
 
   PetscFunctionBeginUser;
-  if (ContactHasFriction(model->contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ContactHasFriction(model->contact) && !model->problem->bodies) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(model->x, &forces));
   PetscCall(VecDuplicate(model->x, &x));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t));

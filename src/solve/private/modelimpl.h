@@ -183,6 +183,8 @@ typedef struct _n_ModelWork {
   PetscBool   cycling;            /* the solve ended because the contact set repeats itself with shorter steps too */
   PetscInt    cuts[CUT_CAUSES];   /* iterations that the line search shortened, by their cause */
   PetscInt    turned;             /* iterations whose step led uphill and was turned round */
+  PetscReal   least;              /* with friction: the least residual, or one up to a tenth above it (force) */
+  PetscInt    least_at;           /* iteration that found it */
   PetscInt    crawls;             /* steps in a row of which the line search left next to nothing */
   PetscInt    indefinite;         /* iterations in a row whose tangents were indefinite */
   PetscBool   unstable;           /* the solve ended because they remained so */
