@@ -99,9 +99,10 @@ static PetscErrorCode DropDriven(FreeBodies b, const PetscReal *u, PetscReal t, 
 }
 
 /* Adds to the motions tied[n] those that neither they nor contact hold and no load drives at (u, t). Drops those that a
-   load drives. touching: what touches holds, too. */
-static PetscErrorCode FindTied(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool touching,
-                               PetscBool tied[])
+   load drives. begins: what contact has come to hold in the step before is not among them. touching: what touches holds,
+   too. */
+static PetscErrorCode FindTied(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool begins,
+                               PetscBool touching, PetscBool tied[])
 {
   const int  n = b->n;
   double    *gram, *free;
@@ -118,7 +119,8 @@ static PetscErrorCode FindTied(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   PetscCall(FreeBodiesBasis(b, gram, FREE_BODIES_HELD, &loose, free, pivot));
   PetscCall(FreeBodiesDriven(b, u, t_loads, FREE_BODIES_UNEVEN, loose, free, drives));
   for (int f = 0; f < loose; f++)
-    if (!drives[f] && (FreeBodiesInContact(b, b->owner[pivot[f]], gram) || FreeBodiesTurns(b, pivot[f])))
+    if (!drives[f] && !(begins && b->state[pivot[f]] == MOTION_CONTACT) &&
+        (FreeBodiesInContact(b, b->owner[pivot[f]], gram) || FreeBodiesTurns(b, pivot[f])))
       tied[pivot[f]] = PETSC_TRUE;
   PetscCall(PetscFree4(gram, free, pivot, drives));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -160,7 +162,7 @@ PetscErrorCode FreeBodiesTie(FreeBodies b, const PetscReal *u, PetscReal t, Pets
   PetscCall(PetscMalloc2(b->n, &ties, b->n, &tied));
   for (int k = 0; k < b->n; k++)
     tied[k] = begins ? (PetscBool)(b->state[k] >= MOTION_TIED) : ContactSpringsHaveTie(springs, k);
-  PetscCall(FindTied(b, u, t, t_loads, touching, tied));
+  PetscCall(FindTied(b, u, t, t_loads, begins, touching, tied));
   for (int k = 0; k < b->n; k++) {
     *changed = (PetscBool)(*changed || tied[k] != ContactSpringsHaveTie(springs, k));
     if (tied[k]) PetscCall(MakeTie(b, u, k, &ties[m++]));
