@@ -32,6 +32,10 @@
    where most attempts of long steps fail, it saves a third of what these take. */
 #define NEWTON_STALL 0.9
 #define NEWTON_WAITS 0.5
+/* So does a solve after so many steps in a row of less than this part of its longest one, without a lower residual. The
+   contact problem of a linear step may have no end where a body gives way, and none is what is left of the step. */
+enum { NEWTON_NULL_STEPS = 2 };
+#define NEWTON_NULL 1e-8
 /* Where a viscous restraint may help, a solve ends after so many iterations in a row whose tangents are indefinite.
    Newton's method then wanders between equilibria that lie below the one that is lost, and each of them is as good to
    it as the one to which the bodies would move. Where it comes to one at once, it has taken fewer. */
@@ -286,19 +290,24 @@ static PetscErrorCode ModelStopCrawl(Model model, SNESConvergedReason *reason)
 
 /* Ends a solve with friction whose residuals do not fall any more. They may rise for long where what sticks begins to
    slip, so that the last of them tells nothing, but the least of them does. */
-static PetscErrorCode ModelStopStall(Model model, PetscInt it, PetscReal fnorm, SNESConvergedReason *reason)
+static PetscErrorCode ModelStopStall(Model model, PetscInt it, PetscReal step, PetscReal fnorm,
+                                     SNESConvergedReason *reason)
 {
   ModelWork *work = model->work;
+  PetscBool  lower;
   PetscInt   most;
 
   PetscFunctionBeginUser;
   if (!ContactHasFriction(model->contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (it == 0 || fnorm < NEWTON_STALL * work->least) {
+  lower         = (PetscBool)(it == 0 || fnorm < NEWTON_STALL * work->least);
+  work->longest = it == 0 ? 0 : PetscMax(work->longest, step);
+  work->nulls   = lower || step > NEWTON_NULL * work->longest ? 0 : work->nulls + 1;
+  if (lower) {
     work->least    = fnorm;
     work->least_at = it;
   }
   PetscCall(SNESGetTolerances(model->snes, NULL, NULL, NULL, &most, NULL));
-  if (it - work->least_at > NEWTON_WAITS * most) *reason = SNES_DIVERGED_MAX_IT;
+  if (it - work->least_at > NEWTON_WAITS * most || work->nulls == NEWTON_NULL_STEPS) *reason = SNES_DIVERGED_MAX_IT;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -348,7 +357,6 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   PetscFunctionBeginUser;
   PetscCall(SNESGetSolution(snes, &x));
   (void)xnorm;
-  (void)snorm;
   if (it > 0) PetscCall(ModelCountCut(model, x));
   if (it > 0) PetscCall(ModelNoteIndefinite(model));
   PetscCall(ProblemRoundOff(model->problem, &round_off));
@@ -382,7 +390,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   if (model->contact && !*reason) PetscCall(ModelBreakCycle(model, fnorm, reason));
   if (it > 0 && !*reason && !model->work->shift.on) PetscCall(ModelStopCrawl(model, reason));
   if (it > 0 && !*reason && !model->work->shift.on) PetscCall(ModelStopUnstable(model, reason));
-  if (!*reason && !model->work->shift.on) PetscCall(ModelStopStall(model, it, fnorm, reason));
+  if (!*reason && !model->work->shift.on) PetscCall(ModelStopStall(model, it, snorm, fnorm, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -185,6 +185,8 @@ typedef struct _n_ModelWork {
   PetscInt    turned;             /* iterations whose step led uphill and was turned round */
   PetscReal   least;              /* with friction: the least residual, or one up to a tenth above it (force) */
   PetscInt    least_at;           /* iteration that found it */
+  PetscReal   longest;            /* norm of the longest step (length) */
+  PetscInt    nulls;              /* steps in a row of no length beside that */
   PetscInt    crawls;             /* steps in a row of which the line search left next to nothing */
   PetscInt    indefinite;         /* iterations in a row whose tangents were indefinite */
   PetscBool   unstable;           /* the solve ended because they remained so */
