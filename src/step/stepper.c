@@ -37,6 +37,13 @@
 /* What bounds a step and may have another cause than its length */
 typedef enum { BOUND_LAG, BOUND_TRAVEL, BOUND_FACING, BOUND_FAR, BOUNDS } Bound;
 
+/* The last step that was taken back for a bound. What it used may belong to the load at its end, as where the run
+   chooses penalties there, and a later step to the same end uses as much, however short it is. */
+typedef struct {
+  PetscReal end;          /* load parameter; 0: none */
+  PetscReal used[BOUNDS]; /* of what is allowed */
+} Refused;
+
 /* Accepted steps whose pace tells a limit load: two pairs of neighbours must tell the same */
 enum { PACE_STEPS = 3 };
 
@@ -62,6 +69,7 @@ struct _n_LoadStepper {
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
   PetscReal            used[BOUNDS]; /* by the last attempt of this step, of what is allowed; 0: none */
+  Refused              refused, known; /* known: in the accepted state */
   PetscBool            in_vain;      /* this step was shortened for a bound that it passes all the same */
   PetscBool            shortens;     /* this step may be made shorter if its first linear step goes too far */
   PetscReal            most_facing;  /* turn (radians) of surfaces that lie opposite each other in this step */
@@ -471,6 +479,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   report->damped += stepper->damped;
   report->damping += solve->damping;
   stepper->start = stepper->size;
+  stepper->known = stepper->refused;
   report->t      = model->t;
   report->steps++;
   report->newton_accepted += solve->newton;
@@ -745,6 +754,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   while (PETSC_TRUE) {
     const PetscReal end = StepEnd(stepper, t, stepper->size.dt, &clipped), dt = end - t;
 
+    if (end == stepper->refused.end) PetscCall(PetscArraycpy(stepper->used, stepper->refused.used, BOUNDS));
     model->most_facing = STEPPER_CUT * dt < stepper->size.dt_min ? INFINITY : stepper->most_facing;
     PetscCall(LoadStepperTry(stepper, end, dt, &failures, &solve));
     record->attempts += !SolveHasNotBegun(solve.result);
@@ -752,6 +762,8 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     if (solve.result == SOLVE_CONVERGED) {
       PetscCall(LoadStepperJudge(stepper, dt, &most, advanced));
       if (!*advanced) {
+        stepper->refused.end = end;
+        PetscCall(PetscArraycpy(stepper->refused.used, stepper->used, BOUNDS));
         PetscCall(ModelRestore(model));
         report->steps_repeated++;
         continue;
@@ -848,6 +860,20 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Saves or loads the last step that was taken back. Older archives have none. */
+static PetscErrorCode ArchiveRefused(Archive archive, Refused *refused)
+{
+  PetscBool  there = PETSC_TRUE;
+  PetscReal *place[1 + BOUNDS];
+
+  PetscFunctionBeginUser;
+  place[0] = &refused->end;
+  for (int bound = 0; bound < BOUNDS; bound++) place[1 + bound] = &refused->used[bound];
+  if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, "stepper/refused", &there));
+  if (there) PetscCall(ArchiveRealsAt(archive, "stepper/refused", 1 + BOUNDS, place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   LoadStepperArchive - saves or loads the size of the next step and the counts, as they were at the last accepted step.
 
@@ -900,11 +926,13 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));
   PetscCall(ArchiveIntegersAt(archive, "stepper/counts", PETSC_STATIC_ARRAY_LENGTH(integer), integer));
+  PetscCall(ArchiveRefused(archive, &stepper->known));
   PetscCall(ArchiveIntegers(archive, "stepper/cuts", CUT_CAUSES, report->cuts));
   PetscCall(ArchiveString(archive, "stepper/cycle", sizeof(report->cycle), report->cycle));
   PetscCall(ArchiveString(archive, "stepper/jump", sizeof(report->jump), report->jump));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   if (initial == stepper->size.initial) size.dt = PetscMin(size.dt_max, dt);
-  stepper->size = size;
+  stepper->size    = size;
+  stepper->refused = stepper->known;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
