@@ -367,17 +367,33 @@ static PetscErrorCode EvaluatePart(Halvings *h, int i)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The part of the step x - y that is tried first: all that the search allows, unless it turns a tool too far. Where all
-   that touches a tool slips, little resists its turn, and a linear step would spin it. */
+/* The farthest that a step may move a node: what contact lists are made for, or the largest face of a slave. */
+static PetscErrorCode MostMotion(Model model, PetscReal *most)
+{
+  PetscFunctionBeginUser;
+  *most = model->problem->expected;
+  for (int p = 0; p < ContactPairs(model->contact); p++) {
+    const MeshGroup *slave;
+    PetscReal        size;
+
+    PetscCall(ContactPairSurface(model->contact, p, &slave, &size));
+    *most = PetscMax(*most, size);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The part of the step x - y that is tried first: all that the search allows, unless it turns a tool too far, or moves
+   a body past all that the contact knows. Where all that touches a tool slips, little resists its turn, and a linear
+   step would spin it. Of a body that slips along its load nothing is left but weak springs: a linear step carries it
+   off, to where it has no contact and only its load is out of balance. */
 static PetscErrorCode FirstPart(Model model, SNESLineSearch search, Vec x, Vec y, PetscReal *first)
 {
   const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
-  PetscReal     *u, *v, turn;
+  PetscReal     *u, *v, turn, motion, most;
   Vec            end;
 
   PetscFunctionBeginUser;
   PetscCall(SNESLineSearchGetDamping(search, first));
-  if (!model->mesh->n_tools) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc2(n, &u, n, &v));
   PetscCall(VecDuplicate(x, &end));
   PetscCall(VecWAXPY(end, -1, y, x));
@@ -385,6 +401,9 @@ static PetscErrorCode FirstPart(Model model, SNESLineSearch search, Vec x, Vec y
   PetscCall(ProblemDisplacements(model->problem, end, model->t, v));
   turn = ToolsTurn(model->mesh, u, v, NULL);
   if (turn * *first > MODEL_FARTHEST) *first = MODEL_FARTHEST / turn;
+  PetscCall(ProblemMotion(model->problem, u, model->t, v, model->t, &motion));
+  PetscCall(MostMotion(model, &most));
+  if (motion * *first > most) *first = most / motion;
   PetscCall(VecDestroy(&end));
   PetscCall(PetscFree2(u, v));
   PetscFunctionReturn(PETSC_SUCCESS);
