@@ -99,8 +99,8 @@ static PetscErrorCode DropDriven(FreeBodies b, const PetscReal *u, PetscReal t, 
 }
 
 /* Adds to the motions tied[n] those that neither they nor contact hold and no load drives at (u, t). Drops those that a
-   load drives. begins: what contact has come to hold in the step before is not among them. touching: what touches holds,
-   too. */
+   load drives. begins: what contact has come to hold in the step before is not among them. touching: what touches
+   holds, too. */
 static PetscErrorCode FindTied(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool begins,
                                PetscBool touching, PetscBool tied[])
 {

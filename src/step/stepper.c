@@ -68,11 +68,11 @@ struct _n_LoadStepper {
   void                *last_context;
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
-  PetscReal            used[BOUNDS]; /* by the last attempt of this step, of what is allowed; 0: none */
+  PetscReal            used[BOUNDS];   /* by the last attempt of this step, of what is allowed; 0: none */
   Refused              refused, known; /* known: in the accepted state */
-  PetscBool            in_vain;      /* this step was shortened for a bound that it passes all the same */
-  PetscBool            shortens;     /* this step may be made shorter if its first linear step goes too far */
-  PetscReal            most_facing;  /* turn (radians) of surfaces that lie opposite each other in this step */
+  PetscBool            in_vain;        /* this step was shortened for a bound that it passes all the same */
+  PetscBool            shortens;       /* this step may be made shorter if its first linear step goes too far */
+  PetscReal            most_facing;    /* turn (radians) of surfaces that lie opposite each other in this step */
   Pace                 pace;
   PetscInt             damped; /* 1: the last accepted step was damped */
   PetscBool            view;

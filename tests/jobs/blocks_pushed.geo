@@ -1,5 +1,5 @@
-// Two blocks of 10 x 10 on each other on a bed; lengths in mm
-DefineConstant[refine = 1];
+// Two blocks on each other on a bed. Lengths in mm.
+DefineConstant[ refine = {1, Name "divides all element sizes"} ];
 SetFactory("OpenCASCADE");
 Rectangle(1) = {0, 0, 0, 10, 10};
 Rectangle(2) = {0, 10, 0, 10, 10};

@@ -293,6 +293,9 @@ JOBS = [
     Job("vee_jaws", "rod drawn out of two jaws with vees, in space", [
         Answer("pull", 381.84, 0.2, "closed form"),
     ], steps=14),
+    Job("blocks_pushed", "upper one of two loose blocks pushed off", [
+        Answer("push", 2.0, 0.01, "closed form"),
+    ], steps=12),
     Job("wedge_brake", "shoe between a slope and a rail that moves", [
         Answer("brake", 149.776, 0.05, "closed form"),
     ], steps=10, pairs=2),
