@@ -18,8 +18,11 @@
 /* A step may turn cells by this much. The way down is bent, and steps as long as MODEL_FARTHEST leave it: of a rubber
    block with nine holes none of them finds the end of its first jump. */
 #define SHIFT_FARTHEST 0.2
-/* Contact lists are made for this multiple of the step that would lead out of the present ones. */
+/* Contact lists are made for this multiple of the step that would lead out of the present ones, */
 #define SHIFT_AHEAD 2
+/* and with friction for this multiple of the way from the accepted state, if that is more: two bodies may have moved
+   against each other, and what sticks is anchored where they were. */
+#define SHIFT_BEHIND 2
 /* Iterations of a shifted solve, in those that solver.max_iterations allows others. On the way down from an equilibrium
    that is lost there are many, and none that fails. */
 #define SHIFT_LONGER 10
@@ -198,9 +201,14 @@ PetscErrorCode ModelShiftLists(Model model, Vec x, PetscReal reach)
 @*/
 PetscErrorCode ModelShiftRenew(Model model)
 {
-  const PetscReal reach = PetscMax(model->problem->expected, model->work->shift.wanted);
+  const ModelWork *work  = model->work;
+  PetscReal        reach = PetscMax(model->problem->expected, work->shift.wanted), motion = 0;
 
   PetscFunctionBeginUser;
+  if (ContactHasFriction(model->contact))
+    PetscCall(
+      ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->problem->trial, model->t, &motion));
+  reach = PetscMax(reach, SHIFT_BEHIND * motion);
   TimingBegin(TIMING_SEARCH);
   PetscCall(ContactListsRenew(model->contact, model->problem->trial, model->t, reach));
   TimingEnd(TIMING_SEARCH);
