@@ -121,16 +121,15 @@ static PetscBool IsLittleBehind(const Nearest *look, const Candidate *c, const F
                      PetscMin(OWN_BODY_BESIDE * look->size, SEARCH_ENTERED * look->height));
 }
 
-/* Is a depth behind a facet more than what can have been entered of it? Of another body half the height of the point's
-   own element can: what lies behind the point's body is a whole wall away. Where that body's faces are coarse, the
-   smooth surface lies so much deeper. A grommet that bends round the edge of a plate, whose faces are a third as long
-   as its own, stops where the chords of its faces count as depths. */
+/* Is a depth behind a facet more than what can have been entered of it? Where the faces of another body are coarse, its
+   smooth surface may lie so much deeper than they do. A grommet that bends round the edge of a plate, whose faces are a
+   third as long as its own, stops where the chords of its faces count as depths. */
 static PetscBool IsDeep(const Nearest *look, const Candidate *c, PetscReal depth)
 {
-  PetscReal most = (look->one_body ? 1 : SEARCH_OTHERS) * SEARCH_ENTERED * look->height;
+  const PetscReal entered = SEARCH_ENTERED * look->height;
 
-  if (!look->one_body && look->corners) most += CornerNormalsBulge(look->corners, (PetscInt)(c - look->candidates));
-  return (PetscBool)(depth > most);
+  if (depth <= entered || look->one_body || !look->corners) return (PetscBool)(depth > entered);
+  return (PetscBool)(depth > entered + CornerNormalsBulge(look->corners, (PetscInt)(c - look->candidates)));
 }
 
 /*@
@@ -155,7 +154,7 @@ PetscBool OwnBodyHides(const Nearest *look, const Candidate *c, const Foot *foot
   PetscReal       wall;
 
   if (!look->listed || depth <= 0) return PETSC_FALSE;
-  if (depth > SEARCH_ENTERED * look->height && IsDeep(look, c, depth))
+  if (IsDeep(look, c, depth))
     return (PetscBool)(look->one_body || depth > look->size ||
                        !(IsBeside(look, c, foot) || IsLittleBehind(look, c, foot)) ||
                        BehindOwnFace(look, foot) > SEARCH_ENTERED * look->height);

@@ -19,8 +19,6 @@
    reference distance to a facet behind it, up to which the point has entered what faces it. A wall has at least one
    element, so its own far side is nearer than that only where it is compressed to a quarter. */
 #define SEARCH_ENTERED 0.25
-/* Times as far of another body. */
-#define SEARCH_OTHERS 2
 
 /* How a master surface is fitted. */
 typedef struct {
