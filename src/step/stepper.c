@@ -37,11 +37,11 @@
 /* What bounds a step and may have another cause than its length */
 typedef enum { BOUND_LAG, BOUND_TRAVEL, BOUND_FACING, BOUND_FAR, BOUNDS } Bound;
 
-/* The last step that was taken back for a bound. What it used may belong to the load at its end, as where the run
-   chooses penalties there, and a later step to the same end uses as much, however short it is. */
+/* The last step that was taken back for its lag or its travel. What it used may belong to the load at its end, as where
+   the run chooses penalties there, and a later step to the same end uses as much, however short it is. */
 typedef struct {
-  PetscReal end;          /* load parameter; 0: none */
-  PetscReal used[BOUNDS]; /* of what is allowed */
+  PetscReal end;         /* load parameter; 0: none */
+  PetscReal lag, travel; /* used of what is allowed */
 } Refused;
 
 /* Accepted steps whose pace tells a limit load: two pairs of neighbours must tell the same */
@@ -637,6 +637,21 @@ static PetscErrorCode LoadStepperTravel(LoadStepper stepper, PetscReal *used, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes back a converged step for its bounds. The next one is of dt. */
+static void LoadStepperRefuse(LoadStepper stepper, PetscReal dt)
+{
+  stepper->refused = (Refused){stepper->model->t, stepper->used[BOUND_LAG], stepper->used[BOUND_TRAVEL]};
+  stepper->size.dt = dt;
+}
+
+/* A step to the end of the one that was taken back last is compared with that. */
+static void LoadStepperRemember(LoadStepper stepper, PetscReal end)
+{
+  if (end != stepper->refused.end) return;
+  stepper->used[BOUND_LAG]    = stepper->refused.lag;
+  stepper->used[BOUND_TRAVEL] = stepper->refused.travel;
+}
+
 /* Says whether bodies flow and contact travels by no more than the scene allows in the step to the present solution, or
    dt is the smallest one. A step that is taken back is followed by a shorter one, one that stays bounds the next dt. A
    step stays, too, that is shorter than the attempt before and uses as much: that does not come from the length. */
@@ -655,7 +670,7 @@ static PetscErrorCode LoadStepperBound(LoadStepper stepper, PetscReal dt, PetscR
   if (*within)
     *most = PetscMax(*most, STEPPER_CUT * dt);
   else
-    stepper->size.dt = PetscMin(STEPPER_CUT * dt, *most); /* a landing may stretch it by STEPPER_STRETCH */
+    LoadStepperRefuse(stepper, PetscMin(STEPPER_CUT * dt, *most)); /* a landing may stretch it by STEPPER_STRETCH */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -754,7 +769,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   while (PETSC_TRUE) {
     const PetscReal end = StepEnd(stepper, t, stepper->size.dt, &clipped), dt = end - t;
 
-    if (end == stepper->refused.end) PetscCall(PetscArraycpy(stepper->used, stepper->refused.used, BOUNDS));
+    LoadStepperRemember(stepper, end);
     model->most_facing = STEPPER_CUT * dt < stepper->size.dt_min ? INFINITY : stepper->most_facing;
     PetscCall(LoadStepperTry(stepper, end, dt, &failures, &solve));
     record->attempts += !SolveHasNotBegun(solve.result);
@@ -762,8 +777,6 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     if (solve.result == SOLVE_CONVERGED) {
       PetscCall(LoadStepperJudge(stepper, dt, &most, advanced));
       if (!*advanced) {
-        stepper->refused.end = end;
-        PetscCall(PetscArraycpy(stepper->refused.used, stepper->used, BOUNDS));
         PetscCall(ModelRestore(model));
         report->steps_repeated++;
         continue;
@@ -863,14 +876,12 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
 /* Saves or loads the last step that was taken back. Older archives have none. */
 static PetscErrorCode ArchiveRefused(Archive archive, Refused *refused)
 {
-  PetscBool  there = PETSC_TRUE;
-  PetscReal *place[1 + BOUNDS];
+  PetscReal *place[] = {&refused->end, &refused->lag, &refused->travel};
+  PetscBool  there   = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  place[0] = &refused->end;
-  for (int bound = 0; bound < BOUNDS; bound++) place[1 + bound] = &refused->used[bound];
   if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, "stepper/refused", &there));
-  if (there) PetscCall(ArchiveRealsAt(archive, "stepper/refused", 1 + BOUNDS, place));
+  if (there) PetscCall(ArchiveRealsAt(archive, "stepper/refused", PETSC_STATIC_ARRAY_LENGTH(place), place));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
