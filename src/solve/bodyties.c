@@ -99,8 +99,8 @@ static PetscErrorCode DropDriven(FreeBodies b, const PetscReal *u, PetscReal t, 
 }
 
 /* Adds to the motions tied[n] those that neither they nor contact hold and no load drives at (u, t). Drops those that a
-   load drives. begins: what contact has come to hold in the step before is not among them. touching: what touches
-   holds, too. */
+   load drives. begins: what contact came to hold in a step before is not among them while its body has contact.
+   touching: what touches holds, too. */
 static PetscErrorCode FindTied(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool begins,
                                PetscBool touching, PetscBool tied[])
 {
@@ -118,10 +118,14 @@ static PetscErrorCode FindTied(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   for (int k = 0; k < n; k++) gram[k * n + k] += tied[k] ? 1 : 0; /* the stiffness of the stiffest contact */
   PetscCall(FreeBodiesBasis(b, gram, FREE_BODIES_HELD, &loose, free, pivot));
   PetscCall(FreeBodiesDriven(b, u, t_loads, FREE_BODIES_UNEVEN, loose, free, drives));
-  for (int f = 0; f < loose; f++)
-    if (!drives[f] && !(begins && b->state[pivot[f]] == MOTION_CONTACT) &&
-        (FreeBodiesInContact(b, b->owner[pivot[f]], gram) || FreeBodiesTurns(b, pivot[f])))
-      tied[pivot[f]] = PETSC_TRUE;
+  for (int f = 0; f < loose; f++) {
+    const int k = pivot[f];
+
+    if (drives[f]) continue;
+    tied[k] =
+      (PetscBool)(tied[k] || (FreeBodiesInContact(b, b->owner[k], gram) ? !(begins && b->state[k] == MOTION_CONTACT)
+                                                                        : FreeBodiesTurns(b, k)));
+  }
   PetscCall(PetscFree4(gram, free, pivot, drives));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
