@@ -122,14 +122,18 @@ static PetscBool IsLittleBehind(const Nearest *look, const Candidate *c, const F
 }
 
 /* Is a depth behind a facet more than what can have been entered of it? Where the faces of another body are coarse, its
-   smooth surface may lie so much deeper than they do. A grommet that bends round the edge of a plate, whose faces are a
-   third as long as its own, stops where the chords of its faces count as depths. */
+   smooth surface may lie so much deeper than they do, which counts as far as OwnBodyFarthest() allows. A grommet that
+   bends round the edge of a plate, whose faces are a third as long as its own, stops where the chords of its faces count
+   as depths. */
 static PetscBool IsDeep(const Nearest *look, const Candidate *c, PetscReal depth)
 {
   const PetscReal entered = SEARCH_ENTERED * look->height;
 
+  PetscReal       bulge;
+
   if (depth <= entered || look->one_body || !look->corners) return (PetscBool)(depth > entered);
-  return (PetscBool)(depth > entered + CornerNormalsBulge(look->corners, (PetscInt)(c - look->candidates)));
+  bulge = CornerNormalsBulge(look->corners, (PetscInt)(c - look->candidates));
+  return (PetscBool)(depth > PetscMin(entered + bulge, OwnBodyBehind(look)));
 }
 
 /*@
@@ -245,9 +249,22 @@ PetscBool OwnBodyTells(const Nearest *look, const Candidate *c, PetscBool *hidde
 @*/
 PetscReal OwnBodyBehind(const Nearest *look)
 {
-  const PetscReal entered = SEARCH_ENTERED * look->height;
+  return OwnBodyFarthest(look->one_body, look->height, look->size);
+}
 
-  return look->one_body ? entered : PetscMax(entered, look->size);
+/*@
+  OwnBodyFarthest - returns what OwnBodyBehind() does, for a slave point that is not searched.
+
+  Not collective
+
+  Input Parameters:
++ one_body - slave and master have faces of one body
+. height   - of the element below the point's face (length)
+- size     - of that face (length)
+@*/
+PetscReal OwnBodyFarthest(PetscBool one_body, PetscReal height, PetscReal size)
+{
+  return one_body ? SEARCH_ENTERED * height : PetscMax(SEARCH_ENTERED * height, size);
 }
 
 /*@

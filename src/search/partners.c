@@ -1,5 +1,5 @@
 /* Slave points where any side of the bodies may meet any other one: which of them can have a partner at all. */
-#include "searchimpl.h"
+#include "ownbody.h"
 
 /* A test is good as long as slave points, with their offsets, and master together have moved by less than this part of
    the thinnest element or of the largest face, whichever is less. A wall of one element is thicker than that and what
@@ -204,9 +204,8 @@ typedef struct {
 /* What a slave point leaves out. Where slave and master have faces of one body, the facet must oppose the point. */
 static BoxTreeSide PointSide(const PointTests *tests, PetscInt q)
 {
-  const ContactSearch s       = tests->s;
-  const PetscReal     entered = SEARCH_ENTERED * s->slaves->height[q],
-                  behind      = s->one_body ? entered : PetscMax(entered, s->slaves->size[q]);
+  const ContactSearch s      = tests->s;
+  const PetscReal     behind = OwnBodyFarthest(s->one_body, s->slaves->height[q], s->slaves->size[q]);
 
   return (BoxTreeSide){.own     = &tests->normal[3 * q],
                        .opposed = s->one_body ? SEARCH_OPPOSED_NOT - 2 * tests->sight->turn : -INFINITY,

@@ -14,5 +14,6 @@
 PetscBool OwnBodyHides(const Nearest *, const Candidate *, const Foot *);
 PetscBool OwnBodyTells(const Nearest *, const Candidate *, PetscBool *hidden);
 PetscReal OwnBodyBehind(const Nearest *);
+PetscReal OwnBodyFarthest(PetscBool one_body, PetscReal height, PetscReal size);
 PetscBool OwnBodyTurnsFrom(const Nearest *, const Candidate *, const Foot *);
 PetscBool OwnBodyIsWedge(const Nearest *, const Candidate *);
