@@ -119,6 +119,17 @@ static void CornerShares(const Element *e, const double *xi, double N[CORNERS])
   ElementShape(e->corners == 2 ? ELEMENT_EDGE2 : e->corners == 3 ? ELEMENT_TRI3 : ELEMENT_QUAD4, at, N, NULL, NULL);
 }
 
+/* Unit vector of a corner's normal; 0 where the normals of its facets cancel. */
+static void UnitCorner(CornerNormals cn, PetscInt facet, int a, PetscReal normal[3])
+{
+  const PetscReal *corner = &cn->normal[3 * (CORNERS * facet + a)];
+  PetscReal        length = 0;
+
+  for (int d = 0; d < 3; d++) length += PetscSqr(corner[d]);
+  length = PetscSqrtReal(length);
+  for (int d = 0; d < 3; d++) normal[d] = length > 0 ? corner[d] / length : 0;
+}
+
 /*@
   CornerNormalsAt - finds the normal at a place of a facet.
 
@@ -141,26 +152,14 @@ void CornerNormalsAt(CornerNormals cn, PetscInt facet, const double *xi, PetscRe
   CornerShares(e, xi, N);
   for (int d = 0; d < 3; d++) normal[d] = 0;
   for (int a = 0; a < e->corners; a++) {
-    const PetscReal *corner = &cn->normal[3 * (CORNERS * facet + a)];
-    PetscReal        own    = 0;
+    PetscReal corner[3];
 
-    for (int d = 0; d < 3; d++) own += PetscSqr(corner[d]);
-    for (int d = 0; d < 3 && own > 0; d++) normal[d] += N[a] * corner[d] / PetscSqrtReal(own);
+    UnitCorner(cn, facet, a, corner);
+    for (int d = 0; d < 3; d++) normal[d] += N[a] * corner[d];
   }
   for (int d = 0; d < 3; d++) length += PetscSqr(normal[d]);
   length = PetscSqrtReal(length);
   for (int d = 0; d < 3; d++) normal[d] = length > 0 ? normal[d] / length : cn->view->normals[3 * facet + d];
-}
-
-/* Unit vector of a corner's normal; 0 where normals cancel. */
-static void UnitCorner(CornerNormals cn, PetscInt facet, int a, PetscReal normal[3])
-{
-  const PetscReal *corner = &cn->normal[3 * (CORNERS * facet + a)];
-  PetscReal        length = 0;
-
-  for (int d = 0; d < 3; d++) length += PetscSqr(corner[d]);
-  length = PetscSqrtReal(length);
-  for (int d = 0; d < 3; d++) normal[d] = length > 0 ? corner[d] / length : 0;
 }
 
 /*@
@@ -174,7 +173,7 @@ static void UnitCorner(CornerNormals cn, PetscInt facet, int a, PetscReal normal
 
   Note:
   Returns a length: along each edge the height of a parabola whose ends have these normals, and across a face the
-heights along two edges. Facets of second order are curved themselves: 0.
+  heights along two edges. Facets of second order are curved themselves: 0.
 @*/
 PetscReal CornerNormalsBulge(CornerNormals cn, PetscInt facet)
 {

@@ -210,21 +210,15 @@ int FlankSort(const Nearest *look, int *n, int *found, int *dropped)
 {
   int facing = 0, kept = 0;
 
-  *dropped = 0;
   for (int i = 0; i < *n; i++) {
-    const int        c         = found[i];
-    const Candidate *candidate = &look->candidates[c];
-    const PetscBool  keep      = (PetscBool)(!FlankIsOwn(look, candidate) && !IsHidden(look, candidate));
+    const int c = found[i];
 
-    found[i]               = found[kept + *dropped];
-    found[kept + *dropped] = c;
-    if (keep) {
-      found[kept + *dropped] = found[kept];
-      found[kept++]          = c;
-    } else
-      (*dropped)++;
+    if (FlankIsOwn(look, &look->candidates[c]) || IsHidden(look, &look->candidates[c])) continue;
+    found[i]      = found[kept];
+    found[kept++] = c;
   }
-  *n = kept;
+  *dropped = *n - kept;
+  *n       = kept;
   for (int i = 0; i < kept; i++) {
     const int c = found[i];
 
@@ -625,7 +619,7 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
 void FlankCuts(const Nearest *look, int facing, const int *found, int n, const int *dropped, int *ends)
 {
   Mark(look, n, dropped);
-  for (int i = 0; i < facing; i++) {
+  for (int i = 0; i < facing && n > 0; i++) {
     if (!MayEnd(look, &look->candidates[found[i]].facet)) continue;
     for (int k = 0; k < n; k++) {
       FlankEdge edge;
