@@ -367,7 +367,8 @@ static PetscErrorCode EvaluatePart(Halvings *h, int i)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The farthest that a step may move a node: what contact lists are made for, or the largest face of a slave. */
+/* The farthest that a step may move a node: what contact lists are made for, or the mean face of a
+   slave, the largest of all pairs. */
 static PetscErrorCode MostMotion(Model model, PetscReal *most)
 {
   PetscFunctionBeginUser;

@@ -507,8 +507,9 @@ PetscErrorCode ModelStiffenLess(Model model, PetscReal factor[], PetscBool forec
    not in force yet, have their solution to first order: displacements are linear in compliances. Contact then presses
    as before. At the solution itself it would press factor[] times as much. Where a surface is strongly curved, such
    pressures outweigh the stiffness of rubber in the tangent, and Newton's method leaves for another equilibrium: an
-   O-ring squeezed by 30 % takes 18 instead of 53 iterations. Nothing is moved with friction: a sharp-edged tool that is
-   drawn over a slab takes more iterations then, 463 instead of 414 at mu 0.3, and stops on the way at mu 0.8.
+   O-ring squeezed by 30 % takes 18 instead of 53 iterations. With friction something is moved only where contact alone
+   holds a body. Else a sharp-edged tool that is drawn over a slab takes more iterations, 463 instead of 414 at mu 0.3,
+   and stops on the way at mu 0.8.
    estimated: ModelEstimatePenalty() has just been called, and the linear solver has its tangent. */
 PetscErrorCode ModelPredictStiffer(Model model, const PetscReal factor[], PetscBool estimated, SolveReport *report)
 {
