@@ -386,11 +386,12 @@ static PetscErrorCode MostMotion(Model model, PetscReal *most)
 /* The part of the step x - y that is tried first: all that the search allows, unless it turns a tool too far, or moves
    a body past all that the contact knows. Where all that touches a tool slips, little resists its turn, and a linear
    step would spin it. Of a body that slips along its load nothing is left but weak springs: a linear step carries it
-   off, to where it has no contact and only its load is out of balance. */
+   off, to where it has no contact and only its load is out of balance. One that has gone farther than that since the
+   accepted state has left its contact. It is not held back: the springs then tell that nothing else holds it. */
 static PetscErrorCode FirstPart(Model model, SNESLineSearch search, Vec x, Vec y, PetscReal *first)
 {
   const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
-  PetscReal     *u, *v, turn, motion, most;
+  PetscReal     *u, *v, turn, motion, gone, most;
   Vec            end;
 
   PetscFunctionBeginUser;
@@ -403,8 +404,9 @@ static PetscErrorCode FirstPart(Model model, SNESLineSearch search, Vec x, Vec y
   turn = ToolsTurn(model->mesh, u, v, NULL);
   if (turn * *first > MODEL_FARTHEST) *first = MODEL_FARTHEST / turn;
   PetscCall(ProblemMotion(model->problem, u, model->t, v, model->t, &motion));
+  PetscCall(ProblemMotion(model->problem, model->work->accepted_u, model->work->accepted_t, u, model->t, &gone));
   PetscCall(MostMotion(model, &most));
-  if (motion * *first > most) *first = most / motion;
+  if (gone <= most && motion * *first > most) *first = most / motion;
   PetscCall(VecDestroy(&end));
   PetscCall(PetscFree2(u, v));
   PetscFunctionReturn(PETSC_SUCCESS);
