@@ -123,13 +123,13 @@ static PetscBool IsLittleBehind(const Nearest *look, const Candidate *c, const F
 
 /* Is a depth behind a facet more than what can have been entered of it? Where the faces of another body are coarse, its
    smooth surface may lie so much deeper than they do, which counts as far as OwnBodyFarthest() allows. A grommet that
-   bends round the edge of a plate, whose faces are a third as long as its own, stops where the chords of its faces count
-   as depths. */
+   bends round the edge of a plate, whose faces are a third as long as its own, stops where the chords of its faces
+   count as depths. */
 static PetscBool IsDeep(const Nearest *look, const Candidate *c, PetscReal depth)
 {
   const PetscReal entered = SEARCH_ENTERED * look->height;
 
-  PetscReal       bulge;
+  PetscReal bulge;
 
   if (depth <= entered || look->one_body || !look->corners) return (PetscBool)(depth > entered);
   bulge = CornerNormalsBulge(look->corners, (PetscInt)(c - look->candidates));
