@@ -31,7 +31,7 @@
    the iterations that it may take. Of a hundred ordinary scenes none converged after that; in piles of loose bodies,
    where most attempts of long steps fail, it saves a third of what these take. */
 #define NEWTON_STALL 0.9
-#define NEWTON_WAITS 0.5
+#define NEWTON_WAITS 0.6
 /* So does a solve after so many steps in a row of less than this part of its longest one, without a lower residual. The
    contact problem of a linear step may have no end where a body gives way, and none is what is left of the step. */
 enum { NEWTON_NULL_STEPS = 2 };
