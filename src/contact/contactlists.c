@@ -797,8 +797,7 @@ PetscErrorCode ContactListsReach(Contact contact, PetscBool *within)
 
     fits += pair->fit.fitted;
     for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.fitted; q++)
-      if (pair->point_gap[q] <= pair->slave->max_size && NeighbourListsSlip(pair->lists, q) > NEIGHBOUR_LISTS_MARGIN)
-        all = 0;
+      if (pair->point_gap[q] <= pair->slave->max_size && !NeighbourListsFitReaches(pair->lists, q)) all = 0;
   }
   if (fits) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *within = all ? PETSC_TRUE : PETSC_FALSE;

@@ -47,7 +47,7 @@ static PetscReal ReachedGap(const ContactPair *pair, PetscInt q, PointGaps *gaps
   if (gaps->known[q]) return gaps->gap[q];
   gaps->known[q] = PETSC_TRUE;
   gaps->gap[q]   = pair->point_gap[q];
-  if (NeighbourListsSlip(pair->lists, q) > NEIGHBOUR_LISTS_MARGIN &&
+  if (!NeighbourListsFitReaches(pair->lists, q) &&
       !ContactPointEvaluate(pair, pair->facets, pair->lists, q, -1, SMOOTHER_GAP, &found) && found)
     gaps->gap[q] = pair->work->result.gap;
   return gaps->gap[q];
@@ -149,7 +149,7 @@ static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q,
   const PetscReal offset = ContactTermOffset(pair, c, t);
 
   if (!(pair->point_gap[q] - offset >= 0)) return PETSC_FALSE;
-  if (pair->lists->fit_n[q] && NeighbourListsSlip(pair->lists, q) <= NEIGHBOUR_LISTS_MARGIN) return PETSC_FALSE;
+  if (pair->lists->fit_n[q] && NeighbourListsFitReaches(pair->lists, q)) return PETSC_FALSE;
   NearestGap(pair, q, gaps);
   *lost = (ContactLost){offset - gaps->gap[q], pair->point_gap[q] - offset, pair->size[c], ContactTermTag(pair, c)};
   return (PetscBool)(gaps->past[q] <= LOST_ON_FACET * lost->size && lost->depth > DepthThatCounts(pair, c, q));

@@ -619,9 +619,9 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
 @*/
 void FlankCuts(const Nearest *look, int facing, const int *found, int n, const int *dropped, int *ends)
 {
-  if (!look->one_body) return;
+  if (!look->one_body || n == 0) return;
   Mark(look, n, dropped);
-  for (int i = 0; i < facing && n > 0; i++) {
+  for (int i = 0; i < facing; i++) {
     if (!MayEnd(look, &look->candidates[found[i]].facet)) continue;
     for (int k = 0; k < n; k++) {
       FlankEdge edge;

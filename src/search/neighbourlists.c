@@ -1111,6 +1111,23 @@ PetscReal NeighbourListsSlip(NeighbourLists lists, PetscInt q)
   return PetscSqrtReal(square);
 }
 
+/*@
+  NeighbourListsFitReaches - says whether slave point q is still where the fit of its list serves.
+
+  Not collective
+
+  Input Parameters:
++ lists - the lists
+- q     - the slave point
+
+  Note:
+  Returns PETSC_TRUE without a fit.
+@*/
+PetscBool NeighbourListsFitReaches(NeighbourLists lists, PetscInt q)
+{
+  return (PetscBool)(NeighbourListsSlip(lists, q) <= NEIGHBOUR_LISTS_MARGIN);
+}
+
 /* Cosine between the reversed normal of a slave, of any length, and a unit normal of the master; 0 without a normal. */
 static inline PetscReal OpposedCosine(const PetscReal own[3], const PetscReal normal[3])
 {

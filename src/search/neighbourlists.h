@@ -7,8 +7,9 @@
    positions while the lists stay, and NeighbourListsTakeOffsets() gives the points other offsets.
    NeighbourListsRelative() gives a point as a slave point sees it.
    NeighbourListsBroadcast() and NeighbourListsReduce() take values from the mesh's nodes to the contact nodes and
-   back. NeighbourListsSlip() tells how far a slave point has slid since the lists were made. NeighbourListsOpposed()
-   tells how well a slave point's normal opposes another one. */
+   back. NeighbourListsSlip() tells how far a slave point has slid since the lists were made, and
+   NeighbourListsFitReaches() whether its fit still serves there. NeighbourListsOpposed() tells how well a slave point's
+   normal opposes another one. */
 #pragma once
 #include "smooth/diffusefit.h"
 #include "search/surface.h"
@@ -109,6 +110,7 @@ PetscErrorCode NeighbourListsFindAlike(NeighbourLists);
 PetscInt       NeighbourListsAlikeEnd(NeighbourLists, PetscInt p);
 PetscReal      NeighbourListsNearestSize(NeighbourLists, PetscInt q);
 PetscReal      NeighbourListsSlip(NeighbourLists, PetscInt q);
+PetscBool      NeighbourListsFitReaches(NeighbourLists, PetscInt q);
 PetscReal      NeighbourListsOpposing(const PetscReal own[3], const PetscReal normal[3]);
 PetscReal      NeighbourListsOpposed(NeighbourLists, PetscInt q, const PetscReal normal[3]);
 PetscBool      NeighbourListsSquare(NeighbourLists, PetscInt q, const PetscReal normal[3]);

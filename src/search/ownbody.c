@@ -128,8 +128,7 @@ static PetscBool IsLittleBehind(const Nearest *look, const Candidate *c, const F
 static PetscBool IsDeep(const Nearest *look, const Candidate *c, PetscReal depth)
 {
   const PetscReal entered = SEARCH_ENTERED * look->height;
-
-  PetscReal bulge;
+  PetscReal       bulge;
 
   if (depth <= entered || look->one_body || !look->corners) return (PetscBool)(depth > entered);
   bulge = CornerNormalsBulge(look->corners, (PetscInt)(c - look->candidates));

@@ -367,8 +367,7 @@ static PetscErrorCode EvaluatePart(Halvings *h, int i)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The farthest that a step may move a node: what contact lists are made for, or the mean face of a
-   slave, the largest of all pairs. */
+/* The farthest that a step may move a node: what contact lists are made for, or the largest mean face of a slave. */
 static PetscErrorCode MostMotion(Model model, PetscReal *most)
 {
   PetscFunctionBeginUser;
@@ -404,9 +403,11 @@ static PetscErrorCode FirstPart(Model model, SNESLineSearch search, Vec x, Vec y
   turn = ToolsTurn(model->mesh, u, v, NULL);
   if (turn * *first > MODEL_FARTHEST) *first = MODEL_FARTHEST / turn;
   PetscCall(ProblemMotion(model->problem, u, model->t, v, model->t, &motion));
-  PetscCall(ProblemMotion(model->problem, model->work->accepted_u, model->work->accepted_t, u, model->t, &gone));
   PetscCall(MostMotion(model, &most));
-  if (gone <= most && motion * *first > most) *first = most / motion;
+  if (motion * *first > most) {
+    PetscCall(ProblemMotion(model->problem, model->work->accepted_u, model->work->accepted_t, u, model->t, &gone));
+    if (gone <= most) *first = most / motion;
+  }
   PetscCall(VecDestroy(&end));
   PetscCall(PetscFree2(u, v));
   PetscFunctionReturn(PETSC_SUCCESS);
