@@ -139,7 +139,7 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
                     !model->contact || report->result == SOLVE_ADRIFT ? "" : " (contact may, with stabilise: auto)"));
   else {
     FailureText(model->scene, &report->failure, report->detail, sizeof(report->detail));
-    if (report->result == SOLVE_LINE_SEARCH || report->result == SOLVE_ITERATIONS)
+    if (report->result == SOLVE_LINE_SEARCH || report->result == SOLVE_ITERATIONS || report->result == SOLVE_STALLED)
       PetscCall(ModelBlameFacets(model, report->detail, sizeof(report->detail), &edge));
     if (!edge) PetscCall(ModelBlamePenalty(model, report->detail, sizeof(report->detail)));
   }
@@ -689,8 +689,8 @@ static PetscErrorCode ModelJudgeFacing(Model model, SolveReport *report)
 /* Says whether a solve has failed on its way from the first iterate. */
 static PetscBool LosesWay(SolveResult result)
 {
-  return (PetscBool)(result == SOLVE_ITERATIONS || result == SOLVE_LINE_SEARCH || result == SOLVE_DOMAIN ||
-                     result == SOLVE_CYCLE);
+  return (PetscBool)(result == SOLVE_ITERATIONS || result == SOLVE_STALLED || result == SOLVE_LINE_SEARCH ||
+                     result == SOLVE_DOMAIN || result == SOLVE_CYCLE);
 }
 
 /* Finds the first solution of a load step to t from the accepted state once more, by way of softened penalties for all

@@ -20,6 +20,7 @@
 typedef enum {
   SOLVE_CONVERGED,
   SOLVE_ITERATIONS,
+  SOLVE_STALLED,
   SOLVE_LINE_SEARCH,
   SOLVE_DOMAIN,
   SOLVE_LINEAR,
@@ -83,7 +84,6 @@ typedef struct {
   PetscInt    cycles;     /* times that the contact set repeated itself and Newton's steps were shortened */
   char        cycle[256]; /* the last repetition: its period and nodes, in gmsh's tags */
   PetscInt    damped;     /* 1: tangents were shifted */
-  PetscBool   indefinite; /* with friction: a tangent of the last solve was that of no stable state */
   PetscInt    negatives;  /* negative eigenvalues of the tangent at the end, see ModelFindStability(); -1: not known */
   PetscReal   gives;      /* energy that such a motion gives, over what is stored, see ModeGives(); INFINITY: unknown */
   PetscReal   damping;    /* energy that was taken away then */

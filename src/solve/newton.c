@@ -307,20 +307,10 @@ static PetscErrorCode ModelStopStall(Model model, PetscInt it, PetscReal step, P
     work->least_at = it;
   }
   PetscCall(SNESGetTolerances(model->snes, NULL, NULL, NULL, &most, NULL));
-  if (it - work->least_at > NEWTON_WAITS * most || work->nulls == NEWTON_NULL_STEPS) *reason = SNES_DIVERGED_MAX_IT;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Notes whether tangents with friction on the way were those of no stable state. Without friction ModelStopUnstable()
-   and the line search look at that. */
-static PetscErrorCode ModelNoteIndefinite(Model model)
-{
-  PetscBool odd;
-
-  PetscFunctionBeginUser;
-  if (!ContactHasFriction(model->contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ModelTangentOdd(model, &odd));
-  model->work->odd = (PetscBool)(model->work->odd || odd);
+  if (it - work->least_at > NEWTON_WAITS * most || work->nulls == NEWTON_NULL_STEPS) {
+    work->stuck = PETSC_TRUE;
+    *reason     = SNES_DIVERGED_MAX_IT;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -358,7 +348,6 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   PetscCall(SNESGetSolution(snes, &x));
   (void)xnorm;
   if (it > 0) PetscCall(ModelCountCut(model, x));
-  if (it > 0) PetscCall(ModelNoteIndefinite(model));
   PetscCall(ProblemRoundOff(model->problem, &round_off));
   PetscCall(SNESGetFunction(snes, &F, NULL, NULL));
   if (it > 0) PetscCall(ModelRelaxSprings(model, x, F));
@@ -559,9 +548,9 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   model->work->turned           = 0;
   model->work->crawls           = 0;
   model->work->indefinite       = 0;
-  model->work->odd              = PETSC_FALSE;
   model->work->slack            = 0;
   model->work->unstable         = PETSC_FALSE;
+  model->work->stuck            = PETSC_FALSE;
   model->work->stalled          = PETSC_FALSE;
   model->work->relaxed.waits    = PETSC_FALSE;
   model->work->relaxed.turns    = PETSC_FALSE;
@@ -581,8 +570,8 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   report->result = ResultFromReason(reason);
   if (model->work->cycling) report->result = SOLVE_CYCLE;
   if (model->work->unstable) report->result = SOLVE_UNSTABLE;
+  if (model->work->stuck) report->result = SOLVE_STALLED;
   if (report->result == SOLVE_LINE_SEARCH && model->work->balanced) report->result = SOLVE_CONVERGED;
-  report->indefinite = model->work->odd;
   if (report->result == SOLVE_LINEAR ||
       (report->result != SOLVE_CONVERGED && its > 0 && LinearCheckLost(model->linear)))
     PetscCall(ModelLinearFailure(model, &report->result));

@@ -26,11 +26,13 @@
 /* A step stretches to the next landing point if that is at most this many dt away. At sqrt(2) the one longer step
    differs from dt by the same factor as two shorter ones. */
 #define STEPPER_STRETCH 1.4142135623730951
-/* After this many failed static solves of a step, or where no shorter step is allowed, the next solve is damped, as
-   `stepping.damping` says. Shorter steps are cheaper where they help, and at a limit point no static step does. In the
-   step after a damped one the first failure is enough. Where damping waits for the last step, solves count that met
-   tangents of no stable state. */
+/* After this many failed static solves for a load, or where no shorter step is allowed, the next solve is damped, as
+   `stepping.damping` says. Shorter steps are cheaper where they help, and at a limit point no static step does: shorter
+   and shorter ones would only come nearer to it. In the step after a damped one the first failure is enough. Where
+   damping is the last resort, it waits for STEPPER_LAST of them, as what a damped solve loses is known the better the
+   shorter its step, and is tried once before the smallest step. */
 #define STEPPER_STATIC 3
+#define STEPPER_LAST   6
 /* If the landing point is at most this many dt away, the way to it is halved, so that no very short step remains. */
 #define STEPPER_HALVE 2.0
 
@@ -54,6 +56,13 @@ typedef struct {
   PetscReal dt;                                   /* of the last one */
 } Pace;
 
+/* Load that static solves do not reach */
+typedef struct {
+  PetscReal at;       /* the least one; 0: none */
+  PetscInt  failures; /* of solves for it or more, since the last damped solve */
+  PetscInt  slowly;   /* damped solves that failed for it */
+} Wall;
+
 struct _n_LoadStepper {
   MPI_Comm             comm;
   Model                model;
@@ -75,6 +84,7 @@ struct _n_LoadStepper {
   PetscReal            most_facing;    /* turn (radians) of surfaces that lie opposite each other in this step */
   Pace                 pace;
   PetscInt             damped; /* 1: the last accepted step was damped */
+  Wall                 wall;
   PetscBool            view;
 };
 
@@ -475,6 +485,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
     PetscCall(PetscSNPrintf(report->jump, sizeof(report->jump), "from t = %.6g to %.6g: %s", (double)report->t,
                             (double)model->t, solve->jump));
   }
+  if (model->t >= stepper->wall.at) stepper->wall = (Wall){0};
   stepper->damped = solve->damped > 0;
   report->damped += stepper->damped;
   report->damping += solve->damping;
@@ -500,6 +511,7 @@ static PetscBool MayBeUnstable(SolveResult result)
 {
   switch (result) {
   case SOLVE_ITERATIONS:
+  case SOLVE_STALLED:
   case SOLVE_LINE_SEARCH:
   case SOLVE_DOMAIN:
   case SOLVE_LINEAR:
@@ -680,30 +692,40 @@ static PetscBool LosesStability(const StepperReport *report, const SolveReport *
   return (PetscBool)(solve->negatives > 0 && solve->gives > MODEL_GIVES && !(report->gives > MODEL_GIVES));
 }
 
+/* Says whether static solves have failed so often that the next one is damped. */
+static PetscBool StepperTurnsSlow(LoadStepper stepper)
+{
+  const PetscBool by_itself = (PetscBool)(stepper->model->scene->stepping.damping == DAMPING_AUTO);
+
+  return (PetscBool)(stepper->wall.failures >= (by_itself ? STEPPER_STATIC : STEPPER_LAST));
+}
+
 /* Solves for a step of dt to `end`. An unstable equilibrium counts as none where damping may lead to a stable one.
    Where static solves have failed often enough, the next one is damped, and the count starts anew. No shorter static
    step follows a damped one or one of dt_min, either. */
-static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscReal dt, PetscInt *failures,
-                                     SolveReport *solve)
+static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscReal dt, SolveReport *solve)
 {
   const StepDamping damping = stepper->model->scene->stepping.damping;
   const PetscBool   last    = (PetscBool)(STEPPER_CUT * dt < stepper->size.dt_min || stepper->damped);
-  const PetscBool   slowly  = (PetscBool)(*failures >= STEPPER_STATIC);
+  const PetscBool   slowly  = StepperTurnsSlow(stepper);
 
   PetscFunctionBeginUser;
   PetscCall(
     PetscInfo(stepper->model->snes, "step to t = %g, dt %g%s\n", (double)end, (double)dt, slowly ? ", damped" : ""));
-  stepper->model->doubts   = (PetscBool)(damping == DAMPING_AUTO && *failures > 0);
+  stepper->model->doubts   = (PetscBool)(damping == DAMPING_AUTO && stepper->wall.failures > 0);
   stepper->model->shortens = (PetscBool)(stepper->shortens && !slowly && STEPPER_CUT * dt >= stepper->size.dt_min);
   if (slowly) {
     PetscCall(ModelSolveSlowly(stepper->model, end, solve));
-    *failures = 0;
+    stepper->wall.failures = 0;
+    stepper->wall.slowly++;
   } else {
     PetscCall(ModelSolve(stepper->model, end, solve));
     if (damping == DAMPING_AUTO && solve->result == SOLVE_CONVERGED && LosesStability(&stepper->report, solve))
       solve->result = SOLVE_UNSTABLE;
-    if (damping != DAMPING_NONE && MayBeUnstable(solve->result))
-      *failures += last ? STEPPER_STATIC : damping == DAMPING_AUTO || solve->indefinite;
+    if (damping != DAMPING_NONE && MayBeUnstable(solve->result)) {
+      stepper->wall.at = stepper->wall.at > 0 ? PetscMin(stepper->wall.at, end) : end;
+      stepper->wall.failures += last ? STEPPER_LAST : damping == DAMPING_AUTO || !stepper->wall.slowly;
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -756,7 +778,6 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   SolveReport     solve, cause  = {0}; /* cause: the last static solve, whose failure is the one to tell of */
   PetscReal       most, longest = 0;   /* of the attempts that failed */
   PetscBool       clipped, singular;
-  PetscInt        failures = 0;
 
   PetscFunctionBeginUser;
   *advanced = PETSC_FALSE;
@@ -771,7 +792,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
 
     LoadStepperRemember(stepper, end);
     model->most_facing = STEPPER_CUT * dt < stepper->size.dt_min ? INFINITY : stepper->most_facing;
-    PetscCall(LoadStepperTry(stepper, end, dt, &failures, &solve));
+    PetscCall(LoadStepperTry(stepper, end, dt, &solve));
     record->attempts += !SolveHasNotBegun(solve.result);
     CountSolve(end, &solve, record, &stepper->report);
     if (solve.result == SOLVE_CONVERGED) {
@@ -809,7 +830,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     if (!solve.damped) cause = solve;
     singular = (PetscBool)((solve.result == SOLVE_LINEAR && solve.newton == 1) ||
                            (solve.result == SOLVE_ADRIFT && !solve.newton));
-    if (failures >= STEPPER_STATIC && !singular) continue; /* a damped solve of the same dt comes next */
+    if (StepperTurnsSlow(stepper) && !singular) continue; /* a damped solve of the same dt comes next */
     if (solve.result != SOLVE_LEAK) longest = PetscMax(longest, dt);
     stepper->size.failed_dt = recovers ? 0 : longest; /* what fails again on the way back is no matter of the place */
     stepper->size.dt        = STEPPER_CUT * dt;
@@ -921,7 +942,8 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                               &report->unstable,
                               &report->friction,
                               &report->unstable_from,
-                              &report->gives};
+                              &report->gives,
+                              &stepper->wall.at};
   PetscInt      *integer[] = {&report->steps,           &report->steps_failed,
                               &report->steps_repeated,  &report->newton_iterations,
                               &report->newton_accepted, &report->krylov_iterations,
@@ -932,7 +954,8 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                               &report->damped,          &report->held,
                               &stepper->damped,         &size.tied,
                               &report->motions,         &report->unstable_steps,
-                              &report->negatives,       &report->most_negatives};
+                              &report->negatives,       &report->most_negatives,
+                              &stepper->wall.failures,  &stepper->wall.slowly};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));

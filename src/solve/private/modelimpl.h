@@ -190,7 +190,7 @@ typedef struct _n_ModelWork {
   PetscInt    crawls;             /* steps in a row of which the line search left next to nothing */
   PetscInt    indefinite;         /* iterations in a row whose tangents were indefinite */
   PetscBool   unstable;           /* the solve ended because they remained so */
-  PetscBool   odd;                /* with friction: a tangent had an odd number of negative eigenvalues */
+  PetscBool   stuck;              /* with friction: it ended because the residual fell no more */
 } ModelWork;
 
 /* tangent.c */
