@@ -24,7 +24,7 @@ enum { MAX_CORNERS = 8 };
 
 /* The numbers and orders of XDMF are those of its reader in ParaView. The reader passes the connectivity on to VTK
    without a change. */
-static Element element_table[ELEMENT_TYPES] = {
+Element element_table[ELEMENT_TYPES] = {
   [ELEMENT_EDGE2] = {.type = ELEMENT_EDGE2, .name = "edge2", .gmsh = 1, .xdmf = 2,
                      .dim = 1, .order = 1, .nodes = 2, .corners = 2,
                      .edges = 1, .edge_corners = EDGES_EDGE,
@@ -309,12 +309,21 @@ static void Tabulate(Element *e)
   Fit(e);
 }
 
-static void CompleteTable(void)
-{
-  static int complete = 0;
+int element_table_complete = 0;
 
-  if (complete) return;
-  complete = 1;
+/*@
+  ElementCompleteTable - fills in what the tables of reference elements have besides nodes: faces, quadrature, shape
+  functions.
+
+  Not collective
+
+  Note:
+  ElementGet() calls it. Plain C.
+@*/
+void ElementCompleteTable(void)
+{
+  if (element_table_complete) return;
+  element_table_complete = 1;
   for (int type = 0; type < ELEMENT_TYPES; type++) {
     Element *e = &element_table[type];
 
@@ -337,26 +346,6 @@ static void CompleteTable(void)
 }
 
 /*@
-  ElementGet - returns the table of a reference element.
-
-  Not collective
-
-  Input Parameter:
-. type - the element type
-
-  Output Parameter:
-. element - its table, which the caller must not free
-
-  Source:
-  gmsh reference manual, "Node ordering"
-@*/
-const Element *ElementGet(ElementType type)
-{
-  CompleteTable();
-  return &element_table[type];
-}
-
-/*@
   ElementGetFace - returns the table of a reference element that is the face of a cell.
 
   Not collective
@@ -372,7 +361,7 @@ const Element *ElementGet(ElementType type)
 @*/
 const Element *ElementGetFace(ElementType type)
 {
-  CompleteTable();
+  ElementCompleteTable();
   return type == ELEMENT_TRI3 ? &face_tri3 : &element_table[type];
 }
 
@@ -394,7 +383,7 @@ const Element *ElementGetFace(ElementType type)
 @*/
 const Element *ElementGetProducts(ElementType type)
 {
-  CompleteTable();
+  ElementCompleteTable();
   return type == ELEMENT_TRI3 ? &face_tri3 : type == ELEMENT_TET4 ? &product_tet4 : &element_table[type];
 }
 
@@ -411,7 +400,7 @@ const Element *ElementGetProducts(ElementType type)
 @*/
 const Element *ElementFromGmsh(int gmsh_type)
 {
-  CompleteTable();
+  ElementCompleteTable();
   for (int type = 0; type < ELEMENT_TYPES; type++) {
     if (element_table[type].gmsh == gmsh_type) return &element_table[type];
   }

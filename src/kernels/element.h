@@ -48,7 +48,31 @@ typedef struct {
   double fit[ELEMENT_MAX_NODES][ELEMENT_MAX_POINTS];
 } Element;
 
-const Element *ElementGet(ElementType);
+/* For ElementGet() alone. */
+extern Element element_table[ELEMENT_TYPES];
+extern int     element_table_complete;
+void           ElementCompleteTable(void);
+
+/*@
+  ElementGet - returns the table of a reference element.
+
+  Not collective
+
+  Input Parameter:
+. type - the element type
+
+  Output Parameter:
+. element - its table, which the caller must not free
+
+  Source:
+  gmsh reference manual, "Node ordering"
+@*/
+static inline const Element *ElementGet(ElementType type)
+{
+  if (!element_table_complete) ElementCompleteTable();
+  return &element_table[type];
+}
+
 const Element *ElementGetFace(ElementType);
 const Element *ElementGetProducts(ElementType);
 const Element *ElementFromGmsh(int gmsh_type);

@@ -323,6 +323,33 @@ void FaceHatAround(ElementType type, int point, int finer, double *psi)
   }
 }
 
+/* FaceRuleAreas() for one dimension, which is a constant where this is called. */
+static inline void RuleAreas(const int dim, const FaceRule *rule, int nodes, int axisymmetric, const double *X,
+                             double *area, double *normal)
+{
+  const double two_pi = 6.28318530717958647693;
+
+  for (int q = 0; q < rule->n; q++) {
+    double t[2][3] = {{0}}, n[3], radius = 0, length;
+
+    for (int a = 0; a < nodes; a++) {
+      for (int k = 0; k < dim - 1; k++)
+        for (int d = 0; d < dim; d++) t[k][d] += rule->dN[q][a][k] * X[a * dim + d];
+    }
+    for (int a = 0; a < nodes && axisymmetric; a++) radius += rule->N[q][a] * X[a * dim];
+    if (dim == 2) {
+      n[0] = t[0][1];
+      n[1] = -t[0][0];
+      n[2] = 0;
+    } else {
+      for (int d = 0; d < 3; d++) n[d] = t[0][(d + 1) % 3] * t[1][(d + 2) % 3] - t[0][(d + 2) % 3] * t[1][(d + 1) % 3];
+    }
+    length  = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    area[q] = rule->weight[q] * length * (axisymmetric ? two_pi * radius : 1);
+    for (int d = 0; d < 3 && normal; d++) normal[3 * q + d] = length > 0 ? n[d] / length : 0;
+  }
+}
+
 /*@
   FaceRuleAreas - computes the part of a face's area that each point of a rule represents, and the normals there.
 
@@ -345,26 +372,10 @@ void FaceHatAround(ElementType type, int point, int finer, double *psi)
 void FaceRuleAreas(const FaceRule *rule, ElementType type, int dim, Geometry geometry, const double *X, double *area,
                    double *normal)
 {
-  const double two_pi = 6.28318530717958647693;
-  const int    nodes  = ElementGet(type)->nodes;
+  const int nodes = ElementGet(type)->nodes, axisymmetric = geometry == GEOMETRY_AXISYMMETRIC;
 
-  for (int q = 0; q < rule->n; q++) {
-    double t[2][3] = {{0}}, n[3], radius = 0, length;
-
-    for (int a = 0; a < nodes; a++) {
-      radius += rule->N[q][a] * X[a * dim];
-      for (int k = 0; k < dim - 1; k++)
-        for (int d = 0; d < dim; d++) t[k][d] += rule->dN[q][a][k] * X[a * dim + d];
-    }
-    if (dim == 2) {
-      n[0] = t[0][1];
-      n[1] = -t[0][0];
-      n[2] = 0;
-    } else {
-      for (int d = 0; d < 3; d++) n[d] = t[0][(d + 1) % 3] * t[1][(d + 2) % 3] - t[0][(d + 2) % 3] * t[1][(d + 1) % 3];
-    }
-    length  = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    area[q] = rule->weight[q] * length * (geometry == GEOMETRY_AXISYMMETRIC ? two_pi * radius : 1);
-    for (int d = 0; d < 3 && normal; d++) normal[3 * q + d] = length > 0 ? n[d] / length : 0;
-  }
+  if (dim == 3)
+    RuleAreas(3, rule, nodes, axisymmetric, X, area, normal);
+  else
+    RuleAreas(2, rule, nodes, axisymmetric, X, area, normal);
 }

@@ -251,24 +251,46 @@ static void Map(ContactSearch s, int dim, PetscInt n, const PetscInt *node, cons
   }
 }
 
-/* The linear part of the map of fit point p, with the reflection of its image. */
+/* The same where every node is on its own side. dim is a constant where this is called. */
+static inline void MapOwn(const int dim, PetscInt n, const PetscInt *node, const PetscReal *S, const PetscReal *x,
+                          PetscReal *y)
+{
+  PetscReal sum[3] = {0, 0, 0};
+
+  for (PetscInt k = 0; k < n; k++)
+    for (int d = 0; d < dim; d++) sum[d] += S[k] * x[node[k] * dim + d];
+  for (int d = 0; d < dim; d++) y[d] = sum[d];
+}
+
+/* The linear part of the map of fit point p, with the reflection of its image. Only live offsets take nodes of other
+   sides. */
 static void PointMap(ContactSearch s, NeighbourLists lists, PetscInt p, const PetscReal *x, PetscReal *y)
 {
-  const PetscInt first = lists->point_ptr[p];
+  const PetscInt   first = lists->point_ptr[p], n = lists->point_ptr[p + 1] - first, *node = &lists->point_node[first];
+  const PetscReal *S = &lists->point_S[first], *sign = s->images[lists->point_image[p]].sign;
 
-  Map(s, lists->dim, lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_side[first],
-      &lists->point_S[first], x, y);
-  for (int d = 0; d < lists->dim; d++) y[d] *= s->images[lists->point_image[p]].sign[d];
+  if (s->maps)
+    Map(s, lists->dim, n, node, &lists->point_side[first], S, x, y);
+  else if (lists->dim == 3)
+    MapOwn(3, n, node, S, x, y);
+  else
+    MapOwn(2, n, node, S, x, y);
+  for (int d = 0; d < lists->dim; d++) y[d] *= sign[d];
   if (lists->point_cosine) y[0] *= lists->point_cosine[p];
 }
 
 /* The linear part of the map of slave point q. */
 static void SlaveMap(ContactSearch s, NeighbourLists lists, PetscInt q, const PetscReal *x, PetscReal *y)
 {
-  const PetscInt first = lists->slave_ptr[q];
+  const PetscInt   first = lists->slave_ptr[q], n = lists->slave_ptr[q + 1] - first, *node = &lists->slave_node[first];
+  const PetscReal *S = &lists->slave_S[first];
 
-  Map(s, lists->dim, lists->slave_ptr[q + 1] - first, &lists->slave_node[first], &lists->slave_side[first],
-      &lists->slave_S[first], x, y);
+  if (s->slaves->maps.ptr)
+    Map(s, lists->dim, n, node, &lists->slave_side[first], S, x, y);
+  else if (lists->dim == 3)
+    MapOwn(3, n, node, S, x, y);
+  else
+    MapOwn(2, n, node, S, x, y);
 }
 
 /* Turns the offsets on a rigid tool, which are those of its first position, with the tool. */
@@ -322,9 +344,10 @@ PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const
   if (moved) *moved = same && lists->t == t ? PETSC_FALSE : PETSC_TRUE;
   if (same && lists->t == t) PetscFunctionReturn(PETSC_SUCCESS);
   lists->t = t;
-  for (PetscInt p = 0; p < lists->n_points; p++) PointMap(s, lists, p, lists->u, &lists->point_u[p * lists->dim]);
+  for (PetscInt i = 0; i < lists->n_moving && !same; i++)
+    PointMap(s, lists, lists->moving[i], lists->u, &lists->point_u[lists->moving[i] * lists->dim]);
   if (turns) TurnOffsets(s, lists, t);
-  for (PetscInt i = 0; i < lists->n_near; i++)
+  for (PetscInt i = 0; i < lists->n_near && !same; i++)
     SlaveMap(s, lists, lists->near[i], lists->u, &lists->slave_u[lists->near[i] * lists->dim]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -1005,6 +1028,32 @@ PetscErrorCode NeighbourListsFindAlike(NeighbourLists lists)
 }
 
 /*@
+  NeighbourListsFindMoving - finds the fit points that move with the lists: nodes, and of the others those in the list
+of a slave point.
+
+  Not collective
+
+  Input/Output Parameter:
+. lists - the lists, with those of all slave points
+
+  Note:
+  The others stay where they were when the lists were made. Around elongated faces they are most of the points.
+@*/
+PetscErrorCode NeighbourListsFindMoving(NeighbourLists lists)
+{
+  char *listed;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(lists->n_points, &listed));
+  for (PetscInt i = 0; i < lists->list_ptr[lists->n_slaves]; i++) listed[lists->list_point[i]] = 1;
+  PetscCall(PetscMalloc1(lists->n_points, &lists->moving));
+  for (PetscInt p = 0; p < lists->n_points; p++)
+    if (listed[p] || lists->point_ptr[p + 1] == lists->point_ptr[p] + 1) lists->moving[lists->n_moving++] = p;
+  PetscCall(PetscFree(listed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   NeighbourListsAlikeEnd - finds the end of the run of points that are made of the same images of nodes as point p, like
   those of a face. In rings their angles may differ.
 
@@ -1244,6 +1293,7 @@ static PetscErrorCode FreeNodesAndPoints(NeighbourLists l)
                        l->point_key));
   PetscCall(PetscFree(l->point_side));
   PetscCall(PetscFree(l->point_alike));
+  PetscCall(PetscFree(l->moving));
   if (l->point_cosine) PetscCall(PetscFree2(l->point_cosine, l->point_hoop));
   PetscCall(PetscFree2(l->point_X, l->point_u));
   PetscCall(PetscFree2(l->first_held, l->home_held));

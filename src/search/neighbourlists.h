@@ -57,6 +57,7 @@ typedef struct {
   /* Of each fit point: the first of the points, one after the other, that are made of the same images of nodes at the
      same angle, like those of a face. */
   PetscInt *point_alike;
+  PetscInt  n_moving, *moving; /* fit points that NeighbourListsUpdate() moves, ascending */
   /* Faces whose quadrature points have held offsets that may change: the fit points of face i are first_held[i] to
      first_held[i + 1] - 1, and home_held[i] says where the face lives. */
   PetscInt     n_held, *first_held;
@@ -107,6 +108,7 @@ PetscErrorCode NeighbourListsUpdate(ContactSearch, NeighbourLists, const PetscRe
 PetscErrorCode NeighbourListsTakeOffsets(ContactSearch, NeighbourLists, PetscBool *changed);
 void           NeighbourListsRelative(NeighbourLists, PetscInt q, PetscInt p, PetscReal *x);
 PetscErrorCode NeighbourListsFindAlike(NeighbourLists);
+PetscErrorCode NeighbourListsFindMoving(NeighbourLists);
 PetscInt       NeighbourListsAlikeEnd(NeighbourLists, PetscInt p);
 PetscReal      NeighbourListsNearestSize(NeighbourLists, PetscInt q);
 PetscReal      NeighbourListsSlip(NeighbourLists, PetscInt q);

@@ -460,6 +460,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(NeighbourListsFill(s, lists, &field, s->fit->fitted ? &fit : NULL, motion));
   if (s->fit->fitted) PetscCall(FitSupportDestroy(&fit));
   if (s->keeps_faces) PetscCall(NeighbourListsTakeFaces(lists, &field));
+  PetscCall(NeighbourListsFindMoving(lists));
   PetscCall(NeighbourListsUpdate(s, lists, u, t, NULL));
   for (PetscInt i = 0; i < lists->n_near; i++)
     NeighbourListsCentre(lists, lists->near[i], &lists->centre[2 * lists->near[i]]);
