@@ -16,6 +16,10 @@ typedef long long LaneMask __attribute__((vector_size(LANES * sizeof(long long))
 /* A vector within an array of doubles, which need not be aligned */
 typedef double LanesInArray __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
+/* A point of space within an array of points, with the first number of the next one, which is carried along. Behind the
+   last point such arrays have room for one number more. */
+typedef double PointInArray __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double)), may_alias));
+
 #define LANES_INLINE static inline __attribute__((always_inline))
 
 /* Number of vectors that hold n doubles */

@@ -1,7 +1,7 @@
 /* One slave point: its gap and variations over fit points, and how these are carried to the contact nodes that the
    points are made of. */
 #include "contactimpl.h"
-#include "base/lanes.h"
+#include "search/pointseen.h"
 #include "base/timing.h"
 
 /* Gap and variations against an analytic master, which has no points. */
@@ -30,26 +30,22 @@ static PetscBool PointEvaluateAnalytic(const ContactPair *pair, NeighbourLists l
   return PETSC_TRUE;
 }
 
-/* Positions relative to slave point q, as of NeighbourListsRelative(), weights and distances along the hoop of the
-   points in its list. dim is a constant where this is called, so that the inner loops unroll. */
-LANES_INLINE void GatherPoints(const int dim, NeighbourLists lists, PetscInt q, PetscReal *x, PetscReal *multiplier,
-                               PetscReal *hoop)
+/* Weights of the points in the list of slave point q, distances along the hoop, and positions relative to it, as of
+   NeighbourListsRelative(). */
+static void GatherPoints(NeighbourLists lists, PetscInt q, PetscReal *x, PetscReal *multiplier, PetscReal *hoop)
 {
-  const PetscInt  *point = &lists->list_point[lists->list_ptr[q]], n = lists->list_ptr[q + 1] - lists->list_ptr[q];
-  const PetscReal *X = lists->point_X, *u = lists->point_u, *weight = lists->point_weight;
-  PetscReal        X_0[3], u_0[3];
+  const int       dim   = lists->dim;
+  const PetscInt *point = &lists->list_point[lists->list_ptr[q]], n = lists->list_ptr[q + 1] - lists->list_ptr[q];
+  PointOrigin     origin;
 
-  for (int d = 0; d < dim; d++) {
-    X_0[d] = lists->slave_X[q * dim + d];
-    u_0[d] = lists->slave_u[q * dim + d];
+  for (PetscInt i = 0; i < n; i++) multiplier[i] = lists->point_weight[point[i]];
+  for (PetscInt i = 0; i < n && dim == 2; i++) {
+    if (lists->point_hoop) hoop[i] = lists->point_hoop[point[i]];
+    NeighbourListsRelative(lists, q, point[i], &x[2 * i]);
   }
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscInt p = point[i];
-
-    multiplier[i] = weight[p];
-    if (dim == 2 && lists->point_hoop) hoop[i] = lists->point_hoop[p];
-    for (int d = 0; d < dim; d++) x[i * dim + d] = (X[p * dim + d] - X_0[d]) + (u[p * dim + d] - u_0[d]);
-  }
+  if (dim == 2) return;
+  PointOriginMake(&lists->slave_X[3 * q], &lists->slave_u[3 * q], &origin);
+  for (PetscInt i = 0; i < n; i++) PointSeen(lists, point[i], &origin, &x[3 * i]);
 }
 
 /*@
@@ -85,12 +81,10 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
   if (n > work->x_room) {
     work->x_room = 2 * n;
     PetscCall(PetscFree3(work->x, work->multiplier, work->hoop));
-    PetscCall(PetscMalloc3(work->x_room * dim, &work->x, work->x_room, &work->multiplier, work->x_room, &work->hoop));
+    PetscCall(PetscMalloc3(work->x_room * dim + POINT_SEEN_PADDING, &work->x, work->x_room, &work->multiplier,
+                           work->x_room, &work->hoop));
   }
-  if (dim == 3)
-    GatherPoints(3, lists, q, work->x, work->multiplier, work->hoop);
-  else
-    GatherPoints(2, lists, q, work->x, work->multiplier, work->hoop);
+  GatherPoints(lists, q, work->x, work->multiplier, work->hoop);
   in     = (SmootherInput){.dim         = dim,
                            .n_points    = (int)n,
                            .n_facets    = (int)(lists->facet_ptr[q + 1] - lists->facet_ptr[q]),

@@ -1,6 +1,7 @@
 /* Fits of a pair's slave points: spacing, support, and the ladder of fall-backs until every guard of the fit holds. */
 #include "smooth/fitframe.h"
 #include "searchimpl.h"
+#include "pointseen.h"
 #include "base/smoothstep.h"
 #include "base/timing.h"
 
@@ -153,8 +154,8 @@ PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const Sea
   PetscCall(NeighbourhoodsCreate(&fit->view, &fit->neighbourhoods));
   PetscCall(CornerNormalsCreate(&fit->view, &fit->corners));
   if (lists->dim == 3 && !s->fit->global_frame) PetscCall(FaceRowsCreate(&fit->view, fit->neighbourhoods, &fit->rows));
-  PetscCall(PetscMalloc7(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier,
-                         FIT_MAX_POINTS, &fit->taper,
+  PetscCall(PetscMalloc7(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3 + POINT_SEEN_PADDING, &fit->x, FIT_MAX_POINTS,
+                         &fit->multiplier, FIT_MAX_POINTS, &fit->taper,
                          FitWorkspace(lists->dim, FitDegreeCode(s->fit, s->fit->degree), FIT_MAX_POINTS),
                          &fit->workspace, FIT_MAX_POINTS, &fit->used, FIT_MAX_POINTS, &fit->hoop));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -271,25 +272,33 @@ static PetscReal FlankShare(const PetscReal normal[3], const double e3[3])
   return SmoothStep((cosine - NEIGHBOURHOOD_COSINE) / (FIT_FLANK_FULL - NEIGHBOURHOOD_COSINE));
 }
 
-/* Computes weights of n points and their positions relative to the fit's origin, as NeighbourListsRelative() does.
-   Returns how many are inside the support. dim is a constant where this is called. */
-static inline PetscInt TakePoints(const int dim, FitSupport *fit, const FitFoot *at, const double e3[3], PetscInt n,
-                                  const PetscReal *rho2)
+/* Computes the positions of n points relative to the fit's origin, as NeighbourListsRelative() does. */
+static void PlacePoints(FitSupport *fit, const FitFoot *at, PetscInt n)
 {
-  const NeighbourLists lists        = fit->lists;
-  const PetscReal *const restrict X = lists->point_X, *const restrict u = lists->point_u;
-  const PetscReal *const restrict v = lists->point_weight, *const restrict hoop = lists->point_hoop;
-  const PetscInt *const restrict points = fit->points;
-  PetscReal *const restrict x = fit->x, *const restrict weight = fit->multiplier;
-  PetscReal *const restrict taper = fit->taper;
-  PetscInt inside                 = 0;
+  const NeighbourLists lists  = fit->lists;
+  const PetscInt      *points = fit->points;
+  PointOrigin          origin;
 
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscInt p = points[i];
+  for (PetscInt i = 0; i < n && lists->dim == 2; i++)
+    for (int d = 0; d < 2; d++)
+      fit->x[2 * i + d] =
+        (lists->point_X[2 * points[i] + d] - at->X[d]) + (lists->point_u[2 * points[i] + d] - at->u[d]);
+  if (lists->dim == 2) return;
+  PointOriginMake(at->X, at->u, &origin);
+  for (PetscInt i = 0; i < n; i++) PointSeen(lists, points[i], &origin, &fit->x[3 * i]);
+}
 
-    for (int d = 0; d < dim; d++) x[i * dim + d] = (X[p * dim + d] - at->X[d]) + (u[p * dim + d] - at->u[d]);
-    weight[i] = v[p];
-  }
+/* Computes positions and weights of n points. Returns how many are inside the support. */
+static PetscInt TakePoints(FitSupport *fit, const FitFoot *at, const double e3[3], PetscInt n, const PetscReal *rho2)
+{
+  const int              dim  = fit->lists->dim;
+  const PetscReal *const hoop = fit->lists->point_hoop, *const v = fit->lists->point_weight;
+  const PetscInt *const points     = fit->points;
+  PetscReal *const restrict weight = fit->multiplier, *const restrict taper = fit->taper;
+  PetscInt inside = 0;
+
+  PlacePoints(fit, at, n);
+  for (PetscInt i = 0; i < n; i++) weight[i] = v[points[i]];
   for (PetscInt i = 0; i < n && fit->s->fit->fades; i++) weight[i] *= FlankShare(fit->geometry[points[i]].normal, e3);
   for (PetscInt i = 0; i < n; i++) {
     inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
@@ -375,8 +384,7 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
     SupportInSpace(problem, &space);
     PetscCall(NeighbourhoodGather(fit->neighbourhoods, at->facet, at->foot, problem->frame[dim - 1], &space,
                                   SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points, &rho2, &n, &found));
-    inside     = dim == 3 ? TakePoints(3, fit, at, problem->frame[2], n, rho2)
-                          : TakePoints(2, fit, at, problem->frame[1], n, rho2);
+    inside     = TakePoints(fit, at, problem->frame[dim - 1], n, rho2);
     problem->n = (int)n;
     if (inside < wanted) PetscFunctionReturn(PETSC_SUCCESS);
     if (pass == passes) break;

@@ -12,11 +12,16 @@ struct _n_Neighbourhoods {
   PetscInt          *link_ptr, *link; /* facets across the edges that are not sharp, as compressed rows */
   PetscBool         *sharp, *folded;  /* of each facet: it has a sharp edge; the surface is folded at an edge of it */
   PetscReal         *place[3];        /* of each point, one component each; in 2D the third one is along the hoop */
+  PetscReal         *corners;         /* the same of the nodes of each facet, with room for `room` of them */
+  int                room;            /* whole vectors */
   PetscInt          *seen_facet, *seen_point, stamp;
   PetscInt          *queue;
-  PetscReal         *rho2, *point_rho2; /* of the points found; of every point that was visited */
+  PetscReal         *rho2; /* of the points found */
   PetscInt          *reach;
 };
+
+/* Room for the nodes of any facet, in whole vectors */
+enum { NODES_ROOM = (FACE_MAX_NODES + LANES - 1) / LANES * LANES };
 
 static int SharedEdgeCompare(const void *p, const void *q)
 {
@@ -89,18 +94,31 @@ static PetscInt LinkFacets(const SurfaceView *view, PetscInt n, const SharedEdge
   return count;
 }
 
-/* Writes the components of all points one by one, so that distances of several points are found at a time. */
+/* Component d of the place of point p; the third one in 2D is along the hoop. */
+static PetscReal Component(const SurfaceView *view, PetscInt p, int d)
+{
+  return d < view->dim ? view->x[p * view->dim + d] : view->hoop ? view->hoop[p] : 0;
+}
+
+/* Writes the components of the facets' nodes, and of quadrature points where there are any, one by one, so that
+   distances of several points are found at a time. */
 static PetscErrorCode TakePlaces(Neighbourhoods nb)
 {
   const SurfaceView *view = nb->view;
+  const PetscInt     n    = (view->first ? view->n_points : 0) + LANES;
+  int                most = 1;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc3(view->n_points + LANES, &nb->place[0], view->n_points + LANES, &nb->place[1],
-                         view->n_points + LANES, &nb->place[2]));
-  for (PetscInt p = 0; p < view->n_points; p++) {
-    for (int d = 0; d < view->dim; d++) nb->place[d][p] = view->x[p * view->dim + d];
-    if (view->dim == 2) nb->place[2][p] = view->hoop ? view->hoop[p] : 0;
-  }
+  PetscCall(PetscCalloc3(n, &nb->place[0], n, &nb->place[1], n, &nb->place[2]));
+  for (PetscInt p = 0; view->first && p < view->n_points; p++)
+    for (int d = 0; d < 3; d++) nb->place[d][p] = Component(view, p, d);
+  for (PetscInt f = 0; f < view->n_facets; f++) most = PetscMax(most, ElementGet(view->facets[f].type)->nodes);
+  nb->room = LanesGroups(most) * LANES;
+  PetscCall(PetscCalloc1(3 * nb->room * view->n_facets, &nb->corners));
+  for (PetscInt f = 0; f < view->n_facets; f++)
+    for (int d = 0; d < 3; d++)
+      for (int a = 0; a < ElementGet(view->facets[f].type)->nodes; a++)
+        nb->corners[(3 * f + d) * nb->room + a] = Component(view, view->facets[f].nodes[a], d);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -137,8 +155,7 @@ PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out
   nb->link_ptr[0] = 0;
   PetscCall(PetscFree(edges));
   PetscCall(PetscCalloc2(view->n_facets, &nb->seen_facet, view->n_points, &nb->seen_point));
-  PetscCall(PetscMalloc4(view->n_facets, &nb->queue, view->n_points, &nb->reach, view->n_points, &nb->rho2,
-                         view->n_points, &nb->point_rho2));
+  PetscCall(PetscMalloc3(view->n_facets, &nb->queue, view->n_points, &nb->reach, view->n_points, &nb->rho2));
   PetscCall(TakePlaces(nb));
   *out = nb;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -158,7 +175,8 @@ PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
   if (!*nb) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree3((*nb)->place[0], (*nb)->place[1], (*nb)->place[2]));
   PetscCall(PetscFree2((*nb)->seen_facet, (*nb)->seen_point));
-  PetscCall(PetscFree4((*nb)->queue, (*nb)->reach, (*nb)->rho2, (*nb)->point_rho2));
+  PetscCall(PetscFree3((*nb)->queue, (*nb)->reach, (*nb)->rho2));
+  PetscCall(PetscFree((*nb)->corners));
   PetscCall(PetscFree((*nb)->link_ptr));
   PetscCall(PetscFree((*nb)->link));
   PetscCall(PetscFree2((*nb)->sharp, (*nb)->folded));
@@ -251,13 +269,13 @@ PetscInt NeighbourhoodsLinkCount(Neighbourhoods nb)
   return nb->link_ptr[nb->view->n_facets];
 }
 
-/* Squared distances from x0 in a support of LANES points, the first of them being number p. Behind the last point
-   there are places without a meaning. */
-LANES_INLINE Lanes Rho2(const Neighbourhoods nb, PetscInt p, const PetscReal x0[3], const NeighbourhoodSupport *support)
+/* Squared distances from x0 in a support of LANES places, of which each component is given. */
+LANES_INLINE Lanes Rho2(const PetscReal *x, const PetscReal *y, const PetscReal *z, const PetscReal x0[3],
+                        const NeighbourhoodSupport *support)
 {
-  const PetscReal *metric = support->metric, z0 = nb->view->dim == 3 ? x0[2] : 0;
-  Lanes a = *(const LanesInArray *)&nb->place[0][p] - x0[0], b = *(const LanesInArray *)&nb->place[1][p] - x0[1],
-        c = *(const LanesInArray *)&nb->place[2][p] - z0;
+  const PetscReal *metric = support->metric;
+  Lanes            a = *(const LanesInArray *)x - x0[0], b = *(const LanesInArray *)y - x0[1],
+        c = *(const LanesInArray *)z - x0[2];
 
   if (support->bent) {
     const PetscReal *along = support->along;
@@ -298,12 +316,39 @@ static inline PetscBool ReachAddFacet(Neighbourhoods nb, PetscInt *count, PetscI
 {
   const PetscInt first = nb->view->first[f], points = nb->view->count[f], before = *count;
 
-  for (PetscInt q = 0; q < points; q += LANES) {
-    const Lanes rho2 = Rho2(nb, first + q, x0, support);
+  for (PetscInt q = 0; q < points; q += LANES) { /* behind the last point there are places without a meaning */
+    const PetscInt p    = first + q;
+    const Lanes    rho2 = Rho2(&nb->place[0][p], &nb->place[1][p], &nb->place[2][p], x0, support);
 
-    for (PetscInt i = 0; i < PetscMin(LANES, points - q); i++) ReachAdd(nb, count, rho2[i], limit, first + q + i);
+    for (PetscInt i = 0; i < PetscMin(LANES, points - q); i++) ReachAdd(nb, count, rho2[i], limit, p + i);
   }
   return (PetscBool)(*count > before);
+}
+
+/* Says whether a node of a facet is within the limit. Adds such nodes where they are the fit points. */
+static inline PetscBool ReachAddNodes(Neighbourhoods nb, PetscInt *count, PetscInt f, const PetscReal x0[3],
+                                      const PetscReal e3[3], const NeighbourhoodSupport *support, PetscReal limit)
+{
+  const SurfaceView *view   = nb->view;
+  const Facet       *facet  = &view->facets[f];
+  const int          nodes  = ElementGet(facet->type)->nodes;
+  const PetscReal   *x      = &nb->corners[3 * f * nb->room];
+  PetscBool          inside = PETSC_FALSE;
+  PetscReal          rho2[NODES_ROOM];
+
+  for (int a = 0; a < nodes; a += LANES)
+    *(LanesInArray *)&rho2[a] = Rho2(x + a, x + nb->room + a, x + 2 * nb->room + a, x0, support);
+  for (int a = 0; a < nodes; a++) {
+    const PetscInt p = facet->nodes[a];
+
+    if (!(rho2[a] <= limit)) continue;
+    inside = PETSC_TRUE;
+    if (view->first || nb->seen_point[p] == nb->stamp) continue;
+    nb->seen_point[p] = nb->stamp;
+    if (view->geometry[p].weight > 0 && Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE)
+      ReachAdd(nb, count, rho2[a], limit, p);
+  }
+  return inside;
 }
 
 /*@
@@ -330,7 +375,8 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
                                    const NeighbourhoodSupport *support, PetscReal limit, PetscInt max, PetscInt *points,
                                    const PetscReal **rho2, PetscInt *n, PetscInt *found)
 {
-  const SurfaceView *view = nb->view;
+  const SurfaceView *view  = nb->view;
+  const PetscReal    at[3] = {x0[0], x0[1], view->dim == 3 ? x0[2] : 0};
   PetscInt           head = 0, tail = 0, count = 0;
 
   PetscFunctionBeginUser;
@@ -339,23 +385,11 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
   nb->seen_facet[start] = nb->stamp;
   while (head < tail) {
     const PetscInt f      = nb->queue[head++];
-    const Facet   *facet  = &view->facets[f];
-    PetscBool      inside = view->first ? ReachAddFacet(nb, &count, f, x0, support, limit) : PETSC_FALSE;
+    PetscBool      inside = view->first ? ReachAddFacet(nb, &count, f, at, support, limit) : PETSC_FALSE;
 
     /* A quadrature point inside shows that the facet reaches into the support, so that its nodes need not be
        examined. */
-    for (int a = 0, nodes = view->first && inside ? 0 : ElementGet(facet->type)->nodes; a < nodes; a++) {
-      const PetscInt p = facet->nodes[a];
-
-      if (nb->seen_point[p] != nb->stamp) {
-        nb->seen_point[p] = nb->stamp;
-        nb->point_rho2[p] = Rho2(nb, p, x0, support)[0];
-        if (!view->first && nb->point_rho2[p] <= limit && view->geometry[p].weight > 0 &&
-            Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE)
-          ReachAdd(nb, &count, nb->point_rho2[p], limit, p);
-      }
-      inside = (PetscBool)(inside || nb->point_rho2[p] <= limit);
-    }
+    if (!inside) inside = ReachAddNodes(nb, &count, f, at, e3, support, limit);
     if (!inside && f != start) continue;
     for (PetscInt k = nb->link_ptr[f]; k < nb->link_ptr[f + 1]; k++) {
       const PetscInt g = nb->link[k];

@@ -2,6 +2,7 @@
    motion. */
 #include "searchimpl.h"
 #include "ring.h"
+#include "pointseen.h"
 #include "base/smoothstep.h"
 
 /* Cosine of the angle between the slave's outward normal and the master's inward one: up to 72 degrees a point takes
@@ -625,7 +626,10 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
         (int)number[CanonicalImage(s, &lists->X[node * dim], candidate->image, &planes) * lists->n_nodes + node];
     }
   }
-  PetscCall(PetscMalloc2(lists->n_points * dim, &lists->point_X, lists->n_points * dim, &lists->point_u));
+  PetscCall(PetscMalloc2(lists->n_points * dim + POINT_SEEN_PADDING, &lists->point_X,
+                         lists->n_points * dim + POINT_SEEN_PADDING, &lists->point_u));
+  for (int i = 0; i < POINT_SEEN_PADDING; i++)
+    lists->point_X[lists->n_points * dim + i] = lists->point_u[lists->n_points * dim + i] = 0;
   for (PetscInt p = 0; p < lists->n_points; p++) {
     PlacePoint(s, lists, p);
     PointMap(s, lists, p, lists->u, &lists->point_u[p * dim]);
@@ -1092,17 +1096,24 @@ PetscReal NeighbourListsNearestSize(NeighbourLists lists, PetscInt q)
   return lists->nearest[q] < 0 ? 0 : lists->facet_size[lists->facet_ptr[q] + lists->nearest[q]];
 }
 
-/* Sum of the fit points of a slave point, relative to it. dim is a constant where this is called. */
-static inline void SumPoints(const int dim, NeighbourLists lists, PetscInt q, PetscReal sum[3])
+/* Sum of the fit points of a slave point, relative to it. */
+static void SumPoints(NeighbourLists lists, PetscInt q, PetscReal sum[3])
 {
-  const PetscReal *X = lists->point_X, *u = lists->point_u, *X_0 = &lists->slave_X[q * dim],
-                  *u_0 = &lists->slave_u[q * dim];
-  PetscReal total[3]   = {0, 0, 0};
+  const PetscInt *point = &lists->list_point[lists->list_ptr[q]];
+  SpacePoint      seen, total = {0, 0, 0, 0};
+  PointOrigin     origin;
+  PetscReal       x[2];
 
-  for (PetscInt i = lists->list_ptr[q]; i < lists->list_ptr[q] + lists->fit_n[q]; i++) {
-    const PetscInt p = lists->list_point[i];
-
-    for (int d = 0; d < dim; d++) total[d] += (X[p * dim + d] - X_0[d]) + (u[p * dim + d] - u_0[d]);
+  for (int d = 0; d < 3; d++) sum[d] = 0;
+  for (PetscInt i = 0; i < lists->fit_n[q] && lists->dim == 2; i++) {
+    NeighbourListsRelative(lists, q, point[i], x);
+    for (int d = 0; d < 2; d++) sum[d] += x[d];
+  }
+  if (lists->dim == 2) return;
+  PointOriginMake(&lists->slave_X[3 * q], &lists->slave_u[3 * q], &origin);
+  for (PetscInt i = 0; i < lists->fit_n[q]; i++) {
+    PointSeen(lists, point[i], &origin, (PetscReal *)&seen);
+    total += seen;
   }
   for (int d = 0; d < 3; d++) sum[d] = total[d];
 }
@@ -1126,10 +1137,7 @@ void NeighbourListsCentre(NeighbourLists lists, PetscInt q, PetscReal centre[2])
   PetscReal        sum[3];
 
   centre[0] = centre[1] = 0;
-  if (dim == 3)
-    SumPoints(3, lists, q, sum);
-  else
-    SumPoints(2, lists, q, sum);
+  SumPoints(lists, q, sum);
   for (int a = 0; a < dim - 1 && lists->fit_n[q]; a++)
     for (int d = 0; d < dim; d++) centre[a] += frame[3 * a + d] * sum[d] / lists->fit_n[q];
 }

@@ -1,0 +1,55 @@
+/* Fit points of space as a slave point or a fit's origin sees them. All components of a point are found at once, and
+   with them a fourth one that has no meaning: the arrays of places have room for POINT_SEEN_PADDING numbers behind
+   their last point. */
+#pragma once
+#include "search/neighbourlists.h"
+
+enum { POINT_SEEN_PADDING = 1 };
+
+typedef double SpacePoint __attribute__((vector_size(4 * sizeof(double))));
+/* The same within an array of points */
+typedef double SpacePointInArray __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double)), may_alias));
+
+/* Where points are seen from: its reference position and its displacement. */
+typedef struct {
+  SpacePoint X, u;
+} PointOrigin;
+
+/*@
+  PointOriginMake - makes an origin of 3D.
+
+  Not collective
+
+  Input Parameters:
++ X - its reference position, X[3] (length)
+- u - its displacement, u[3] (length)
+
+  Output Parameter:
+. origin - the origin
+@*/
+static inline void PointOriginMake(const PetscReal *X, const PetscReal *u, PointOrigin *origin)
+{
+  origin->X = (SpacePoint){X[0], X[1], X[2], 0};
+  origin->u = (SpacePoint){u[0], u[1], u[2], 0};
+}
+
+/*@
+  PointSeen - computes the position of a point of 3D relative to an origin, as NeighbourListsRelative() does.
+
+  Not collective
+
+  Input Parameters:
++ lists  - the lists
+. p      - the point
+- origin - of PointOriginMake()
+
+  Output Parameter:
+. x - x[3], and one number more (length)
+@*/
+static inline void PointSeen(NeighbourLists lists, PetscInt p, const PointOrigin *origin, PetscReal *x)
+{
+  const SpacePointInArray *X = (const SpacePointInArray *)&lists->point_X[3 * p],
+                          *u = (const SpacePointInArray *)&lists->point_u[3 * p];
+
+  *(SpacePointInArray *)x = (*X - origin->X) + (*u - origin->u);
+}
