@@ -247,18 +247,20 @@ static void FootSpacing(const FitSupport *fit, PetscInt f, const double *xi, dou
    changed from face to face with the local spacing would increase the error of the patch test 2 to 10 times. */
 static void WindowSpacing(const FitSupport *fit, PetscInt n, double covariance[3][3], double *area)
 {
-  double sum = 0, faces = 0;
+  NodeGeometry total = {.spacing = 0};
+  double       sum = 0, faces = 0;
 
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) covariance[i][j] = 0;
   for (PetscInt i = 0; i < n; i++) {
     const NodeGeometry *g     = &fit->geometry[fit->points[i]];
     const double        share = fit->taper[i] / (fit->lists->dim == 3 ? PetscSqr(g->spacing) : g->spacing);
 
     sum += fit->taper[i];
     faces += share;
-    AddCovariance(share, g, covariance);
+    for (int k = 0; k < 6; k++) total.covariance[k] += share * g->covariance[k];
   }
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) covariance[i][j] = 0;
+  AddCovariance(1, &total, covariance);
   *area = sum / faces;
 }
 

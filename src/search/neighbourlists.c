@@ -514,6 +514,9 @@ static void NeighbourListsTurnPoint(NeighbourLists lists, const Ring *ring, Pets
 static PetscErrorCode NeighbourListsAddQuadraturePoints(ContactSearch s, NeighbourLists lists, SearchField *field)
 {
   const int dim = lists->dim;
+  double    area[FACE_RULE_POINTS];
+  Ring      ring[FACE_RULE_POINTS];
+  PetscInt  n = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < field->n_candidates; c++) {
@@ -521,11 +524,12 @@ static PetscErrorCode NeighbourListsAddQuadraturePoints(ContactSearch s, Neighbo
     const FaceRecord *record    = &field->records[candidate->record];
     const Facet      *facet     = &record->facet;
     const FaceRule   *rule      = FaceRuleGet(facet->type, 0);
-    double            area[FACE_RULE_POINTS];
-    Ring              ring[FACE_RULE_POINTS];
 
+    /* The images of a face come one after the other and have the same areas, but not the same rings. */
+    if (s->fit->revolved || c == 0 || candidate->record != candidate[-1].record)
+      n = CandidateRings(s, lists, field, candidate, area, ring);
     candidate->first = lists->n_points;
-    candidate->count = CandidateRings(s, lists, field, candidate, area, ring);
+    candidate->count = n;
     for (int q = 0; q < rule->n; q++) {
       const PetscReal share = s->fit->revolved ? RingWeight(&ring[q]) / s->master->mean_size : 1;
 

@@ -96,6 +96,25 @@ void FitFrameFromNormal(int dim, const double *normal, double frame[3][3])
   for (int c = 0; c < 3; c++) frame[1][c] = n[(c + 1) % 3] * t[(c + 2) % 3] - n[(c + 2) % 3] * t[(c + 1) % 3];
 }
 
+/* Sum of the weights of points, and the lower triangle of their covariance, times that sum. dim is a constant where
+   this is called. */
+static inline double Moments(const int dim, int n, const double *x, const double *multiplier, double covariance[3][3])
+{
+  double sum = 0, first[3] = {0}, second[3][3] = {{0}};
+
+  for (int i = 0; i < n; i++) {
+    sum += multiplier[i];
+    for (int c = 0; c < dim; c++) first[c] += multiplier[i] * x[i * dim + c];
+  }
+  for (int c = 0; c < dim; c++) first[c] /= sum;
+  for (int i = 0; i < n; i++)
+    for (int c = 0; c < dim; c++)
+      for (int d = 0; d <= c; d++)
+        second[c][d] += multiplier[i] * (x[i * dim + c] - first[c]) * (x[i * dim + d] - first[d]);
+  memcpy(covariance, second, sizeof(second));
+  return sum;
+}
+
 /*@
   FitFrame - finds the frame of the least-squares plane (2D: line) of weighted points, eq. 3 of Chamoret et al. (2004)
   (reference plane of the slave point).
@@ -118,23 +137,13 @@ void FitFrameFromNormal(int dim, const double *normal, double frame[3][3])
 @*/
 int FitFrame(int dim, int n, const double *x, const double *multiplier, const double *outward, double frame[3][3])
 {
-  double    sum = 0, centre[3] = {0}, covariance[3][3] = {{0}}, value[3], vector[3][3], cosine = 0, length = 0;
-  const int last = 2, first = 3 - dim; /* in 2D the third direction has no extent and comes first */
-  double   *normal;
+  double       covariance[3][3], value[3], vector[3][3], cosine = 0, length = 0;
+  const double sum  = dim == 3 ? Moments(3, n, x, multiplier, covariance) : Moments(2, n, x, multiplier, covariance);
+  const int    last = 2, first = 3 - dim; /* in 2D the third direction has no extent and comes first */
+  double      *normal;
 
-  for (int i = 0; i < n; i++) {
-    sum += multiplier[i];
-    for (int c = 0; c < dim; c++) centre[c] += multiplier[i] * x[i * dim + c];
-  }
   FitFrameFromNormal(dim, outward, frame);
   if (!(sum > 0)) return 0;
-  for (int c = 0; c < dim; c++) centre[c] /= sum;
-  for (int i = 0; i < n; i++) {
-    for (int c = 0; c < dim; c++) {
-      for (int d = 0; d <= c; d++)
-        covariance[c][d] += multiplier[i] * (x[i * dim + c] - centre[c]) * (x[i * dim + d] - centre[d]);
-    }
-  }
   for (int c = 0; c < dim; c++) {
     for (int d = 0; d <= c; d++) covariance[c][d] = covariance[d][c] = covariance[c][d] / sum;
   }
