@@ -1,14 +1,13 @@
 /* Fit points of space as a slave point or a fit's origin sees them. All components of a point are found at once, and
-   with them a fourth one that has no meaning: the arrays of places have room for POINT_SEEN_PADDING numbers behind
+   with them a fourth number that has no meaning: arrays of places have room for POINT_SEEN_PADDING numbers behind
    their last point. */
 #pragma once
+#include "base/lanes.h"
 #include "search/neighbourlists.h"
 
 enum { POINT_SEEN_PADDING = 1 };
 
 typedef double SpacePoint __attribute__((vector_size(4 * sizeof(double))));
-/* The same within an array of points */
-typedef double SpacePointInArray __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 /* Where points are seen from: its reference position and its displacement. */
 typedef struct {
@@ -48,8 +47,8 @@ static inline void PointOriginMake(const PetscReal *X, const PetscReal *u, Point
 @*/
 static inline void PointSeen(NeighbourLists lists, PetscInt p, const PointOrigin *origin, PetscReal *x)
 {
-  const SpacePointInArray *X = (const SpacePointInArray *)&lists->point_X[3 * p],
-                          *u = (const SpacePointInArray *)&lists->point_u[3 * p];
+  const PointInArray *X = (const PointInArray *)&lists->point_X[3 * p],
+                     *u = (const PointInArray *)&lists->point_u[3 * p];
 
-  *(SpacePointInArray *)x = (*X - origin->X) + (*u - origin->u);
+  *(PointInArray *)x = (*X - origin->X) + (*u - origin->u);
 }
