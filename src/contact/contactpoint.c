@@ -99,6 +99,7 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
                            .frame       = &lists->frame[9 * q],
                            .metric      = &lists->metric[4 * q],
                            .bend        = lists->bend ? &lists->bend[q] : NULL,
+                           .lift        = lists->lift ? lists->lift[q] : 0,
                            .derivatives = pair->fit.derivatives,
                            .workspace   = work->workspace};
   *found = in.n_facets && smoother->evaluate(&in, want, &work->result) ? PETSC_TRUE : PETSC_FALSE;

@@ -1310,6 +1310,7 @@ static PetscErrorCode FreeNodesAndPoints(NeighbourLists l)
   PetscCall(PetscFree2(l->point_X, l->point_u));
   PetscCall(PetscFree2(l->first_held, l->home_held));
   PetscCall(PetscFree(l->bend));
+  PetscCall(PetscFree(l->lift));
   PetscCall(PetscFree(l->list_point));
   PetscCall(PetscFree(l->facet));
   PetscCall(PetscFree(l->facet_size));

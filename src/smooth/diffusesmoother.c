@@ -3,7 +3,7 @@
 #include "smooth/smoother.h"
 
 /* Uses the fit where there is one. The facets are used where every fit failed its guards when the lists were made,
-   or where the fit has no foot. */
+   or where the fit has no foot. Past an end they are lifted to the smooth surface. */
 static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, SmootherResult *out)
 {
   static const FitWant wants[] = {[SMOOTHER_GAP]              = FIT_GAP_ONLY,
@@ -37,7 +37,9 @@ static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, 
     }
   }
   out->facet_served = 1;
-  return SmootherEvaluate_Facet(in, want, out);
+  if (!SmootherEvaluate_Facet(in, want, out)) return 0;
+  out->gap -= in->lift;
+  return 1;
 }
 
 /* Length of the workspace for the diffuse fit, in doubles. It holds the highest degree and the longest list, because

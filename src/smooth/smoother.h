@@ -33,6 +33,7 @@ typedef struct {
   const double     *hoop;           /* of the fit points, as in FitProblem */
   const double     *frame, *metric; /* 9 and 4 entries as in FitProblem, held in a solve */
   const FitBend    *bend;           /* as in FitProblem; NULL: no fit is bent */
+  double            lift;           /* height of the smooth surface over the facets, where these serve (length) */
   FitDerivativeKind derivatives;
   double           *workspace; /* of the size that the smoother's workspace() returned */
 } SmootherInput;
