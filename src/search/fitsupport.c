@@ -471,24 +471,35 @@ static void KeepFrame(const FitSupport *fit, PetscInt q, FitFoot *at)
   for (int d = 0; d < fit->lists->dim; d++) at->outward[d] = kept[d];
 }
 
-/* Finds how high the smooth surface is over the facet at that place of it where a slave point past an end stands. Fits
-   at the slave point are extrapolated to it, and their guards may refuse all of them. The facets would then serve there
-   and fits beside it, and contact would begin at a sagitta too soon or too late: a coarse pin with a clearance below
-   the sagitta of its hole was held by the few points that stand out of the hole. 0: there is no fit either. */
-static PetscErrorCode LiftAtEnd(FitSupport *fit, const Nearest *look, PetscInt q, PetscReal *lift)
+/*@
+  FitSupportLift - lifts the facets to the smooth surface where they serve a slave point at an end of a flank.
+
+  Not collective
+
+  Input Parameters:
++ fit  - the prepared fits
+. look - the slave point's nearest facet and foot
+- q    - the slave point
+
+  Note:
+  It is the height of the smooth surface over the facet at the point of it that is nearest to the slave point. Fits at a
+  slave point past the end are extrapolated to it, and their guards may refuse all of them. The facets would then serve
+  there and fits beside it, and contact would begin at a sagitta too soon or too late: a coarse pin with a clearance
+  below the sagitta of its hole was held by the few points that stand out of the hole.
+@*/
+PetscErrorCode FitSupportLift(FitSupport *fit, const Nearest *look, PetscInt q)
 {
-  const NeighbourLists lists = fit->lists;
-  const Candidate     *best  = &look->candidates[look->best];
-  FitFoot              at    = {.facet = look->best, .past = PETSC_TRUE};
-  Facet                facet = best->facet;
-  PetscReal            x[FACE_MAX_NODES * 3];
-  Foot                 foot;
-  FitProblem           problem;
-  FitResult            result;
-  int                  rung;
+  NeighbourLists   lists = fit->lists;
+  const Candidate *best  = &look->candidates[look->best];
+  FitFoot          at    = {.facet = look->best, .past = PETSC_TRUE};
+  Facet            facet = best->facet;
+  PetscReal        x[FACE_MAX_NODES * 3];
+  Foot             foot;
+  FitProblem       problem;
+  FitResult        result;
+  int              rung;
 
   PetscFunctionBeginUser;
-  *lift            = 0;
   facet.free_edges = 0;
   for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
     NeighbourListsRelative(lists, q, best->facet.nodes[a], &x[a * lists->dim]);
@@ -499,7 +510,9 @@ static PetscErrorCode LiftAtEnd(FitSupport *fit, const Nearest *look, PetscInt q
   for (int d = 0; d < 3; d++) at.outward[d] = best->normal[d];
   for (int d = 0; d < lists->dim; d++) at.X[d] = at.foot[d] = look->x[d] - foot.gap * foot.normal[d];
   PetscCall(FitSupportClimb(fit, &at, RUNG_PLAIN, &problem, &result, &rung));
-  if (rung != RUNG_FACET && PetscAbsReal(result.gap) < FIT_STRAYS * look->size) *lift = -result.gap;
+  if (rung == RUNG_FACET || PetscAbsReal(result.gap) > FIT_STRAYS * look->size) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!lists->lift) PetscCall(PetscCalloc1(lists->n_slaves, &lists->lift));
+  lists->lift[q] = -result.gap;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -528,7 +541,6 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   FitFoot        at    = {.facet = look->best, .xi = {look->foot.xi[0], look->foot.xi[1]}};
   FitProblem     problem;
   FitResult      result;
-  PetscReal      lift = 0;
 
   PetscFunctionBeginUser;
   /* The foot's own normal may lie along the surface where the foot is on an edge. */
@@ -544,12 +556,8 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   PetscCall(FitSupportClimb(fit, &at, fit->s->first_rung ? fit->s->first_rung[q] : RUNG_PLAIN, &problem, &result,
                             &lists->rung[q]));
   if (look->listed && lists->rung[q] != RUNG_FACET && FitStrays(look, &result)) lists->rung[q] = RUNG_FACET;
-  if (lists->rung[q] == RUNG_FACET && at.past) PetscCall(LiftAtEnd(fit, look, q, &lift));
+  if (lists->rung[q] == RUNG_FACET && at.past) PetscCall(FitSupportLift(fit, look, q));
   TimingEnd(TIMING_FIT);
-  if (lift != 0) {
-    if (!lists->lift) PetscCall(PetscCalloc1(lists->n_slaves, &lists->lift));
-    lists->lift[q] = lift;
-  }
   if (lists->rung[q] == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
   lists->fit_n[q]     = problem.n;
   lists->degree[q]    = problem.degree;

@@ -650,6 +650,25 @@ PetscBool FlankIsBeside(const Nearest *look, int facing, int n, const int *found
   return PETSC_FALSE;
 }
 
+/*@
+  FlankLies - says whether the slave lies on the nearest facet of the master, with its foot within it.
+
+  Not collective
+
+  Input Parameter:
+. look - the slave point with its nearest facet and foot
+
+  Note:
+  A point just inside of a bore does, though its own face may be turned enough to face the end of the bore a little.
+@*/
+PetscBool FlankLies(const Nearest *look)
+{
+  const PetscReal *normal = look->candidates[look->best].normal;
+
+  return (PetscBool)(look->foot.region == FOOT_INTERIOR && look->foot.beyond == 0 &&
+                     StandsOff(look, -Dot(look->outward, normal)) == 0);
+}
+
 /* Says whether a fit past an edge between two facets would miss one of them: of a convex edge either one, of a concave
    one a facet that takes the slave point with its whole area, as the other one does. */
 static PetscBool EdgeNeedsBoth(const Nearest *look, const FlankEdge *edge, const Candidate *c, const Candidate *o)

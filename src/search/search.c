@@ -223,6 +223,8 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   }
   if (fit && !FlankNearRidge(look, fit->neighbourhoods, facing, found))
     PetscCall(FitSupportSlave(fit, look, q, convex, first, buffer));
+  else if (fit && look->two_sided && FlankLies(look)) /* the edge has terms of its own */
+    PetscCall(FitSupportLift(fit, look, q));
   PetscCall(ListAddFacets(look, facing, found, ends, field->records, first, buffer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -293,6 +293,15 @@ JOBS = [
     Job("vee_jaws", "rod drawn out of two jaws with vees, in space", [
         Answer("pull", 381.84, 0.2, "closed form"),
     ], steps=14),
+    Job("pin_in_hole", "pin with play in a coarse plate, in space", [
+        Answer("down", 4000, 0.001, "closed form"),
+        Answer("aside", 1500, 0.001, "closed form"),
+    ], steps=10),
+    Job("journal", "journal with play in a bush by force", [
+        Answer("drop", 0.05838, 0.02, "limit"),
+        Answer("down", 2000, 0.001, "closed form"),
+        Answer("aside", 1000, 0.001, "closed form"),
+    ], steps=10),
     Job("blocks_pushed", "upper one of two loose blocks pushed off", [
         Answer("push", 2.0, 0.01, "closed form"),
     ], steps=12),

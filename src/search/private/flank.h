@@ -21,4 +21,5 @@ PetscReal FlankShare(const Nearest *, int facing, int n, const int *found, int *
 void      FlankCuts(const Nearest *, int facing, const int *found, int n, const int *dropped, int *ends);
 void      FlankLeaveCorner(Nearest *, int facing, const int *found);
 PetscBool FlankIsBeside(const Nearest *, int facing, int n, const int *found);
+PetscBool FlankLies(const Nearest *);
 PetscBool FlankNearRidge(const Nearest *, Neighbourhoods, int facing, const int *found);

@@ -203,6 +203,7 @@ PetscReal      SearchFitReach(ContactSearch);
 PetscErrorCode FitSupportCreate(ContactSearch, NeighbourLists, const SearchField *, FitSupport *);
 PetscErrorCode FitSupportDestroy(FitSupport *);
 PetscErrorCode FitSupportSlave(FitSupport *, const Nearest *, PetscInt q, int ends, PetscInt first, ListBuffer *);
+PetscErrorCode FitSupportLift(FitSupport *, const Nearest *, PetscInt q);
 PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, int first, FitProblem *, FitResult *, int *rung);
 /* searchfield.c */
 PetscReal        SearchListsDistance(ContactSearch, PetscReal motion);
