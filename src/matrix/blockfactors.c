@@ -387,6 +387,77 @@ static PetscErrorCode FormBlock(BlockFactors f, PetscInt b, Mat formed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Sorts the blocks by nodes: those of node i are of[first[i]] to of[first[i+1] - 1]. Both are freed by the caller. */
+static PetscErrorCode BlocksOfNodes(BlockFactors f, PetscInt **first, PetscInt **of)
+{
+  PetscInt *next;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(f->n_nodes + 2, first));
+  PetscCall(PetscMalloc1(f->n_at, of));
+  next = *first + 1; /* filling moves the ends of all nodes on to where they belong */
+  for (PetscInt i = 0; i < f->n_at; i++) next[f->at[i] + 1]++;
+  for (PetscInt i = 0; i < f->n_nodes; i++) next[i + 1] += next[i];
+  for (PetscInt b = 0; b < f->n; b++)
+    for (PetscInt i = 0; i < f->block[b].n; i++) (*of)[next[f->at[f->block[b].nodes + i]]++] = b;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Counts the entries that the blocks place in each row of this rank. What several ranks place counts for each of them.
+ */
+static PetscErrorCode CountEntries(BlockFactors f, PetscInt *entries)
+{
+  PetscInt *first, *of, *seen, *mine; /* seen: by which node last, plus 1 */
+
+  PetscFunctionBeginUser;
+  PetscCall(BlocksOfNodes(f, &first, &of));
+  PetscCall(PetscCalloc2(f->n_nodes, &seen, f->n_nodes * f->size, &mine));
+  for (PetscInt i = 0; i < f->n_nodes; i++) {
+    PetscInt count = 0;
+
+    for (PetscInt k = first[i]; k < first[i + 1]; k++) {
+      const KeptBlock *block = &f->block[of[k]];
+
+      for (PetscInt j = 0; j < block->n; j++) {
+        PetscInt *by = &seen[f->at[block->nodes + j]];
+
+        count += *by != i + 1;
+        *by = i + 1;
+      }
+    }
+    for (int d = 0; d < f->size; d++) mine[i * f->size + d] = count * f->size;
+  }
+  PetscCall(PetscArrayzero(entries, f->rows));
+  PetscCall(PetscSFReduceBegin(f->sf, MPIU_INT, mine, entries, MPI_SUM));
+  PetscCall(PetscSFReduceEnd(f->sf, MPIU_INT, mine, entries, MPI_SUM));
+  PetscCall(PetscFree2(seen, mine));
+  PetscCall(PetscFree(first));
+  PetscCall(PetscFree(of));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Creates the AIJ matrix with room for all entries of the blocks. */
+static PetscErrorCode CreateFormed(BlockFactors f, Mat *formed)
+{
+  PetscInt *inner, *outer, columns;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreate(f->comm, formed));
+  PetscCall(MatSetSizes(*formed, f->rows, f->rows, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(*formed, MATAIJ));
+  PetscCall(MatGetSize(f->matrix, NULL, &columns));
+  PetscCall(PetscMalloc2(f->rows, &inner, f->rows, &outer));
+  PetscCall(CountEntries(f, inner));
+  for (PetscInt i = 0; i < f->rows; i++) {
+    outer[i] = PetscMin(inner[i], columns - f->rows);
+    inner[i] = PetscMin(inner[i], f->rows);
+  }
+  PetscCall(MatSeqAIJSetPreallocation(*formed, 0, inner));
+  PetscCall(MatMPIAIJSetPreallocation(*formed, 0, inner, 0, outer));
+  PetscCall(PetscFree2(inner, outer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BlockFactorsForm - makes an AIJ matrix of a matrix of BlockFactorsGet(), for a solver that needs the entries.
 
@@ -397,9 +468,6 @@ static PetscErrorCode FormBlock(BlockFactors f, PetscInt b, Mat formed)
 
   Output Parameter:
 . formed - destroyed by the caller; NULL if the matrix is none
-
-  Note:
-  It is slow, because its pattern is not known: it is for what seldom happens.
 @*/
 PetscErrorCode BlockFactorsForm(Mat matrix, Mat *formed)
 {
@@ -411,12 +479,7 @@ PetscErrorCode BlockFactorsForm(Mat matrix, Mat *formed)
   PetscCall(PetscObjectTypeCompare((PetscObject)matrix, MATSHELL, &shell));
   if (!shell) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatShellGetContext(matrix, &f));
-  PetscCall(MatCreate(f->comm, formed));
-  PetscCall(MatSetSizes(*formed, f->rows, f->rows, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(*formed, MATAIJ));
-  PetscCall(MatSeqAIJSetPreallocation(*formed, f->size, NULL));
-  PetscCall(MatMPIAIJSetPreallocation(*formed, f->size, NULL, f->size, NULL));
-  PetscCall(MatSetOption(*formed, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  PetscCall(CreateFormed(f, formed));
   for (PetscInt b = 0; b < f->n; b++) PetscCall(FormBlock(f, b, *formed));
   PetscCall(MatAssemblyBegin(*formed, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*formed, MAT_FINAL_ASSEMBLY));
