@@ -73,27 +73,45 @@ static PetscBool AreApart(const Nearest *look, const Candidate *c, const Candida
   return PETSC_FALSE;
 }
 
+/* Corners of an edge of a facet; in 2D of an end, twice. */
+static void EdgeCorners(const Facet *facet, int edge, PetscInt nodes[2])
+{
+  const Element *e = ElementGet(facet->type);
+
+  for (int k = 0; k < 2; k++) nodes[k] = facet->nodes[e->dim == 1 ? edge : e->edge_corners[edge][k]];
+}
+
+/* Number of edges of a facet, or of its ends in 2D. */
+static int EdgeCount(const Facet *facet)
+{
+  const Element *e = ElementGet(facet->type);
+
+  return e->dim == 1 ? 2 : e->edges;
+}
+
+/* Does c share an edge of its with o? */
+static PetscBool SharesEdge(const Nearest *look, const Candidate *c, const Candidate *o, int edge, FlankEdge *shared)
+{
+  const int dim     = look->lists->dim;
+  const int corners = ElementGet(o->facet.type)->corners;
+  PetscInt  nodes[2];
+  PetscReal height = 0;
+
+  EdgeCorners(&c->facet, edge, nodes);
+  if (!HasNode(o, corners, nodes[0]) || !HasNode(o, corners, nodes[1])) return PETSC_FALSE;
+  for (int d = 0; d < dim; d++)
+    height += c->normal[d] *
+              (o->centre[d] - look->lists->point_X[nodes[0] * dim + d] - look->lists->point_u[nodes[0] * dim + d]);
+  *shared = (FlankEdge){edge, {nodes[0], nodes[1]}, (PetscBool)(height < -FLANK_BELOW * look->size)};
+  return PETSC_TRUE;
+}
+
 /* Finds the edge of c that it shares with o. */
 static PetscBool SharedEdge(const Nearest *look, const Candidate *c, const Candidate *o, FlankEdge *shared)
 {
-  const Element *e;
-  const int      dim = look->lists->dim;
-  int            corners;
-
   if (AreApart(look, c, o)) return PETSC_FALSE;
-  e       = ElementGet(c->facet.type);
-  corners = ElementGet(o->facet.type)->corners;
-  for (int k = 0; k < (e->dim == 1 ? 2 : e->edges); k++) {
-    const PetscInt a = c->facet.nodes[e->dim == 1 ? k : e->edge_corners[k][0]],
-                   b = c->facet.nodes[e->dim == 1 ? k : e->edge_corners[k][1]];
-    PetscReal height = 0;
-
-    if (!HasNode(o, corners, a) || !HasNode(o, corners, b)) continue;
-    for (int d = 0; d < dim; d++)
-      height += c->normal[d] * (o->centre[d] - look->lists->point_X[a * dim + d] - look->lists->point_u[a * dim + d]);
-    *shared = (FlankEdge){k, {a, b}, (PetscBool)(height < -FLANK_BELOW * look->size)};
-    return PETSC_TRUE;
-  }
+  for (int k = 0; k < EdgeCount(&c->facet); k++)
+    if (SharesEdge(look, c, o, k, shared)) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -535,23 +553,51 @@ static PetscReal EdgeShare(const Nearest *look)
   return share;
 }
 
-/* Marks the points of n facets at which others may end. */
-static void Mark(const Nearest *look, int n, const int *facets)
+/* Sorts n facets, at which others may end, by their corners. */
+static void SortByCorners(const Nearest *look, int n, const int *facets)
 {
+  FacetsAt *at = look->at;
+
+  at->n = 0;
+  at->sorted++;
   for (int k = 0; k < n; k++) {
     const Facet *facet = &look->candidates[facets[k]].facet;
 
-    for (int a = 0; a < ElementGet(facet->type)->corners; a++) look->marked[facet->nodes[a]] = look->q + 1;
+    for (int a = 0; a < ElementGet(facet->type)->corners; a++) {
+      const PetscInt p = facet->nodes[a];
+
+      at->entry[at->n] = (FacetAt){facets[k], at->latest[p] == at->sorted ? at->first[p] : -1};
+      at->latest[p]    = at->sorted;
+      at->first[p]     = at->n++;
+    }
   }
 }
 
-/* May a facet share an edge with one of those? Few do, so that the others need not be compared with it. */
-static PetscBool MayEnd(const Nearest *look, const Facet *facet)
+/* The first facet of those that may share an edge with c: it has the edge's first corner. -1: there is none. */
+static PetscInt FirstAt(const Nearest *look, const Candidate *c, int edge)
 {
-  int marked = 0;
+  PetscInt nodes[2];
 
-  for (int a = 0; a < ElementGet(facet->type)->corners; a++) marked += look->marked[facet->nodes[a]] == look->q + 1;
-  return (PetscBool)(marked >= look->lists->dim - 1);
+  EdgeCorners(&c->facet, edge, nodes);
+  return look->at->latest[nodes[0]] == look->at->sorted ? look->at->first[nodes[0]] : -1;
+}
+
+/* The ends of the flank at the edges of one facet, of those that SortByCorners() has sorted, as FlankShare() says. */
+static int FacetEnds(const Nearest *look, const Candidate *c, PetscReal *share)
+{
+  int ends = 0;
+
+  for (int k = 0; k < EdgeCount(&c->facet); k++) {
+    for (PetscInt i = FirstAt(look, c, k); i >= 0; i = look->at->entry[i].next) {
+      const Candidate *beyond = &look->candidates[look->at->entry[i].candidate];
+      FlankEdge        edge;
+
+      if (!SharesEdge(look, c, beyond, k, &edge)) continue;
+      ends |= (edge.convex ? 1 + FLANK_CONVEX : 1) << k;
+      if (edge.convex) *share = PetscMin(*share, ConvexShare(look, c, beyond, &edge));
+    }
+  }
+  return ends;
 }
 
 /*@
@@ -577,19 +623,10 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
 {
   PetscReal share = 1;
 
-  Mark(look, n - facing, &found[facing]);
+  SortByCorners(look, n - facing, &found[facing]);
   for (int i = 0; i < facing; i++) {
-    ends[i] = 0;
     share   = PetscMin(share, FreeShare(look, &look->candidates[found[i]], facing, found));
-    if (!MayEnd(look, &look->candidates[found[i]].facet)) continue;
-    for (int k = facing; k < n; k++) {
-      const Candidate *beyond = &look->candidates[found[k]];
-      FlankEdge        edge;
-
-      if (!SharedEdge(look, &look->candidates[found[i]], beyond, &edge)) continue;
-      ends[i] |= (edge.convex ? 1 + FLANK_CONVEX : 1) << edge.edge;
-      if (edge.convex) share = PetscMin(share, ConvexShare(look, &look->candidates[found[i]], beyond, &edge));
-    }
+    ends[i] = FacetEnds(look, &look->candidates[found[i]], &share);
   }
   if (n > facing) share *= DeepShare(look, facing, n, found);
   share *= RidgeShare(look, facing, found) * EdgeShare(look);
@@ -620,14 +657,16 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
 void FlankCuts(const Nearest *look, int facing, const int *found, int n, const int *dropped, int *ends)
 {
   if (!look->one_body || n == 0) return;
-  Mark(look, n, dropped);
+  SortByCorners(look, n, dropped);
   for (int i = 0; i < facing; i++) {
-    if (!MayEnd(look, &look->candidates[found[i]].facet)) continue;
-    for (int k = 0; k < n; k++) {
-      FlankEdge edge;
+    const Candidate *c = &look->candidates[found[i]];
 
-      if (SharedEdge(look, &look->candidates[found[i]], &look->candidates[dropped[k]], &edge))
-        ends[i] |= FLANK_CUT << edge.edge;
+    for (int k = 0; k < EdgeCount(&c->facet); k++) {
+      for (PetscInt j = FirstAt(look, c, k); j >= 0; j = look->at->entry[j].next) {
+        FlankEdge edge;
+
+        if (SharesEdge(look, c, &look->candidates[look->at->entry[j].candidate], k, &edge)) ends[i] |= FLANK_CUT << k;
+      }
     }
   }
 }

@@ -254,13 +254,16 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   const int  dim = lists->dim;
   BoxTree    tree;
   int       *found, *ends;
-  PetscInt  *marked, next = 0;
+  PetscInt   next   = 0;
+  FacetsAt   at     = {0};
   ListBuffer buffer = {.room        = s->room + s->room / LIST_ROOM,
                        .points_room = s->points_room + s->points_room / LIST_ROOM};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(field->n_candidates, &found, field->n_candidates, &ends, lists->n_points, &buffer.position));
-  PetscCall(PetscCalloc1(lists->n_points, &marked));
+  PetscCall(PetscCalloc1(lists->n_points, &at.latest));
+  PetscCall(
+    PetscMalloc2(lists->n_points, &at.first, 4 * field->n_candidates, &at.entry)); /* a quadrilateral has 4 corners */
   PetscCall(PetscMalloc1(buffer.room, &buffer.facet));
   PetscCall(PetscMalloc1(buffer.room, &buffer.size));
   PetscCall(PetscMalloc1(buffer.points_room, &buffer.point));
@@ -282,7 +285,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                            .sharp      = s->fit->feature_angle,
                            .marks      = s->marks ? s->marks[q] : 0,
                            .best       = -1,
-                           .marked     = marked,
+                           .at         = &at,
                            .least      = s->reach + motion,
                            .tie        = FACET_TIE * (s->reach + motion)};
 
@@ -300,7 +303,8 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscCall(SearchPartnersLearn(s, lists, field, tree));
   BoxTreeDestroy(&tree);
   PetscCall(PetscFree3(found, ends, buffer.position));
-  PetscCall(PetscFree(marked));
+  PetscCall(PetscFree(at.latest));
+  PetscCall(PetscFree2(at.first, at.entry));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -87,6 +87,21 @@ typedef struct {
   Candidate  *candidates;
 } SearchField;
 
+/* A facet at one of its corners */
+typedef struct {
+  int      candidate;
+  PetscInt next; /* entry of the same corner; -1: none */
+} FacetAt;
+
+/* Some facets by their corners */
+typedef struct {
+  PetscInt  sorted; /* how often facets have been sorted */
+  PetscInt *latest; /* of every point of the lists: when a facet had a corner there last; 0: never */
+  PetscInt *first;  /* of every point: its first entry then */
+  PetscInt  n;
+  FacetAt  *entry; /* room for the corners of all candidates */
+} FacetsAt;
+
 /* Search for the nearest facet of one slave point. */
 typedef struct {
   NeighbourLists   lists;
@@ -109,7 +124,7 @@ typedef struct {
   Foot      foot;      /* on the best candidate */
   PetscReal normal[3]; /* of the master there: where there are fits, one that does not jump from facet to facet */
   PetscBool averse;    /* a candidate within a face of the slave does not face the point */
-  PetscInt *marked;    /* of every point of the lists: 1 + the last slave point for which facets there may be ends */
+  FacetsAt *at;        /* those at which a flank may end */
 } Nearest;
 
 /* Growing lists of all slave points. */
