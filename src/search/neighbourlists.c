@@ -294,6 +294,12 @@ static void SlaveMap(ContactSearch s, NeighbourLists lists, PetscInt q, const Pe
     MapOwn(2, n, node, S, x, y);
 }
 
+/* Do the offsets turn with a rigid tool? Tools of axisymmetric scenes do not turn. */
+static PetscBool OffsetsTurn(ContactSearch s)
+{
+  return (PetscBool)(s->fit->integral && !s->fit->revolved && s->master && s->master->rigid);
+}
+
 /* Turns the offsets on a rigid tool, which are those of its first position, with the tool. */
 static void TurnOffsets(ContactSearch s, NeighbourLists lists, PetscReal t)
 {
@@ -328,9 +334,8 @@ static void TurnOffsets(ContactSearch s, NeighbourLists lists, PetscReal t)
 PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const PetscReal *u, PetscReal t,
                                     PetscBool *moved)
 {
-  const PetscInt n = lists->n_nodes * lists->dim;
-  /* Tools of axisymmetric scenes do not turn. */
-  const PetscBool turns = (PetscBool)(s->fit->integral && !s->fit->revolved && s->master && s->master->rigid);
+  const PetscInt  n     = lists->n_nodes * lists->dim;
+  const PetscBool turns = OffsetsTurn(s);
   PetscReal      *before;
   PetscBool       same;
 
@@ -589,14 +594,15 @@ static PetscErrorCode NoteHeld(ContactSearch s, NeighbourLists lists, const Sear
 
   Not collective
 
-  Input Parameter:
-. s - the search
+  Input Parameters:
++ s - the search
+- t - load parameter, for rigid tools
 
   Input/Output Parameters:
 + lists - the lists, whose points are set
 - field - its candidates' nodes are rewritten in numbers of points
 @*/
-PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists, SearchField *field)
+PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, PetscReal t, NeighbourLists lists, SearchField *field)
 {
   const int dim = lists->dim;
   PetscInt *number, nodes = s->n_images * lists->n_nodes, points = nodes, entries = nodes;
@@ -639,6 +645,7 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
     PointMap(s, lists, p, lists->u, &lists->point_u[p * dim]);
     if (lists->point_hoop) lists->point_hoop[p] *= lists->point_X[p * dim] + lists->point_u[p * dim];
   }
+  if (OffsetsTurn(s)) TurnOffsets(s, lists, t);
   PetscCall(PetscFree(number));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -1036,8 +1043,8 @@ PetscErrorCode NeighbourListsFindAlike(NeighbourLists lists)
 }
 
 /*@
-  NeighbourListsFindMoving - finds the fit points that move with the lists: nodes, and of the others those in the list
-of a slave point.
+  NeighbourListsFindMoving - finds the fit points that move with the lists: nodes, and of the others those in the
+  list of a slave point.
 
   Not collective
 

@@ -196,7 +196,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   PetscCall(NeighbourListsCreateNodes(s, field, lists));
   PetscCall(NeighbourListsUpdateNodes(s, lists, u, t));
   PetscCall(MakeCandidates(s, lists, box, distance, field));
-  PetscCall(NeighbourListsCreatePoints(s, lists, field));
+  PetscCall(NeighbourListsCreatePoints(s, t, lists, field));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -198,7 +198,7 @@ PetscErrorCode SearchNearBox(ContactSearch, ContactSurface, const PetscReal *u, 
                              PetscReal distance, PetscInt *n, PetscInt **faces);
 /* neighbourlists.c */
 PetscErrorCode NeighbourListsCreateNodes(ContactSearch, SearchField *, NeighbourLists);
-PetscErrorCode NeighbourListsCreatePoints(ContactSearch, NeighbourLists, SearchField *);
+PetscErrorCode NeighbourListsCreatePoints(ContactSearch, PetscReal t, NeighbourLists, SearchField *);
 PetscErrorCode NeighbourListsChoosePoints(ContactSearch, NeighbourLists);
 PetscErrorCode NeighbourListsCreateSlaves(ContactSearch, NeighbourLists);
 PetscErrorCode NeighbourListsFreeSpare(ContactSearch);
