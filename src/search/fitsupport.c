@@ -1,6 +1,7 @@
 /* Fits of a pair's slave points: spacing, support, and the ladder of fall-backs until every guard of the fit holds. */
 #include "smooth/fitframe.h"
 #include "searchimpl.h"
+#include "flank.h"
 #include "pointseen.h"
 #include "base/smoothstep.h"
 #include "base/timing.h"
@@ -267,7 +268,7 @@ static void WindowSpacing(const FitSupport *fit, PetscInt n, double covariance[3
 /* Share with which a point counts in a fit. Points of another flank do not, and where the support of a coarse bend
    reaches to them, a point that comes in as the surface turns a little would change the fit by a jump: offsets of a
    bore with 20 faces around changed by 6 % of the sagitta with each new point. */
-static PetscReal FlankShare(const PetscReal normal[3], const double e3[3])
+static PetscReal TurnShare(const PetscReal normal[3], const double e3[3])
 {
   const PetscReal cosine = normal[0] * e3[0] + normal[1] * e3[1] + normal[2] * e3[2];
 
@@ -301,7 +302,7 @@ static PetscInt TakePoints(FitSupport *fit, const FitFoot *at, const double e3[3
 
   PlacePoints(fit, at, n);
   for (PetscInt i = 0; i < n; i++) weight[i] = v[points[i]];
-  for (PetscInt i = 0; i < n && fit->s->fit->fades; i++) weight[i] *= FlankShare(fit->geometry[points[i]].normal, e3);
+  for (PetscInt i = 0; i < n && fit->s->fit->fades; i++) weight[i] *= TurnShare(fit->geometry[points[i]].normal, e3);
   for (PetscInt i = 0; i < n; i++) {
     inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
     taper[i] = weight[i] * PetscMax(SEARCH_FIT_TIE, 1 - rho2[i] / SEARCH_FIT_MARGIN);
@@ -472,7 +473,8 @@ static void KeepFrame(const FitSupport *fit, PetscInt q, FitFoot *at)
 }
 
 /*@
-  FitSupportLift - lifts the facets to the smooth surface where they serve a slave point at an end of a flank.
+  FitSupportLift - lifts the facets to the smooth surface where they serve a slave point past an end of a flank or
+beside a sharp edge.
 
   Not collective
 
@@ -492,20 +494,13 @@ PetscErrorCode FitSupportLift(FitSupport *fit, const Nearest *look, PetscInt q)
   NeighbourLists   lists = fit->lists;
   const Candidate *best  = &look->candidates[look->best];
   FitFoot          at    = {.facet = look->best, .past = PETSC_TRUE};
-  Facet            facet = best->facet;
-  PetscReal        x[FACE_MAX_NODES * 3];
   Foot             foot;
   FitProblem       problem;
   FitResult        result;
   int              rung;
 
   PetscFunctionBeginUser;
-  facet.free_edges = 0;
-  for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
-    NeighbourListsRelative(lists, q, best->facet.nodes[a], &x[a * lists->dim]);
-    facet.nodes[a] = a;
-  }
-  FacetProject(lists->dim, &facet, x, &foot);
+  FlankFoot(look, best, &foot);
   for (int k = 0; k < 2; k++) at.xi[k] = foot.xi[k];
   for (int d = 0; d < 3; d++) at.outward[d] = best->normal[d];
   for (int d = 0; d < lists->dim; d++) at.X[d] = at.foot[d] = look->x[d] - foot.gap * foot.normal[d];

@@ -42,8 +42,19 @@ static PetscReal PlaceFoot(const Nearest *look, const Candidate *c, const PetscR
   return PetscAbsReal(foot->gap);
 }
 
-/* Projects the slave point onto a facet, and returns the distance. */
-static PetscReal CandidateFoot(const Nearest *look, const Candidate *c, Foot *foot)
+/*@
+  FlankFoot - projects the slave point onto a facet without its free edges, and returns the distance (length).
+
+  Not collective
+
+  Input Parameters:
++ look - the slave point
+- c    - the facet
+
+  Output Parameter:
+. foot - the foot
+@*/
+PetscReal FlankFoot(const Nearest *look, const Candidate *c, Foot *foot)
 {
   const PetscReal here[3] = {0, 0, 0};
 
@@ -55,7 +66,7 @@ static PetscReal CandidateDistance(const Nearest *look, const Candidate *c)
 {
   Foot foot;
 
-  return CandidateFoot(look, c, &foot);
+  return FlankFoot(look, c, &foot);
 }
 
 static PetscBool HasNode(const Candidate *c, int corners, PetscInt node)
@@ -201,7 +212,7 @@ static PetscBool IsHidden(const Nearest *look, const Candidate *c)
 
   if (!look->listed || !FlankFaces(look, c)) return PETSC_FALSE;
   if (OwnBodyTells(look, c, &hidden)) return hidden;
-  CandidateFoot(look, c, &foot);
+  FlankFoot(look, c, &foot);
   return (PetscBool)(OwnBodyHides(look, c, &foot) || (look->one_body && OwnBodyTurnsFrom(look, c, &foot)));
 }
 
@@ -304,7 +315,7 @@ void FlankLeaveCorner(Nearest *look, int facing, const int *found)
     if (!FormHollow(look, nearest, c)) continue;
     away = look->size * (1 - NeighbourListsOpposed(look->lists, look->q, c->normal));
     if (CandidateBoxDistance(look->lists->dim, c, look->x) + away > least + look->tie) continue;
-    distance = CandidateFoot(look, c, &foot);
+    distance = FlankFoot(look, c, &foot);
     rank     = distance + away;
     if (rank >= least - look->tie) continue;
     least          = rank;

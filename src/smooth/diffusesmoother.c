@@ -3,7 +3,7 @@
 #include "smooth/smoother.h"
 
 /* Uses the fit where there is one. The facets are used where every fit failed its guards when the lists were made,
-   or where the fit has no foot. Past an end they are lifted to the smooth surface. */
+   or where the fit has no foot. In the first case they may be lifted to the smooth surface. */
 static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, SmootherResult *out)
 {
   static const FitWant wants[] = {[SMOOTHER_GAP]              = FIT_GAP_ONLY,

@@ -7,7 +7,7 @@
 const char *const SolveResults[] = {
   "converged",
   "Newton's method did not converge within solver.max_iterations",
-  "Newton's method no longer lowered the residual",
+  "Newton's method did not converge: the residual fell no more",
   "the line search found no lower energy",
   "an element turned inside out",
   "the linear system is singular (is a body free to move?) or its solver failed",

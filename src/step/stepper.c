@@ -29,8 +29,9 @@
 /* After this many failed static solves for a load, or where no shorter step is allowed, the next solve is damped, as
    `stepping.damping` says. Shorter steps are cheaper where they help, and at a limit point no static step does: shorter
    and shorter ones would only come nearer to it. In the step after a damped one the first failure is enough. Where
-   damping is the last resort, it waits for STEPPER_LAST of them, as what a damped solve loses is known the better the
-   shorter its step, and is tried once before the smallest step. */
+   damping is the last resort, it waits for STEPPER_LAST failures, because the energy that a damped solve takes away is
+   known the better the shorter its step is. It is then tried once; the next damped solve is that where the run would
+   stop. */
 #define STEPPER_STATIC 3
 #define STEPPER_LAST   6
 /* If the landing point is at most this many dt away, the way to it is halved, so that no very short step remains. */
@@ -60,7 +61,7 @@ typedef struct {
 typedef struct {
   PetscReal at;       /* the least one; 0: none */
   PetscInt  failures; /* of solves for it or more, since the last damped solve */
-  PetscInt  slowly;   /* damped solves that failed for it */
+  PetscInt  slowly;   /* damped solves that did not pass it */
 } Wall;
 
 struct _n_LoadStepper {

@@ -22,4 +22,5 @@ void      FlankCuts(const Nearest *, int facing, const int *found, int n, const 
 void      FlankLeaveCorner(Nearest *, int facing, const int *found);
 PetscBool FlankIsBeside(const Nearest *, int facing, int n, const int *found);
 PetscBool FlankLies(const Nearest *);
+PetscReal FlankFoot(const Nearest *, const Candidate *, Foot *);
 PetscBool FlankNearRidge(const Nearest *, Neighbourhoods, int facing, const int *found);
