@@ -1,0 +1,39 @@
+// A pin with play in a bore that is a rigid tool. A quarter of a turn brings the bore's mesh onto itself. Lengths in mm.
+r = 10;           // bore
+clearance = 0.05; // on the radius, below the sagitta of the faces
+T = 6;            // length of the bore
+out = 3;          // how far the pin stands out on either side
+n = 5;            // faces on a quarter of the bore
+Point(1) = {0, 0, 0};
+Point(2) = {r, 0, 0};
+Point(3) = {0, r, 0};
+Point(4) = {-r, 0, 0};
+Point(5) = {0, -r, 0};
+Circle(1) = {2, 1, 3};
+Circle(2) = {3, 1, 4};
+Circle(3) = {4, 1, 5};
+Circle(4) = {5, 1, 2};
+Transfinite Curve{1:4} = n + 1;
+bore() = {};
+For i In {1:4}
+  e() = Extrude {0, 0, T} { Curve{i}; Layers{2}; Recombine; };
+  bore() += {e(1)};
+EndFor
+s = r - clearance;
+Point(101) = {0, 0, -out};
+Point(102) = {s, 0, -out};
+Point(103) = {0, s, -out};
+Point(104) = {-s, 0, -out};
+Point(105) = {0, -s, -out};
+Circle(101) = {102, 101, 103};
+Circle(102) = {103, 101, 104};
+Circle(103) = {104, 101, 105};
+Circle(104) = {105, 101, 102};
+Curve Loop(101) = {101:104};
+Plane Surface(101) = {101};
+Mesh.MeshSizeMax = 3;
+e() = Extrude {0, 0, T + 2 * out} { Surface{101}; Layers{4}; };
+Physical Surface("bore") = {bore()};
+Physical Volume("pin") = {e(1)};
+Physical Surface("skin") = {e(2), e(3), e(4), e(5)};
+Physical Surface("ends") = {101, e(0)};
