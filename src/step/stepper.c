@@ -61,7 +61,7 @@ typedef struct {
 typedef struct {
   PetscReal at;       /* the least one; 0: none */
   PetscInt  failures; /* of solves for it or more, since the last damped solve */
-  PetscInt  slowly;   /* damped solves that did not pass it */
+  PetscInt  slowly;   /* damped solves that failed for it */
 } Wall;
 
 struct _n_LoadStepper {
@@ -718,7 +718,7 @@ static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscRe
   if (slowly) {
     PetscCall(ModelSolveSlowly(stepper->model, end, solve));
     stepper->wall.failures = 0;
-    stepper->wall.slowly++;
+    stepper->wall.slowly += solve->result != SOLVE_CONVERGED;
   } else {
     PetscCall(ModelSolve(stepper->model, end, solve));
     if (damping == DAMPING_AUTO && solve->result == SOLVE_CONVERGED && LosesStability(&stepper->report, solve))
