@@ -79,8 +79,8 @@ typedef struct {
   int       *degree;                /* of the fit */
   PetscReal *frame, *metric;        /* 9 and 4 entries for each slave point, as in FitProblem */
   FitBend   *bend;                  /* of each slave point, as in FitProblem; NULL: no fit is bent */
-  /* Of each slave point: what is subtracted from the gap of the facets where these serve, see FitSupportLift(): height of
-     the smooth surface over them (length). NULL: 0 for all. */
+  /* Of each slave point: what is subtracted from the gap of the facets where these serve, see FitSupportLift(): height
+     of the smooth surface over them (length). NULL: 0 for all. */
   PetscReal *lift;
   /* 2 for each slave point: mean of its fit points when the lists were made, in the frame's tangents, relative to
      it. */
