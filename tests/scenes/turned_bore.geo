@@ -1,4 +1,4 @@
-// A pin with play in a bore that is a rigid tool. A quarter of a turn brings the bore's mesh onto itself. Lengths in mm.
+// A pin with play in a bore that is a rigid tool. A quarter of a turn brings the mesh of the bore onto itself. In mm.
 r = 10;           // bore
 clearance = 0.05; // on the radius, below the sagitta of the faces
 T = 6;            // length of the bore

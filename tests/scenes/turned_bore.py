@@ -1,5 +1,5 @@
-"""Facets that serve past the end of a tool that has turned are lifted to its surface as it is then: a pin with play in a
-bore that has made a quarter of a turn is pressed as one in a bore that has not."""
+"""Facets that serve past the end of a tool that has turned are lifted to its surface as it is then: a pin with play in
+a bore that has made a quarter of a turn is pressed as one in a bore that has not."""
 from harness import Check, arguments, run, SCENES
 
 args = arguments()
