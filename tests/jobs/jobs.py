@@ -302,9 +302,6 @@ JOBS = [
         Answer("down", 2000, 0.001, "closed form"),
         Answer("aside", 1000, 0.001, "closed form"),
     ], steps=10),
-    Job("tyre_pressed", "tyre blown up and pressed on a road", [
-        Answer("force", -46.11, 0.64, "limit"),
-    ], steps=12, levels=(1, 1.43, 2)),
     Job("bolt_thread", "five turns of a bolt's thread in their nut", [
         Answer("pulled_out", -0.04551, 0.14, "limit"),
         Answer("widened", 0.003235, 0.5, "limit"),
