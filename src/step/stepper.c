@@ -64,6 +64,12 @@ typedef struct {
   PetscInt  slowly;   /* damped solves that failed for it */
 } Wall;
 
+/* What attempts have taught that the next ones use */
+typedef struct {
+  Refused refused;
+  Wall    wall;
+} Tried;
+
 struct _n_LoadStepper {
   MPI_Comm             comm;
   Model                model;
@@ -78,14 +84,13 @@ struct _n_LoadStepper {
   void                *last_context;
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
-  PetscReal            used[BOUNDS];   /* by the last attempt of this step, of what is allowed; 0: none */
-  Refused              refused, known; /* known: in the accepted state */
-  PetscBool            in_vain;        /* this step was shortened for a bound that it passes all the same */
-  PetscBool            shortens;       /* this step may be made shorter if its first linear step goes too far */
-  PetscReal            most_facing;    /* turn (radians) of surfaces that lie opposite each other in this step */
+  PetscReal            used[BOUNDS]; /* by the last attempt of this step, of what is allowed; 0: none */
+  Tried                tried, known; /* known: in the accepted state */
+  PetscBool            in_vain;      /* this step was shortened for a bound that it passes all the same */
+  PetscBool            shortens;     /* this step may be made shorter if its first linear step goes too far */
+  PetscReal            most_facing;  /* turn (radians) of surfaces that lie opposite each other in this step */
   Pace                 pace;
   PetscInt             damped; /* 1: the last accepted step was damped */
-  Wall                 wall;
   PetscBool            view;
 };
 
@@ -486,12 +491,12 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
     PetscCall(PetscSNPrintf(report->jump, sizeof(report->jump), "from t = %.6g to %.6g: %s", (double)report->t,
                             (double)model->t, solve->jump));
   }
-  if (model->t >= stepper->wall.at) stepper->wall = (Wall){0};
+  if (model->t >= stepper->tried.wall.at) stepper->tried.wall = (Wall){0};
   stepper->damped = solve->damped > 0;
   report->damped += stepper->damped;
   report->damping += solve->damping;
   stepper->start = stepper->size;
-  stepper->known = stepper->refused;
+  stepper->known = stepper->tried;
   report->t      = model->t;
   report->steps++;
   report->newton_accepted += solve->newton;
@@ -653,16 +658,16 @@ static PetscErrorCode LoadStepperTravel(LoadStepper stepper, PetscReal *used, Pe
 /* Takes back a converged step for its bounds. The next one is of dt. */
 static void LoadStepperRefuse(LoadStepper stepper, PetscReal dt)
 {
-  stepper->refused = (Refused){stepper->model->t, stepper->used[BOUND_LAG], stepper->used[BOUND_TRAVEL]};
-  stepper->size.dt = dt;
+  stepper->tried.refused = (Refused){stepper->model->t, stepper->used[BOUND_LAG], stepper->used[BOUND_TRAVEL]};
+  stepper->size.dt       = dt;
 }
 
 /* A step to the end of the one that was taken back last is compared with that. */
 static void LoadStepperRemember(LoadStepper stepper, PetscReal end)
 {
-  if (end != stepper->refused.end) return;
-  stepper->used[BOUND_LAG]    = stepper->refused.lag;
-  stepper->used[BOUND_TRAVEL] = stepper->refused.travel;
+  if (end != stepper->tried.refused.end) return;
+  stepper->used[BOUND_LAG]    = stepper->tried.refused.lag;
+  stepper->used[BOUND_TRAVEL] = stepper->tried.refused.travel;
 }
 
 /* Says whether bodies flow and contact travels by no more than the scene allows in the step to the present solution, or
@@ -698,7 +703,7 @@ static PetscBool StepperTurnsSlow(LoadStepper stepper)
 {
   const PetscBool by_itself = (PetscBool)(stepper->model->scene->stepping.damping == DAMPING_AUTO);
 
-  return (PetscBool)(stepper->wall.failures >= (by_itself ? STEPPER_STATIC : STEPPER_LAST));
+  return (PetscBool)(stepper->tried.wall.failures >= (by_itself ? STEPPER_STATIC : STEPPER_LAST));
 }
 
 /* Solves for a step of dt to `end`. An unstable equilibrium counts as none where damping may lead to a stable one.
@@ -713,19 +718,19 @@ static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscRe
   PetscFunctionBeginUser;
   PetscCall(
     PetscInfo(stepper->model->snes, "step to t = %g, dt %g%s\n", (double)end, (double)dt, slowly ? ", damped" : ""));
-  stepper->model->doubts   = (PetscBool)(damping == DAMPING_AUTO && stepper->wall.failures > 0);
+  stepper->model->doubts   = (PetscBool)(damping == DAMPING_AUTO && stepper->tried.wall.failures > 0);
   stepper->model->shortens = (PetscBool)(stepper->shortens && !slowly && STEPPER_CUT * dt >= stepper->size.dt_min);
   if (slowly) {
     PetscCall(ModelSolveSlowly(stepper->model, end, solve));
-    stepper->wall.failures = 0;
-    stepper->wall.slowly += solve->result != SOLVE_CONVERGED;
+    stepper->tried.wall.failures = 0;
+    stepper->tried.wall.slowly += solve->result != SOLVE_CONVERGED;
   } else {
     PetscCall(ModelSolve(stepper->model, end, solve));
     if (damping == DAMPING_AUTO && solve->result == SOLVE_CONVERGED && LosesStability(&stepper->report, solve))
       solve->result = SOLVE_UNSTABLE;
     if (damping != DAMPING_NONE && MayBeUnstable(solve->result)) {
-      stepper->wall.at = stepper->wall.at > 0 ? PetscMin(stepper->wall.at, end) : end;
-      stepper->wall.failures += last ? STEPPER_LAST : damping == DAMPING_AUTO || !stepper->wall.slowly;
+      stepper->tried.wall.at = stepper->tried.wall.at > 0 ? PetscMin(stepper->tried.wall.at, end) : end;
+      stepper->tried.wall.failures += last ? STEPPER_LAST : damping == DAMPING_AUTO || !stepper->tried.wall.slowly;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -895,15 +900,30 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Saves or loads the last step that was taken back. Older archives have none. */
-static PetscErrorCode ArchiveRefused(Archive archive, Refused *refused)
+/* Says whether an archive has a value, or is to get it. Older archives lack some. */
+static PetscErrorCode Holds(Archive archive, const char *name, PetscBool *holds)
 {
-  PetscReal *place[] = {&refused->end, &refused->lag, &refused->travel};
-  PetscBool  there   = PETSC_TRUE;
+  PetscFunctionBeginUser;
+  *holds = PETSC_TRUE;
+  if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, name, holds));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Saves or loads what attempts have taught. */
+static PetscErrorCode ArchiveTried(Archive archive, Tried *tried)
+{
+  Refused   *refused = &tried->refused;
+  PetscReal *used[]  = {&refused->end, &refused->lag, &refused->travel};
+  PetscInt  *count[] = {&tried->wall.failures, &tried->wall.slowly};
+  PetscBool  holds;
 
   PetscFunctionBeginUser;
-  if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, "stepper/refused", &there));
-  if (there) PetscCall(ArchiveRealsAt(archive, "stepper/refused", PETSC_STATIC_ARRAY_LENGTH(place), place));
+  PetscCall(Holds(archive, "stepper/refused", &holds));
+  if (holds) PetscCall(ArchiveRealsAt(archive, "stepper/refused", PETSC_STATIC_ARRAY_LENGTH(used), used));
+  PetscCall(Holds(archive, "stepper/wall", &holds));
+  if (!holds) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ArchiveReals(archive, "stepper/wall", 1, &tried->wall.at));
+  PetscCall(ArchiveIntegersAt(archive, "stepper/failures", PETSC_STATIC_ARRAY_LENGTH(count), count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -943,8 +963,7 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                               &report->unstable,
                               &report->friction,
                               &report->unstable_from,
-                              &report->gives,
-                              &stepper->wall.at};
+                              &report->gives};
   PetscInt      *integer[] = {&report->steps,           &report->steps_failed,
                               &report->steps_repeated,  &report->newton_iterations,
                               &report->newton_accepted, &report->krylov_iterations,
@@ -955,19 +974,18 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                               &report->damped,          &report->held,
                               &stepper->damped,         &size.tied,
                               &report->motions,         &report->unstable_steps,
-                              &report->negatives,       &report->most_negatives,
-                              &stepper->wall.failures,  &stepper->wall.slowly};
+                              &report->negatives,       &report->most_negatives};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));
   PetscCall(ArchiveIntegersAt(archive, "stepper/counts", PETSC_STATIC_ARRAY_LENGTH(integer), integer));
-  PetscCall(ArchiveRefused(archive, &stepper->known));
+  PetscCall(ArchiveTried(archive, &stepper->known));
   PetscCall(ArchiveIntegers(archive, "stepper/cuts", CUT_CAUSES, report->cuts));
   PetscCall(ArchiveString(archive, "stepper/cycle", sizeof(report->cycle), report->cycle));
   PetscCall(ArchiveString(archive, "stepper/jump", sizeof(report->jump), report->jump));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   if (initial == stepper->size.initial) size.dt = PetscMin(size.dt_max, dt);
-  stepper->size    = size;
-  stepper->refused = stepper->known;
+  stepper->size  = size;
+  stepper->tried = stepper->known;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
