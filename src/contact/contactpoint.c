@@ -34,18 +34,11 @@ static PetscBool PointEvaluateAnalytic(const ContactPair *pair, NeighbourLists l
    NeighbourListsRelative(). */
 static void GatherPoints(NeighbourLists lists, PetscInt q, PetscReal *x, PetscReal *multiplier, PetscReal *hoop)
 {
-  const int       dim   = lists->dim;
   const PetscInt *point = &lists->list_point[lists->list_ptr[q]], n = lists->list_ptr[q + 1] - lists->list_ptr[q];
-  PointOrigin     origin;
 
   for (PetscInt i = 0; i < n; i++) multiplier[i] = lists->point_weight[point[i]];
-  for (PetscInt i = 0; i < n && dim == 2; i++) {
-    if (lists->point_hoop) hoop[i] = lists->point_hoop[point[i]];
-    NeighbourListsRelative(lists, q, point[i], &x[2 * i]);
-  }
-  if (dim == 2) return;
-  PointOriginMake(&lists->slave_X[3 * q], &lists->slave_u[3 * q], &origin);
-  for (PetscInt i = 0; i < n; i++) PointSeen(lists, point[i], &origin, &x[3 * i]);
+  for (PetscInt i = 0; i < n && lists->dim == 2 && lists->point_hoop; i++) hoop[i] = lists->point_hoop[point[i]];
+  PointsSeen(lists, n, point, &lists->slave_X[q * lists->dim], &lists->slave_u[q * lists->dim], x);
 }
 
 /*@

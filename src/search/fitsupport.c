@@ -275,22 +275,6 @@ static PetscReal TurnShare(const PetscReal normal[3], const double e3[3])
   return SmoothStep((cosine - NEIGHBOURHOOD_COSINE) / (FIT_FLANK_FULL - NEIGHBOURHOOD_COSINE));
 }
 
-/* Computes the positions of n points relative to the fit's origin, as NeighbourListsRelative() does. */
-static void PlacePoints(FitSupport *fit, const FitFoot *at, PetscInt n)
-{
-  const NeighbourLists lists  = fit->lists;
-  const PetscInt      *points = fit->points;
-  PointOrigin          origin;
-
-  for (PetscInt i = 0; i < n && lists->dim == 2; i++)
-    for (int d = 0; d < 2; d++)
-      fit->x[2 * i + d] =
-        (lists->point_X[2 * points[i] + d] - at->X[d]) + (lists->point_u[2 * points[i] + d] - at->u[d]);
-  if (lists->dim == 2) return;
-  PointOriginMake(at->X, at->u, &origin);
-  for (PetscInt i = 0; i < n; i++) PointSeen(lists, points[i], &origin, &fit->x[3 * i]);
-}
-
 /* Computes positions and weights of n points. Returns how many are inside the support. */
 static PetscInt TakePoints(FitSupport *fit, const FitFoot *at, const double e3[3], PetscInt n, const PetscReal *rho2)
 {
@@ -300,7 +284,7 @@ static PetscInt TakePoints(FitSupport *fit, const FitFoot *at, const double e3[3
   PetscReal *const restrict weight = fit->multiplier, *const restrict taper = fit->taper;
   PetscInt inside = 0;
 
-  PlacePoints(fit, at, n);
+  PointsSeen(fit->lists, n, points, at->X, at->u, fit->x);
   for (PetscInt i = 0; i < n; i++) weight[i] = v[points[i]];
   for (PetscInt i = 0; i < n && fit->s->fit->fades; i++) weight[i] *= TurnShare(fit->geometry[points[i]].normal, e3);
   for (PetscInt i = 0; i < n; i++) {
@@ -474,7 +458,7 @@ static void KeepFrame(const FitSupport *fit, PetscInt q, FitFoot *at)
 
 /*@
   FitSupportLift - lifts the facets to the smooth surface where they serve a slave point past an end of a flank or
-beside a sharp edge.
+  beside a sharp edge.
 
   Not collective
 

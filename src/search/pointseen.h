@@ -52,3 +52,31 @@ static inline void PointSeen(NeighbourLists lists, PetscInt p, const PointOrigin
 
   *(PointInArray *)x = (*X - origin->X) + (*u - origin->u);
 }
+
+/*@
+  PointsSeen - computes the positions of points relative to an origin, as NeighbourListsRelative() does.
+
+  Not collective
+
+  Input Parameters:
++ lists - the lists, of any dimension
+. n     - number of points
+. point - the points
+. X     - reference position of the origin, X[dim] (length)
+- u     - its displacement, u[dim] (length)
+
+  Output Parameter:
+. x - x[n*dim], and POINT_SEEN_PADDING numbers more (length)
+@*/
+static inline void PointsSeen(NeighbourLists lists, PetscInt n, const PetscInt point[], const PetscReal *X,
+                              const PetscReal *u, PetscReal *x)
+{
+  PointOrigin origin;
+
+  for (PetscInt i = 0; i < n && lists->dim == 2; i++)
+    for (int d = 0; d < 2; d++)
+      x[2 * i + d] = (lists->point_X[2 * point[i] + d] - X[d]) + (lists->point_u[2 * point[i] + d] - u[d]);
+  if (lists->dim == 2) return;
+  PointOriginMake(X, u, &origin);
+  for (PetscInt i = 0; i < n; i++) PointSeen(lists, point[i], &origin, &x[3 * i]);
+}

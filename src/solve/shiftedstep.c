@@ -18,10 +18,10 @@
 /* A step may turn cells by this much. The way down is bent, and steps as long as MODEL_FARTHEST leave it: of a rubber
    block with nine holes none of them finds the end of its first jump. */
 #define SHIFT_FARTHEST 0.2
-/* Contact lists are made for this multiple of the step that would lead out of the present ones, */
+/* Contact lists are made for this multiple of the step that would lead out of the present ones. */
 #define SHIFT_AHEAD 2
-/* and with friction for this multiple of the way from the accepted state, if that is more: two bodies may have moved
-   against each other, and what sticks is anchored where they were. */
+/* With friction they are made for this multiple of the way from the accepted state, if that is more: two bodies may
+   have moved against each other, and what sticks is anchored where they were. */
 #define SHIFT_BEHIND 2
 /* Iterations of a shifted solve, in those that solver.max_iterations allows others. On the way down from an equilibrium
    that is lost there are many, and none that fails. */
