@@ -407,9 +407,35 @@ static PetscErrorCode NoteGathered(Contact contact, const PetscReal *u, PetscRea
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *again = all ? PETSC_TRUE : PETSC_FALSE;
   if (*again) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->u_gathered) {
+    PetscReal *before = contact->u_before;
+
+    contact->u_before   = contact->u_gathered;
+    contact->t_before   = contact->t_gathered;
+    contact->u_gathered = before;
+  }
   if (!contact->u_gathered) PetscCall(PetscMalloc1(n + 1, &contact->u_gathered));
   PetscCall(PetscArraycpy(contact->u_gathered, u, n));
   contact->t_gathered = t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells all searches from where the bodies came to a state. u_before NULL: nothing is known of it. */
+static PetscErrorCode TellBefore(Contact contact, const PetscReal *u_before, PetscReal t_before, const PetscReal *u)
+{
+  const int dim  = contact->mesh->dim;
+  PetscReal size = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < contact->mesh->n_nodes && u_before; i++) {
+    PetscReal square = 0;
+
+    for (int d = 0; d < dim; d++) square += PetscSqr(u[i * dim + d] - u_before[i * dim + d]);
+    size = PetscMax(size, square);
+  }
+  size = PetscSqrtReal(size);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
+  for (int p = 0; p < contact->n_pairs; p++) SearchSetBefore(contact->pairs[p].search, u_before, t_before, size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -435,6 +461,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
 
   PetscFunctionBeginUser;
   PetscCall(NoteGathered(contact, u, t, &again));
+  PetscCall(TellBefore(contact, contact->u_before, contact->t_before, u));
   contact->u_begun = u;
   contact->t_begun = t;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
@@ -820,6 +847,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
 {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
+  PetscCall(TellBefore(contact, contact->u_gathered, contact->t_gathered, u));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = motion;
@@ -870,6 +898,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   PetscCall(LargestPressure(contact, t, &most));
+  PetscCall(TellBefore(contact, contact->u_gathered, contact->t_gathered, u));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = next;

@@ -46,6 +46,7 @@ void           SearchAllSides(ContactSearch, PetscBool one_body);
 void           SearchSetTool(ContactSearch, const MeshTool *);
 void           SearchSetMarks(ContactSearch, const FaceMarks *);
 void           SearchSetRungs(ContactSearch, const int *first);
+void           SearchSetBefore(ContactSearch, const PetscReal *u, PetscReal t, PetscReal size);
 void           SearchSetFrames(ContactSearch, const PetscReal *kept);
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
 PetscErrorCode SearchFindsNothing(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *nothing);
