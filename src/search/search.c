@@ -135,15 +135,32 @@ static void NearestVisit(void *context, int index, double *bound)
   look->foot     = foot;
 }
 
-/* Is a slave point within reach of its nearest facet, or may it come within reach of any facet while lists stand
-   still? */
-static PetscBool ComesNear(const Nearest *look, const SearchField *field, BoxTree tree, PetscReal reach, int *found)
+/* Distance (length) up to which the nearest facet of a slave point is searched: that of all facets that may come within
+   reach while lists stand still; less than 0: there are none. */
+static PetscReal SearchedDistance(const Nearest *look, BoxTree tree, PetscReal reach)
 {
-  int  n;
+  const PetscReal approach = BoxTreeApproach(tree, look->x, &look->way, reach);
+
+  return approach < 0 ? approach : reach + approach;
+}
+
+/* Finds the facets that may come nearer to the slave point than the nearest one while lists stand still, and those that
+   are within a margin of it besides. Returns how many there are. */
+static int FindFacets(const Nearest *look, const SearchField *field, BoxTree tree, PetscReal margin, int *found)
+{
+  BoxTreeWay      way     = look->way;
+  const PetscReal recedes = way.way ? WayApproach(look, &look->candidates[look->best]) : 0;
+
+  way.most -= recedes;
+  return BoxTreeNearing(tree, look->x, &way, look->least + margin + recedes, (int)field->n_candidates, found);
+}
+
+/* May a slave point come within reach of any of the facets that FindFacets() has found? */
+static PetscBool ComesNear(const Nearest *look, PetscReal reach, int n, const int *found)
+{
   Foot foot;
 
-  if (!look->way || look->least <= reach) return PETSC_TRUE;
-  n = BoxTreeNear(tree, look->x, reach + look->motion, (int)field->n_candidates, found);
+  if (!look->way.way || look->least <= reach) return PETSC_TRUE;
   for (int i = 0; i < n; i++) {
     const Candidate *c        = &look->candidates[found[i]];
     const PetscReal  distance = reach + WayApproach(look, c);
@@ -230,15 +247,15 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   int               count, facing, dropped, convex = 0;
 
   PetscFunctionBeginUser;
-  if (possible && !possible[q]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (look->least < 0 || (possible && !possible[q])) PetscFunctionReturn(PETSC_SUCCESS);
   BoxTreeClosest(tree, look->x, look->listed ? &side : NULL, &bound, NearestVisit, look);
   lists->averse[q] = (PetscBool)(look->best < 0 && look->averse);
   if (look->best >= 0 && FaceMarksTreated(look->marks, field->records[look->candidates[look->best].record].marks))
     look->best = -1;
-  if (look->best < 0 || !ComesNear(look, field, tree, reach, found)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (look->best < 0) PetscFunctionReturn(PETSC_SUCCESS);
   margin = SEARCH_MARGIN * PetscMax(look->size, field->records[look->candidates[look->best].record].size);
-  count  = BoxTreeNear(tree, look->x, look->least + margin + look->motion, (int)field->n_candidates, found);
-  count  = WayNarrow(look, look->least + margin + WayApproach(look, &look->candidates[look->best]), count, found);
+  count  = FindFacets(look, field, tree, margin, found);
+  if (!ComesNear(look, reach, count, found)) PetscFunctionReturn(PETSC_SUCCESS);
   facing = FlankSort(look, &count, found, &dropped);
   FlankLeaveCorner(look, facing, found);
   TakeNormal(look, fit);
@@ -298,7 +315,8 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscCall(PetscMalloc1(buffer.room, &buffer.size));
   PetscCall(PetscMalloc1(buffer.points_room, &buffer.point));
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
-  PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, s->one_body, &tree)); /* none is averse then */
+  PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, s->one_body, s->before.known,
+                           &tree)); /* none is averse then */
   for (PetscInt i = 0; i < lists->n_near; i++) {
     const PetscInt q    = lists->near[i];
     Nearest        look = {.lists      = lists,
@@ -314,16 +332,14 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                            .two_sided  = (PetscBool)(s->listed && s->master && !s->master->rigid),
                            .sharp      = s->fit->feature_angle,
                            .marks      = s->marks ? s->marks[q] : 0,
-                           .way        = s->before.known ? &s->before.way[q * dim] : NULL,
-                           .ahead      = s->before.ahead,
-                           .motion     = motion,
+                           .way        = WayOf(s, q),
                            .best       = -1,
                            .at         = &at,
-                           .least      = s->reach + motion,
                            .tie        = FACET_TIE * (s->reach + motion)};
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
     TakeOutward(&look);
+    look.least = SearchedDistance(&look, tree, s->reach);
     BeginLists(lists, &next, q, &buffer);
     PetscCall(FillSlave(lists, field, tree, fit, s->reach, s->partners.possible, &look, found, ends, &buffer));
   }

@@ -47,8 +47,9 @@ PetscErrorCode WayBegin(ContactSearch s, const PetscReal *u, PetscReal t, PetscR
   const int     dim    = s->mesh->dim;
 
   PetscFunctionBeginUser;
-  before->ahead = before->size > 0 ? motion / before->size : PETSC_INFINITY;
-  before->known = (PetscBool)(before->u && s->master && !s->master->rigid && !s->tool && before->ahead <= WAY_AHEAD);
+  before->motion = motion;
+  before->ahead  = before->size > 0 ? motion / before->size : PETSC_INFINITY;
+  before->known  = (PetscBool)(before->u && s->master && !s->master->rigid && !s->tool && before->ahead <= WAY_AHEAD);
   if (before->known) {
     PetscCall(PetscMalloc1(s->slaves->n * dim, &before->way));
     ToolsPlace(s->mesh, before->u, before->t);
@@ -83,51 +84,38 @@ PetscErrorCode WayEnd(ContactSearch s)
 }
 
 /*@
-  WayApproach - returns a bound for how far the slave point and a facet move against each other while lists stand still
+  WayOf - returns how far a slave point and facets may move against each other.
+
+  Not collective
+
+  Input Parameters:
++ s - the search, between WayBegin() and WayEnd()
+- q - the slave point
+@*/
+BoxTreeWay WayOf(ContactSearch s, PetscInt q)
+{
+  const SearchBefore *before = &s->before;
+
+  return (BoxTreeWay){before->known ? &before->way[q * s->mesh->dim] : NULL, before->ahead, before->motion};
+}
+
+/*@
+  WayApproach - returns how far the slave point and a candidate may move against each other while lists stand still
   (length).
 
   Not collective
 
   Input Parameters:
 + look - the slave point
-- c    - the facet
+- c    - the candidate
 @*/
 PetscReal WayApproach(const Nearest *look, const Candidate *c)
 {
-  PetscReal square = 0;
+  const BoxTreeWay *way    = &look->way;
+  PetscReal         square = 0;
 
-  if (!look->way) return look->motion;
+  if (!way->way) return way->most;
   for (int d = 0; d < look->lists->dim; d++)
-    square +=
-      PetscSqr(PetscMax(PetscAbsReal(look->way[d] - c->way_lower[d]), PetscAbsReal(look->way[d] - c->way_upper[d])));
-  return PetscMin(look->motion, look->ahead * PetscSqrtReal(square));
-}
-
-/*@
-  WayNarrow - keeps of some facets those that are within reach or may come there.
-
-  Not collective
-
-  Input Parameters:
-+ look  - the slave point
-. reach - largest distance (length)
-- n     - number of facets
-
-  Input/Output Parameter:
-. found - the facets; those that are kept are in the same order
-
-  Note:
-  Returns how many are kept.
-@*/
-int WayNarrow(const Nearest *look, PetscReal reach, int n, int *found)
-{
-  int kept = 0;
-
-  if (!look->way) return n;
-  for (int i = 0; i < n; i++) {
-    const Candidate *c = &look->candidates[found[i]];
-
-    if (CandidateBoxDistance(look->lists->dim, c, look->x) <= reach + WayApproach(look, c)) found[kept++] = found[i];
-  }
-  return kept;
+    square += PetscSqr(PetscMax(way->way[d] - c->way_lower[d], c->way_upper[d] - way->way[d]));
+  return PetscMin(way->most, way->ahead * PetscSqrtReal(square));
 }

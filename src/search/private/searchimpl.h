@@ -43,7 +43,8 @@ typedef struct {
   const PetscReal *u; /* of the mesh's nodes, before; NULL: nothing is known */
   PetscReal        t, size, ahead; /* load parameter before; largest displacement since (length); times what follows */
   PetscBool        known; /* the way ahead follows from it */
-  PetscReal       *way; /* displacement of each slave point since (length), while lists are made */
+  PetscReal       *way;    /* displacement of each slave point since (length), while lists are made */
+  PetscReal        motion; /* for which these must be good (length) */
 } SearchBefore;
 
 struct _n_ContactSearch {
@@ -133,10 +134,7 @@ typedef struct {
   PetscReal least, tie;
   Foot      foot;      /* on the best candidate */
   PetscReal normal[3]; /* of the master there: where there are fits, one that does not jump from facet to facet */
-  /* How far the slave point has moved before, each component; NULL: that says nothing. How many times as far it may
-     move on, and how far the two may move against each other at most (length). */
-  const PetscReal *way;
-  PetscReal        ahead, motion;
+  BoxTreeWay way;      /* how it moves against candidates */
   PetscBool averse;    /* a candidate within a face of the slave does not face the point */
   FacetsAt *at;        /* those at which a flank may end */
 } Nearest;
@@ -189,7 +187,7 @@ void           CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candi
 void           CandidateHull(int dim, const PetscReal *x, Candidate *);
 PetscReal      CandidateBulge(const Candidate *, PetscReal size);
 PetscReal      CandidateBoxDistance(int dim, const Candidate *, const PetscReal *x);
-PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, PetscBool facing, BoxTree *);
+PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, PetscBool facing, PetscBool moved, BoxTree *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
 PetscErrorCode ListBufferAddPoints(ListBuffer *, PetscInt first, PetscInt n, const PetscInt *points);
 /* searchbox.c */

@@ -1,10 +1,10 @@
-/* Which facets can come near a slave point: how far both may move against each other follows from how they moved
-   before. WayBegin() takes in how slave points and contact nodes have moved, WayApproach() bounds how far a facet and a
-   slave point approach each other, and WayEnd() frees what these use. */
+/* How far slave points and facets may yet move against each other, from how they have moved before. WayBegin() takes in
+   the ways of the slave points, WayOf() gives one of them to a tree of candidates, WayApproach() follows from it for
+   one candidate, and WayEnd() frees the ways. */
 #pragma once
 #include "searchimpl.h"
 
 PetscErrorCode WayBegin(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion);
 PetscErrorCode WayEnd(ContactSearch);
-PetscReal      WayApproach(const Nearest *look, const Candidate *c);
-int            WayNarrow(const Nearest *look, PetscReal reach, int n, int *found);
+BoxTreeWay     WayOf(ContactSearch, PetscInt q);
+PetscReal      WayApproach(const Nearest *, const Candidate *);
