@@ -479,7 +479,8 @@ void SearchSetFrames(ContactSearch s, const PetscReal *kept)
 
   Note:
   Facets are listed if they face the slave and lie within SEARCH_MARGIN of the nearest one, provided that this lies
-  within SEARCH_REACH. Order and content do not depend on the ranks.
+  within SEARCH_REACH; the motion, or what SearchSetBefore() tells of it, is added to both. Order and content do not
+  depend on the ranks.
 @*/
 PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *out)
 {

@@ -8,7 +8,8 @@
 
    The search has two stages. The boxes of the ranks' slave nodes are compared with the boxes of facets to find the
    ranks; then a tree is built over the facets that arrived. There is no patch size to choose: the reach is two face
-   sizes plus the largest motion for which the lists must be good. */
+   sizes plus the motion for which the lists must be good. SearchSetBefore() says from where the bodies came; each facet
+   then counts with its own motion against a slave point. */
 #pragma once
 #include "search/neighbourlists.h"
 #include "bodies/loads.h"

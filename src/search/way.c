@@ -20,7 +20,7 @@
 
   Note:
   A search at the end of the way sees every facet that a slave point may have met on it: where both met, the facet is
-not farther away than they have moved against each other.
+  not farther away than they have moved against each other.
 @*/
 void SearchSetBefore(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal size)
 {
