@@ -135,13 +135,27 @@ static void NearestVisit(void *context, int index, double *bound)
   look->foot     = foot;
 }
 
-/* Distance (length) up to which the nearest facet of a slave point is searched: that of all facets that may come within
-   reach while lists stand still; less than 0: there are none. */
-static PetscReal SearchedDistance(const Nearest *look, BoxTree tree, PetscReal reach)
+/* Finds the nearest facet of a slave point up to a distance (length). */
+static void FindNearest(Nearest *look, BoxTree tree, PetscReal distance)
 {
-  const PetscReal approach = BoxTreeApproach(tree, look->x, &look->way, reach);
+  const BoxTreeSide side  = {&look->lists->slave_normal[3 * look->q], look->one_body ? 0 : -INFINITY,
+                             OwnBodyBehind(look), 0, 0};
+  double            bound = distance + look->tie;
 
-  return approach < 0 ? approach : reach + approach;
+  look->least = distance;
+  BoxTreeClosest(tree, look->x, look->listed ? &side : NULL, &bound, NearestVisit, look);
+}
+
+/* Finds the nearest facet of a slave point within reach, or else of those that may come within reach while lists stand
+   still. */
+static void SearchNearest(Nearest *look, BoxTree tree, PetscReal reach)
+{
+  PetscReal approach;
+
+  FindNearest(look, tree, look->way.way ? reach : reach + look->way.most);
+  if (!look->way.way || look->best >= 0) return;
+  approach = BoxTreeApproach(tree, look->x, &look->way, reach);
+  if (approach > 0) FindNearest(look, tree, reach + approach);
 }
 
 /* Finds the facets that may come nearer to the slave point than the nearest one while lists stand still, and those that
@@ -241,14 +255,13 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
                                 PetscReal reach, const PetscBool *possible, Nearest *look, int *found, int *ends,
                                 ListBuffer *buffer)
 {
-  const PetscInt    q = look->q, first = buffer->n_points;
-  const BoxTreeSide side  = {&lists->slave_normal[3 * q], look->one_body ? 0 : -INFINITY, OwnBodyBehind(look), 0, 0};
-  double            bound = look->least + look->tie, margin;
-  int               count, facing, dropped, convex = 0;
+  const PetscInt q = look->q, first = buffer->n_points;
+  double         margin;
+  int            count, facing, dropped, convex = 0;
 
   PetscFunctionBeginUser;
-  if (look->least < 0 || (possible && !possible[q])) PetscFunctionReturn(PETSC_SUCCESS);
-  BoxTreeClosest(tree, look->x, look->listed ? &side : NULL, &bound, NearestVisit, look);
+  if (possible && !possible[q]) PetscFunctionReturn(PETSC_SUCCESS);
+  SearchNearest(look, tree, reach);
   lists->averse[q] = (PetscBool)(look->best < 0 && look->averse);
   if (look->best >= 0 && FaceMarksTreated(look->marks, field->records[look->candidates[look->best].record].marks))
     look->best = -1;
@@ -339,7 +352,6 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
     TakeOutward(&look);
-    look.least = SearchedDistance(&look, tree, s->reach);
     BeginLists(lists, &next, q, &buffer);
     PetscCall(FillSlave(lists, field, tree, fit, s->reach, s->partners.possible, &look, found, ends, &buffer));
   }

@@ -39,7 +39,8 @@ void SearchSetBefore(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal
 - motion - relative motion (length) for which lists are to be good
 
   Note:
-  The slave points stand at (u, t) afterwards. The nodes of a rigid tool that is the master are not followed.
+  The slave points stand at (u, t) afterwards. A motion that is less than the reach counts for all facets: lists are
+  hardly longer for it. The nodes of a rigid tool that is the master are not followed.
 @*/
 PetscErrorCode WayBegin(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion)
 {
@@ -49,7 +50,8 @@ PetscErrorCode WayBegin(ContactSearch s, const PetscReal *u, PetscReal t, PetscR
   PetscFunctionBeginUser;
   before->motion = motion;
   before->ahead  = before->size > 0 ? motion / before->size : PETSC_INFINITY;
-  before->known  = (PetscBool)(before->u && s->master && !s->master->rigid && !s->tool && before->ahead <= WAY_AHEAD);
+  before->known  = (PetscBool)(before->u && s->master && !s->master->rigid && !s->tool && motion > s->reach &&
+                              before->ahead <= WAY_AHEAD);
   if (before->known) {
     PetscCall(PetscMalloc1(s->slaves->n * dim, &before->way));
     ToolsPlace(s->mesh, before->u, before->t);

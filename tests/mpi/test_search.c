@@ -124,16 +124,16 @@ static void test_nearest(void **state)
 }
 
 /* Where both bodies moved together, lists hold no more than without motion. Where the slave moved against the master,
-   they hold what is as far along the way as it may go on, and no more than a way that is too short to tell of it
-   gives. */
+   they hold what is as far along the way as it may go on. A way that is too short tells nothing, and a motion that is
+   less than the reach counts in full. */
 static void test_way(void **state)
 {
   static const struct {
     double motion, lower, upper, more; /* more: by so much the lists are longer than without motion */
-  } cases[] = {{0.8, 0.4, 0.4, 0}, {0.8, 0.8, 0.6, 0.4}, {0.8, 0, 0.8, 0.8}, {0.8, 0.1, 0.1, 0.8}};
+  } cases[] = {{1.2, 0.6, 0.6, 0}, {1.2, 1.2, 1, 0.4}, {1.2, 0, 1.2, 1.2}, {1.2, 0.1, 0.1, 1.2}, {0.8, 0.4, 0.4, 0.8}};
 
   (void)state;
-  for (int k = 0; k < 4; k++) {
+  for (int k = 0; k < 5; k++) {
     const double   distance = Apart + 1.5 * Size + cases[k].more, reach = sqrt(distance * distance - Apart * Apart);
     NeighbourLists lists;
     PetscReal     *before;
