@@ -27,6 +27,7 @@ struct _n_Tree {
   Range  *queue;    /* [n + 1]: heap of BoxTreeClosest(), nearest first, or what BoxTreeGather() has found */
   int     gathered; /* length of that */
   double *facing;   /* [2n-1][2][dim]: lower and upper components of the directions below each node; NULL: none */
+  double *ways;     /* [2n-1][2][dim]: least and largest components of the ways below each node; NULL: none */
   /* [n/64 + 1]: a bit for each box that BoxTreeNear() has found; all 0 outside of it */
   unsigned long long *found;
 };
@@ -151,21 +152,24 @@ static void BuildRange(BoxTree tree, const Boxes *boxes, Range range)
   BuildRange(tree, boxes, Right(&range));
 }
 
-/* Sets the components of the directions below a subtree. */
-static void SpanDirections(BoxTree tree, const double *direction, Range range)
+/* Sets the least and largest components below each node of a subtree, from those of the boxes. */
+static void Span(BoxTree tree, const double *least, const double *largest, double *nodes, Range range)
 {
   const int dim  = tree->dim;
-  double   *mine = tree->facing + (size_t)range.node * 2 * dim;
+  double   *mine = nodes + (size_t)range.node * 2 * dim;
   Range     half[2];
 
-  for (int k = 0; k < dim; ++k) mine[k] = mine[dim + k] = direction[(size_t)tree->order[range.first] * dim + k];
+  for (int k = 0; k < dim; ++k) {
+    mine[k]       = least[(size_t)tree->order[range.first] * dim + k];
+    mine[dim + k] = largest[(size_t)tree->order[range.first] * dim + k];
+  }
   if (range.count == 1) return;
   half[0] = Left(&range);
   half[1] = Right(&range);
   for (int i = 0; i < 2; ++i) {
-    const double *below = tree->facing + (size_t)half[i].node * 2 * dim;
+    const double *below = nodes + (size_t)half[i].node * 2 * dim;
 
-    SpanDirections(tree, direction, half[i]);
+    Span(tree, least, largest, nodes, half[i]);
     for (int k = 0; k < dim; ++k) {
       mine[k]       = Smaller(mine[k], below[k]);
       mine[dim + k] = Larger(mine[dim + k], below[dim + k]);
@@ -238,7 +242,7 @@ int BoxTreeBuildFacing(int dim, int n, const double *lower, const double *upper,
   for (int i = 0; i < n; ++i) t->order[i] = i;
   for (int k = 0; k < dim && n; ++k) boxes.turn = Larger(boxes.turn, Width(&boxes, t->order, n, k) / 2);
   if (n) BuildRange(t, &boxes, (Range){0, 0, 0, n});
-  if (n && direction) SpanDirections(t, direction, (Range){0, 0, 0, n});
+  if (n && direction) Span(t, direction, direction, t->facing, (Range){0, 0, 0, n});
   return 0;
 }
 
@@ -257,6 +261,7 @@ void BoxTreeDestroy(BoxTree *tree)
   free((*tree)->order);
   free((*tree)->queue);
   free((*tree)->facing);
+  free((*tree)->ways);
   free((*tree)->found);
   free(*tree);
   *tree = NULL;
@@ -306,15 +311,122 @@ static void TakeFound(unsigned long long *words, int first, int last, int max, i
 @*/
 int BoxTreeNear(BoxTree tree, const double *point, double radius, int max, int *found)
 {
+  return BoxTreeNearing(tree, point, &(BoxTreeWay){NULL, 0, 0}, radius, max, found);
+}
+
+/*@
+  BoxTreeSetWays - says how far the boxes have moved
+
+  Not collective, plain C
+
+  Input Parameters:
++ tree    - the tree
+. least   - [n][dim] least components of what points of a box have moved (length), not kept
+- largest - [n][dim] largest ones
+
+  Note:
+  Returns 0, or 1 if there is not enough memory.
+@*/
+int BoxTreeSetWays(BoxTree tree, const double *least, const double *largest)
+{
+  tree->ways = malloc(sizeof(*tree->ways) * ((size_t)2 * tree->n + 1) * 2 * tree->dim);
+  if (!tree->ways) return 1;
+  if (tree->n) Span(tree, least, largest, tree->ways, (Range){0, 0, 0, tree->n});
+  return 0;
+}
+
+/* How far a point and any box below a node may move against each other. */
+static double Approach(BoxTree tree, int node, const BoxTreeWay *way)
+{
+  const double *least, *largest;
+  double        square = 0;
+
+  if (!way->way) return way->most;
+  least   = tree->ways + (size_t)node * 2 * tree->dim;
+  largest = least + tree->dim;
+  for (int k = 0; k < tree->dim; ++k) {
+    const double d = Larger(way->way[k] - least[k], largest[k] - way->way[k]);
+
+    square += d * d;
+  }
+  return Smaller(way->most, way->ahead * sqrt(square));
+}
+
+/* May a point and a box below a node come within reach of each other? */
+static int MayNear(BoxTree tree, int node, const double *point, const BoxTreeWay *way, double reach)
+{
+  const double square = SquaredDistance(tree, node, point), farthest = reach + way->most;
+
+  if (square >= farthest * farthest) return 0;
+  return (reach > 0 && square < reach * reach) || sqrt(square) < reach + Approach(tree, node, way);
+}
+
+/*@
+  BoxTreeApproach - bounds how far the boxes that may come within reach of a point, and the point, move against each
+  other
+
+  Not collective, plain C
+
+  Input Parameters:
++ tree  - the tree, after BoxTreeSetWays() if anything is known of the point's way
+. point - [dim] coordinates (length)
+. way   - how both move
+- reach - a length
+
+  Note:
+  Returns the largest such motion (length), or -1 if no box may come within reach.
+@*/
+double BoxTreeApproach(BoxTree tree, const double *point, const BoxTreeWay *way, double reach)
+{
+  Range  stack[MAX_DEPTH];
+  int    depth = 0;
+  double most  = -1;
+
+  if (tree->n) stack[depth++] = (Range){0, 0, 0, tree->n};
+  while (depth) {
+    const Range  range    = stack[--depth];
+    const double approach = Approach(tree, range.node, way);
+
+    if (approach <= most || !MayNear(tree, range.node, point, way, reach)) continue;
+    if (range.count == 1)
+      most = approach;
+    else {
+      stack[depth++] = Right(&range);
+      stack[depth++] = Left(&range);
+    }
+  }
+  return most;
+}
+
+/*@
+  BoxTreeNearing - finds all boxes that are within reach of a point or may come there
+
+  Not collective, plain C
+
+  Input Parameters:
++ tree  - the tree, after BoxTreeSetWays() if anything is known of the point's way
+. point - [dim] coordinates (length)
+. way   - how both move
+. reach - a length
+- max   - room in found
+
+  Output Parameter:
+. found - numbers of the boxes in ascending order, the first max of them
+
+  Note:
+  Returns how many boxes there are, which may be more than max.
+@*/
+int BoxTreeNearing(BoxTree tree, const double *point, const BoxTreeWay *way, double reach, int max, int *found)
+{
   Range stack[MAX_DEPTH];
   int   depth = 0, count = 0, first = tree->n / WORD, last = 0;
 
-  if (!tree->n || radius <= 0) return 0;
+  if (!tree->n || reach + way->most <= 0) return 0;
   stack[depth++] = (Range){0, 0, 0, tree->n};
   while (depth) {
     const Range range = stack[--depth];
 
-    if (SquaredDistance(tree, range.node, point) >= radius * radius) continue;
+    if (!MayNear(tree, range.node, point, way, reach)) continue;
     if (range.count == 1) {
       const int box = tree->order[range.first], word = box / WORD;
 

@@ -142,6 +142,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree(c->pairs));
   PetscCall(PetscFree(c->piece));
   PetscCall(PetscFree(c->u_gathered));
+  PetscCall(PetscFree(c->u_before));
   PetscCall(ContactWorkDestroy(&c->work));
   PetscCall(BlockMatrixDestroy(&c->blocks));
   PetscCall(ContactVectorsFree(&c->border));

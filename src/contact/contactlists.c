@@ -394,22 +394,58 @@ static PetscErrorCode PairTellWork(const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes where lists are gathered. *again: the last ones were gathered there too; the same on all ranks. */
-static PetscErrorCode NoteGathered(Contact contact, const PetscReal *u, PetscReal t, PetscBool *again)
+/* Were the last lists gathered at a state? The answer is the same on all ranks. */
+static PetscErrorCode IsGathered(Contact contact, const PetscReal *u, PetscReal t, PetscBool *gathered)
 {
-  const PetscInt n    = contact->mesh->n_nodes * contact->mesh->dim;
-  PetscBool      same = (PetscBool)(contact->u_gathered && contact->t_gathered == t);
-  int            all;
+  PetscBool same = (PetscBool)(contact->u_gathered && contact->t_gathered == t);
+  int       all;
 
   PetscFunctionBeginUser;
-  if (same) PetscCall(PetscArraycmp(contact->u_gathered, u, n, &same));
+  if (same) PetscCall(PetscArraycmp(contact->u_gathered, u, contact->mesh->n_nodes * contact->mesh->dim, &same));
   all = same;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
-  *again = all ? PETSC_TRUE : PETSC_FALSE;
+  *gathered = all ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes where lists are gathered, and where they were before. *again: the last ones were gathered there too; the same
+   on all ranks. */
+static PetscErrorCode NoteGathered(Contact contact, const PetscReal *u, PetscReal t, PetscBool *again)
+{
+  const PetscInt n = contact->mesh->n_nodes * contact->mesh->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(IsGathered(contact, u, t, again));
   if (*again) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->u_gathered) {
+    PetscReal *before = contact->u_before;
+
+    contact->u_before   = contact->u_gathered;
+    contact->t_before   = contact->t_gathered;
+    contact->u_gathered = before;
+  }
   if (!contact->u_gathered) PetscCall(PetscMalloc1(n + 1, &contact->u_gathered));
   PetscCall(PetscArraycpy(contact->u_gathered, u, n));
   contact->t_gathered = t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells all searches from where the bodies came to a state. u_before NULL: nothing is known of it. */
+static PetscErrorCode TellBefore(Contact contact, const PetscReal *u_before, PetscReal t_before, const PetscReal *u)
+{
+  const int dim  = contact->mesh->dim;
+  PetscReal size = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < contact->mesh->n_nodes && u_before; i++) {
+    PetscReal square = 0;
+
+    for (int d = 0; d < dim; d++) square += PetscSqr(u[i * dim + d] - u_before[i * dim + d]);
+    size = PetscMax(size, square);
+  }
+  size = PetscSqrtReal(size);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
+  for (int p = 0; p < contact->n_pairs; p++) SearchSetBefore(contact->pairs[p].search, u_before, t_before, size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -435,6 +471,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
 
   PetscFunctionBeginUser;
   PetscCall(NoteGathered(contact, u, t, &again));
+  PetscCall(TellBefore(contact, contact->u_before, contact->t_before, u));
   contact->u_begun = u;
   contact->t_begun = t;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
@@ -820,6 +857,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
 {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
+  PetscCall(TellBefore(contact, contact->u_gathered, contact->t_gathered, u));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = motion;
@@ -870,6 +908,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   PetscCall(LargestPressure(contact, t, &most));
+  PetscCall(TellBefore(contact, contact->u_gathered, contact->t_gathered, u));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = next;
@@ -944,9 +983,42 @@ static PetscErrorCode PairArchiveStaying(ContactPair *pair, int p, Archive archi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Saves or loads the state from which the bodies came to the accepted one, as if lists had last been gathered there.
+   Older files do not have it. */
+static PetscErrorCode ArchiveBefore(Contact contact, Archive archive, const PetscReal *u, PetscReal t)
+{
+  const Mesh mesh  = contact->mesh;
+  PetscInt   known = 0;
+  PetscBool  there = PETSC_TRUE, again = PETSC_FALSE;
+  PetscReal  from = 0, *place = NULL;
+  Hdf5Table  nodes;
+
+  PetscFunctionBeginUser;
+  if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, "contact/before", &there));
+  if (!there) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ArchiveLoads(archive)) {
+    PetscCall(IsGathered(contact, u, t, &again));
+    place = again ? contact->u_before : contact->u_gathered;
+    from  = again ? contact->t_before : contact->t_gathered;
+    known = place != NULL;
+  }
+  PetscCall(ArchiveIntegers(archive, "contact/before", 1, &known));
+  PetscCall(ArchiveReals(archive, "contact/before_t", 1, &from));
+  if (!known) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ArchiveLoads(archive)) {
+    if (!contact->u_gathered) PetscCall(PetscMalloc1(mesh->n_nodes * mesh->dim + 1, &contact->u_gathered));
+    place               = contact->u_gathered;
+    contact->t_gathered = from;
+  }
+  PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_global, mesh->n_nodes, mesh->node_id, &nodes));
+  PetscCall(ArchiveRows(archive, "contact/before_displacement", &nodes, mesh->dim, place));
+  PetscCall(Hdf5TableDestroy(&nodes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactListsArchive - saves or loads the lists that are ready for the next step, by the motion that they were made
-  for and the offsets that stayed.
+  for, the state from which the bodies came and the offsets that stayed.
 
   Collective
 
@@ -972,6 +1044,7 @@ PetscErrorCode ContactListsArchive(Contact contact, Archive archive, const Petsc
     motion[p] = pair->next || pair->stays ? pair->next_motion : -1;
   }
   PetscCall(ArchiveReals(archive, "contact/next_motion", contact->n_pairs, motion));
+  PetscCall(ArchiveBefore(contact, archive, u, t));
   if (ArchiveLoads(archive)) PetscCall(ContactGather(contact, u, t, t, 0));
   for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairArchiveStaying(&contact->pairs[p], p, archive, u, t));
   for (int p = 0; p < contact->n_pairs && ArchiveLoads(archive); p++)

@@ -117,12 +117,14 @@ PetscReal CandidateBoxDistance(int dim, const Candidate *c, const PetscReal *x)
 + dim        - dimension
 . n          - number of candidates
 . candidates - after CandidatePlace()
-- facing     - BoxTreeClosest() is to be given sides
+. facing     - BoxTreeClosest() is to be given sides
+- moved      - their ways are known
 
   Output Parameter:
 . tree - free it with BoxTreeDestroy()
 @*/
-PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *candidates, PetscBool facing, BoxTree *tree)
+PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *candidates, PetscBool facing, PetscBool moved,
+                              BoxTree *tree)
 {
   double *lower, *upper, *normal;
 
@@ -137,6 +139,14 @@ PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *candidates, 
   }
   PetscCheck(!BoxTreeBuildFacing(dim, (int)n, lower, upper, facing ? normal : NULL, tree), PETSC_COMM_SELF,
              PETSC_ERR_MEM, "no memory for the search tree");
+  for (PetscInt i = 0; i < n && moved; i++) {
+    for (int d = 0; d < dim; d++) {
+      lower[i * dim + d] = candidates[i].way_lower[d];
+      upper[i * dim + d] = candidates[i].way_upper[d];
+    }
+  }
+  PetscCheck(!moved || !BoxTreeSetWays(*tree, lower, upper), PETSC_COMM_SELF, PETSC_ERR_MEM,
+             "no memory for the search tree");
   PetscCall(PetscFree3(lower, upper, normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -297,7 +297,7 @@ static PetscErrorCode MeasureNodes(NodeDepths depths, NeighbourLists lists, cons
   BoxTree     tree;
 
   PetscFunctionBeginUser;
-  PetscCall(CandidatesTree(lists->dim, field->n_candidates, field->candidates, PETSC_FALSE, &tree));
+  PetscCall(CandidatesTree(lists->dim, field->n_candidates, field->candidates, PETSC_FALSE, PETSC_FALSE, &tree));
   PetscCall(PetscMalloc3(field->n_candidates, &room.found, field->n_candidates, &room.facets,
                          field->n_candidates * FACE_MAX_NODES * lists->dim, &room.x));
   for (PetscInt i = 0; i < n; i++) {

@@ -298,7 +298,7 @@ static PetscErrorCode TestPoints(ContactSearch s, const PetscReal *u, PetscReal 
   }
   PetscCall(PetscNew(&lists));
   PetscCall(SearchFieldCreate(s, u, t, box, sight->radius, PETSC_FALSE, lists, &field));
-  PetscCall(CandidatesTree(dim, field.n_candidates, field.candidates, PETSC_TRUE, &tests.tree));
+  PetscCall(CandidatesTree(dim, field.n_candidates, field.candidates, PETSC_TRUE, s->before.known, &tests.tree));
   PetscCall(PetscArrayzero(possible, s->slaves->n));
   tests.lists = lists;
   tests.x     = x;

@@ -2,6 +2,7 @@
 #include "searchimpl.h"
 #include "flank.h"
 #include "ownbody.h"
+#include "way.h"
 #include "search/facemarks.h"
 
 /* Reach of the search beyond the requested motion, in face sizes. The nearest facet of a slave point is listed if it
@@ -91,30 +92,38 @@ static void CandidatePositions(NeighbourLists lists, const Candidate *c, PetscRe
       x[a * dim + d] = lists->point_X[c->facet.nodes[a] * dim + d] + lists->point_u[c->facet.nodes[a] * dim + d];
 }
 
-/* Compares a candidate with the nearest one so far. Two facets share the foot on the edge between them. Where facets
-   are equally near, the smaller tag decides and not round-off. Fits would show the difference, because they start
-   from the nearest facet and its normal. */
-static void NearestVisit(void *context, int index, double *bound)
+/* Can a candidate that faces the slave point be its partner? It is not its own face, nor hidden by its own body. */
+static PetscBool IsPartner(const Nearest *look, const Candidate *c, Foot *foot)
 {
-  Nearest         *look  = context;
-  const int        dim   = look->lists->dim;
-  const Candidate *c     = &look->candidates[index];
-  const PetscBool  faces = FlankFaces(look, c);
-  Facet            own   = c->facet; /* without free edges: the distance to the facet itself, not to its extension */
-  PetscReal        x[FACE_MAX_NODES * 3], distance;
-  Foot             foot;
+  const int dim = look->lists->dim;
+  Facet     own = c->facet; /* without free edges: the distance to the facet itself, not to its extension */
+  PetscReal x[FACE_MAX_NODES * 3];
 
-  if (!faces && (look->averse || look->best >= 0 || look->one_body)) return;
-  if (!faces && CandidateBoxDistance(dim, c, look->x) > look->size) return; /* too far to be averse */
-  if (FlankIsOwn(look, c)) return;
+  if (FlankIsOwn(look, c)) return PETSC_FALSE;
   CandidatePositions(look->lists, c, x);
   own.free_edges = 0;
   for (int a = 0; a < ElementGet(own.type)->nodes; a++) {
     own.nodes[a] = a;
     for (int d = 0; d < dim; d++) x[a * dim + d] -= look->x[d];
   }
-  FacetProject(dim, &own, x, &foot);
-  if (OwnBodyHides(look, c, &foot) || OwnBodyTurnsFrom(look, c, &foot)) return;
+  FacetProject(dim, &own, x, foot);
+  return (PetscBool)(!OwnBodyHides(look, c, foot) && !OwnBodyTurnsFrom(look, c, foot));
+}
+
+/* Compares a candidate with the nearest one so far. Two facets share the foot on the edge between them. Where facets
+   are equally near, the smaller tag decides and not round-off. Fits would show the difference, because they start
+   from the nearest facet and its normal. */
+static void NearestVisit(void *context, int index, double *bound)
+{
+  Nearest         *look  = context;
+  const Candidate *c     = &look->candidates[index];
+  const PetscBool  faces = FlankFaces(look, c);
+  PetscReal        distance;
+  Foot             foot;
+
+  if (!faces && (look->averse || look->best >= 0 || look->one_body)) return;
+  if (!faces && CandidateBoxDistance(look->lists->dim, c, look->x) > look->size) return; /* too far to be averse */
+  if (!IsPartner(look, c, &foot)) return;
   distance = PetscAbsReal(foot.gap);
   if (!faces) look->averse = (PetscBool)(distance <= look->size);
   if (!faces || distance > *bound) return;
@@ -124,6 +133,56 @@ static void NearestVisit(void *context, int index, double *bound)
   look->distance = distance;
   look->best     = index;
   look->foot     = foot;
+}
+
+/* Finds the nearest facet of a slave point up to a distance (length). */
+static void FindNearest(Nearest *look, BoxTree tree, PetscReal distance)
+{
+  const BoxTreeSide side  = {&look->lists->slave_normal[3 * look->q], look->one_body ? 0 : -INFINITY,
+                             OwnBodyBehind(look), 0, 0};
+  double            bound = distance + look->tie;
+
+  look->least = distance;
+  BoxTreeClosest(tree, look->x, look->listed ? &side : NULL, &bound, NearestVisit, look);
+}
+
+/* Finds the nearest facet of a slave point within reach, or else of those that may come within reach while lists stand
+   still. */
+static void SearchNearest(Nearest *look, BoxTree tree, PetscReal reach)
+{
+  PetscReal approach;
+
+  FindNearest(look, tree, look->way.way ? reach : reach + look->way.most);
+  if (!look->way.way || look->best >= 0) return;
+  approach = BoxTreeApproach(tree, look->x, &look->way, reach);
+  if (approach > 0) FindNearest(look, tree, reach + approach);
+}
+
+/* Finds the facets that may come nearer to the slave point than the nearest one while lists stand still, and those that
+   are within a margin of it besides. Returns how many there are. */
+static int FindFacets(const Nearest *look, const SearchField *field, BoxTree tree, PetscReal margin, int *found)
+{
+  BoxTreeWay      way     = look->way;
+  const PetscReal recedes = way.way ? WayApproach(look, &look->candidates[look->best]) : 0;
+
+  way.most -= recedes;
+  return BoxTreeNearing(tree, look->x, &way, look->least + margin + recedes, (int)field->n_candidates, found);
+}
+
+/* May a slave point come within reach of any of the facets that FindFacets() has found? */
+static PetscBool ComesNear(const Nearest *look, PetscReal reach, int n, const int *found)
+{
+  Foot foot;
+
+  if (!look->way.way || look->least <= reach) return PETSC_TRUE;
+  for (int i = 0; i < n; i++) {
+    const Candidate *c        = &look->candidates[found[i]];
+    const PetscReal  distance = reach + WayApproach(look, c);
+
+    if (!FlankFaces(look, c) || CandidateBoxDistance(look->lists->dim, c, look->x) > distance) continue;
+    if (IsPartner(look, c, &foot) && PetscAbsReal(foot.gap) <= distance) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
 }
 
 /* Curvature of the master around its nearest facet: angle between the normals of the facets that touch it, over the
@@ -189,26 +248,27 @@ static void TakeNormal(Nearest *look, const FitSupport *fit)
 }
 
 /* Finds the nearest facet of one slave point, lists it with all facets within margin and motion of it, and fits the
-   surface there. look gives the slave point, the size of its face and the distance within which it is searched. found
-   and ends have room for all candidates. possible: which points may have a partner; NULL: any of them. */
+   surface there. look gives the slave point, the size of its face and the distance within which it is searched, reach
+   that without the motion. found and ends have room for all candidates. possible: which points may have a partner;
+   NULL: any of them. */
 static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, BoxTree tree, FitSupport *fit,
-                                PetscReal motion, const PetscBool *possible, Nearest *look, int *found, int *ends,
+                                PetscReal reach, const PetscBool *possible, Nearest *look, int *found, int *ends,
                                 ListBuffer *buffer)
 {
-  const PetscInt    q = look->q, first = buffer->n_points;
-  const BoxTreeSide side  = {&lists->slave_normal[3 * q], look->one_body ? 0 : -INFINITY, OwnBodyBehind(look), 0, 0};
-  double            bound = look->least + look->tie, margin;
-  int               count, facing, dropped, convex = 0;
+  const PetscInt q = look->q, first = buffer->n_points;
+  double         margin;
+  int            count, facing, dropped, convex = 0;
 
   PetscFunctionBeginUser;
   if (possible && !possible[q]) PetscFunctionReturn(PETSC_SUCCESS);
-  BoxTreeClosest(tree, look->x, look->listed ? &side : NULL, &bound, NearestVisit, look);
+  SearchNearest(look, tree, reach);
   lists->averse[q] = (PetscBool)(look->best < 0 && look->averse);
   if (look->best >= 0 && FaceMarksTreated(look->marks, field->records[look->candidates[look->best].record].marks))
     look->best = -1;
   if (look->best < 0) PetscFunctionReturn(PETSC_SUCCESS);
   margin = SEARCH_MARGIN * PetscMax(look->size, field->records[look->candidates[look->best].record].size);
-  count  = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
+  count  = FindFacets(look, field, tree, margin, found);
+  if (!ComesNear(look, reach, count, found)) PetscFunctionReturn(PETSC_SUCCESS);
   facing = FlankSort(look, &count, found, &dropped);
   FlankLeaveCorner(look, facing, found);
   TakeNormal(look, fit);
@@ -268,7 +328,8 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscCall(PetscMalloc1(buffer.room, &buffer.size));
   PetscCall(PetscMalloc1(buffer.points_room, &buffer.point));
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
-  PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, s->one_body, &tree)); /* none is averse then */
+  PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, s->one_body, s->before.known,
+                           &tree)); /* none is averse then */
   for (PetscInt i = 0; i < lists->n_near; i++) {
     const PetscInt q    = lists->near[i];
     Nearest        look = {.lists      = lists,
@@ -284,15 +345,15 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                            .two_sided  = (PetscBool)(s->listed && s->master && !s->master->rigid),
                            .sharp      = s->fit->feature_angle,
                            .marks      = s->marks ? s->marks[q] : 0,
+                           .way        = WayOf(s, q),
                            .best       = -1,
                            .at         = &at,
-                           .least      = s->reach + motion,
                            .tie        = FACET_TIE * (s->reach + motion)};
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
     TakeOutward(&look);
     BeginLists(lists, &next, q, &buffer);
-    PetscCall(FillSlave(lists, field, tree, fit, motion, s->partners.possible, &look, found, ends, &buffer));
+    PetscCall(FillSlave(lists, field, tree, fit, s->reach, s->partners.possible, &look, found, ends, &buffer));
   }
   BeginLists(lists, &next, lists->n_slaves, &buffer);
   lists->list_point = buffer.point;
@@ -430,7 +491,8 @@ void SearchSetFrames(ContactSearch s, const PetscReal *kept)
 
   Note:
   Facets are listed if they face the slave and lie within SEARCH_MARGIN of the nearest one, provided that this lies
-  within SEARCH_REACH. Order and content do not depend on the ranks.
+  within SEARCH_REACH; the motion, or what SearchSetBefore() tells of it, is added to both. Order and content do not
+  depend on the ranks.
 @*/
 PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *out)
 {
@@ -445,7 +507,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(PetscNew(&lists));
   lists->t = NAN; /* not updated yet */
   ToolsPlace(s->mesh, u, t);
-  PetscCall(SlavePointsMove(s->slaves, u, t));
+  PetscCall(WayBegin(s, u, t, motion));
   PetscCall(PetscMalloc1(3 * s->slaves->n, &normals));
   if (partners) PetscCall(SearchPartners(s, u, t, motion, normals));
   lists->empty = (PetscBool)(partners && !s->partners.any);
@@ -464,6 +526,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
     PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));
   PetscCall(NeighbourListsFindAlike(lists));
   PetscCall(NeighbourListsFill(s, lists, &field, s->fit->fitted ? &fit : NULL, motion));
+  PetscCall(WayEnd(s));
   if (s->fit->fitted) PetscCall(FitSupportDestroy(&fit));
   if (s->keeps_faces) PetscCall(NeighbourListsTakeFaces(lists, &field));
   PetscCall(NeighbourListsFindMoving(lists));

@@ -8,7 +8,8 @@
 
    The search has two stages. The boxes of the ranks' slave nodes are compared with the boxes of facets to find the
    ranks; then a tree is built over the facets that arrived. There is no patch size to choose: the reach is two face
-   sizes plus the largest motion for which the lists must be good. */
+   sizes plus the motion for which the lists must be good. SearchSetBefore() says from where the bodies came; each facet
+   then counts with its own motion against a slave point. */
 #pragma once
 #include "search/neighbourlists.h"
 #include "bodies/loads.h"
@@ -46,6 +47,7 @@ void           SearchAllSides(ContactSearch, PetscBool one_body);
 void           SearchSetTool(ContactSearch, const MeshTool *);
 void           SearchSetMarks(ContactSearch, const FaceMarks *);
 void           SearchSetRungs(ContactSearch, const int *first);
+void           SearchSetBefore(ContactSearch, const PetscReal *u, PetscReal t, PetscReal size);
 void           SearchSetFrames(ContactSearch, const PetscReal *kept);
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
 PetscErrorCode SearchFindsNothing(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *nothing);

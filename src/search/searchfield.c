@@ -14,9 +14,24 @@ static void ImagePositions(ContactSearch s, NeighbourLists lists, const Candidat
   }
 }
 
-/* Makes candidates of all faces and mirror images near a box, in an order that does not depend on the ranks. */
-static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, const PetscReal box[6], PetscReal distance,
-                                     SearchField *field)
+/* Takes in how far the nodes of a candidate have moved before, from their displacements then. */
+static void TakeWay(ContactSearch s, NeighbourLists lists, const PetscReal *before, Candidate *c)
+{
+  for (int d = 0; d < lists->dim; d++) {
+    for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++) {
+      const PetscInt  i   = c->facet.nodes[a] * lists->dim + d;
+      const PetscReal way = s->images[c->image].sign[d] * (lists->u[i] - before[i]);
+
+      c->way_lower[d] = a ? PetscMin(c->way_lower[d], way) : way;
+      c->way_upper[d] = a ? PetscMax(c->way_upper[d], way) : way;
+    }
+  }
+}
+
+/* Makes candidates of all faces and mirror images near a box, in an order that does not depend on the ranks. before:
+   displacements of the contact nodes before, or NULL. */
+static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, const PetscReal *before,
+                                     const PetscReal box[6], PetscReal distance, SearchField *field)
 {
   const int dim = lists->dim;
   PetscReal x[FACE_MAX_NODES * 3];
@@ -44,6 +59,7 @@ static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, cons
         own[3 + d] = c->upper[d];
       }
       if (!SearchBoxesMeet(own, box, dim, distance)) continue;
+      if (before) TakeWay(s, lists, before, c);
       if (s->listed) CandidateHull(dim, x, c);
       field->n_candidates++;
     }
@@ -166,7 +182,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
 {
   Mesh          mesh = s->mesh;
   PetscMPIInt   size;
-  PetscReal    *boxes;
+  PetscReal    *boxes, *before = NULL;
   NodeGeometry *geometry = NULL;
   const int     rigid    = s->master && s->master->rigid;
 
@@ -194,8 +210,14 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   PetscCall(PetscFree(geometry));
   if (s->maps && s->maps->ptr) PetscCall(FetchMaps(s, field)); /* partners are sought before there are maps */
   PetscCall(NeighbourListsCreateNodes(s, field, lists));
+  if (s->before.known) {
+    PetscCall(PetscMalloc1(lists->n_nodes * lists->dim, &before));
+    PetscCall(NeighbourListsUpdateNodes(s, lists, s->before.u, s->before.t));
+    PetscCall(PetscArraycpy(before, lists->u, lists->n_nodes * lists->dim));
+  }
   PetscCall(NeighbourListsUpdateNodes(s, lists, u, t));
-  PetscCall(MakeCandidates(s, lists, box, distance, field));
+  PetscCall(MakeCandidates(s, lists, before, box, distance, field));
+  PetscCall(PetscFree(before));
   PetscCall(NeighbourListsCreatePoints(s, t, lists, field));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

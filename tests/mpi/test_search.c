@@ -123,6 +123,43 @@ static void test_nearest(void **state)
   PartsDestroy(&parts);
 }
 
+/* Where both bodies moved together, lists hold no more than without motion. Where the slave moved against the master,
+   they hold what is as far along the way as it may go on. A way that is too short tells nothing, and a motion that is
+   less than the reach counts in full. */
+static void test_way(void **state)
+{
+  static const struct {
+    double motion, lower, upper, more; /* more: by so much the lists are longer than without motion */
+  } cases[] = {{1.2, 0.6, 0.6, 0}, {1.2, 1.2, 1, 0.4}, {1.2, 0, 1.2, 1.2}, {1.2, 0.1, 0.1, 1.2}, {0.8, 0.4, 0.4, 0.8}};
+
+  (void)state;
+  for (int k = 0; k < 5; k++) {
+    const double   distance = Apart + 1.5 * Size + cases[k].more, reach = sqrt(distance * distance - Apart * Apart);
+    NeighbourLists lists;
+    PetscReal     *before;
+
+    Create(NULL, "", "");
+    OK(PetscCalloc1(parts.mesh->n_nodes * 2, &before));
+    for (PetscInt i = 0; i < parts.mesh->n_nodes; i++) {
+      double X[2];
+
+      PartsPlace(&parts, i, X);
+      before[2 * i] = -(X[1] > 1.05 ? cases[k].upper : cases[k].lower);
+    }
+    SearchSetBefore(Pair()->search, before, 0, PetscMax(cases[k].lower, cases[k].upper));
+    OK(SearchLists(Pair()->search, parts.u, 0, cases[k].motion, &lists));
+    for (PetscInt c = 0; c < Pair()->n; c++) {
+      double X[2];
+
+      PartsPlace(&parts, Pair()->node[c], X);
+      CheckLists(lists, X[0], reach, (int)(X[0] / Size), Pair()->term_point[Pair()->term_ptr[c]]);
+    }
+    OK(NeighbourListsDestroy(&lists));
+    OK(PetscFree(before));
+    PartsDestroy(&parts);
+  }
+}
+
 /* The signed distance of any point to the whole master, that no list is needed for. */
 static void test_distance(void **state)
 {
@@ -315,6 +352,78 @@ static void   Bend(const double X[2], double x[2])
   if (X[1] < 1.05) x[1] -= bend * PetscSqr(X[0] - 4) / (2 * RADIUS);
 }
 
+/* Has a list of a slave point this facet? */
+static PetscBool ListHas(NeighbourLists lists, PetscInt q, long tag)
+{
+  for (PetscInt i = lists->facet_ptr[q]; i < lists->facet_ptr[q + 1]; i++)
+    if (lists->facet[i].tag == tag) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* The way that both bodies go together: the lower one bends up and turns, the upper one slides down on it. */
+static void Go(const double X[2], double part, double x[2])
+{
+  const double turn = 0.05 * part, sine = sin(turn), cosine = cos(turn), up = 1 + 0.01 * PetscSqr(X[0] - 4) * part;
+
+  x[0] = X[0] * cosine - X[1] * up * sine + 8 * part;
+  x[1] = X[0] * sine + X[1] * up * cosine;
+  if (X[1] < 1.05) return;
+  x[0] -= 1.2 * part;
+  x[1] -= 0.2 * part;
+}
+
+/* Displacements of a part of the way, or beyond it in its direction. */
+static void Place(double part, PetscReal *u)
+{
+  for (PetscInt i = 0; i < parts.mesh->n_nodes; i++) {
+    double X[2], x[2], y[2];
+
+    PartsPlace(&parts, i, X);
+    Go(X, 1, x);
+    Go(X, 0, y);
+    for (int d = 0; d < 2; d++) u[2 * i + d] = (1 - part) * y[d] + part * x[d] - X[d];
+  }
+}
+
+/* Whatever a full search finds nearest on the way ahead is in the lists that follow from the way before, which are
+   shorter than full ones. */
+static void test_ahead(void **state)
+{
+  NeighbourLists lists, full;
+  PetscReal     *before, *u, size = 0;
+  PetscInt       count[2] = {0, 0};
+
+  (void)state;
+  Create(NULL, "", "");
+  OK(PetscMalloc2(parts.mesh->n_nodes * 2, &before, parts.mesh->n_nodes * 2, &u));
+  Place(0, before);
+  Place(1, parts.u);
+  for (PetscInt i = 0; i < parts.mesh->n_nodes; i++)
+    size = PetscMax(size, hypot(parts.u[2 * i] - before[2 * i], parts.u[2 * i + 1] - before[2 * i + 1]));
+  OK(MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPIU_REAL, MPIU_MAX, PETSC_COMM_WORLD));
+  OK(SearchLists(Pair()->search, parts.u, 0, 1.5 * size, &full));
+  SearchSetBefore(Pair()->search, before, 0, size);
+  OK(SearchLists(Pair()->search, parts.u, 0, 1.5 * size, &lists));
+  SearchSetBefore(Pair()->search, NULL, 0, 0);
+  for (PetscInt q = 0; q < lists->n_slaves; q++) {
+    count[0] += lists->facet_ptr[q + 1] - lists->facet_ptr[q];
+    count[1] += full->facet_ptr[q + 1] - full->facet_ptr[q];
+  }
+  OK(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  assert_true(count[0] > 0 && count[0] < count[1]);
+  OK(NeighbourListsDestroy(&full));
+  for (int k = -10; k <= 15; k++) {
+    Place(1 + k / 10., u);
+    OK(SearchLists(Pair()->search, u, 0, 0, &full));
+    for (PetscInt q = 0; q < full->n_slaves; q++)
+      assert_true(full->nearest[q] < 0 || ListHas(lists, q, full->facet[full->facet_ptr[q] + full->nearest[q]].tag));
+    OK(NeighbourListsDestroy(&full));
+  }
+  OK(NeighbourListsDestroy(&lists));
+  OK(PetscFree2(before, u));
+  PartsDestroy(&parts);
+}
+
 /* Lists that were made at a state take offsets that are extrapolated from there: they stay, and their points are where
    those of a new search are. */
 static void test_extrapolated(void **state)
@@ -403,11 +512,11 @@ static void test_damped(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_lists),        cmocka_unit_test(test_nearest),
-                                     cmocka_unit_test(test_distance),     cmocka_unit_test(test_hold),
-                                     cmocka_unit_test(test_reach),        cmocka_unit_test(test_free_edges),
-                                     cmocka_unit_test(test_offsets),      cmocka_unit_test(test_flank),
-                                     cmocka_unit_test(test_extrapolated), cmocka_unit_test(test_damped)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_lists),   cmocka_unit_test(test_nearest), cmocka_unit_test(test_distance),
+    cmocka_unit_test(test_hold),    cmocka_unit_test(test_reach),   cmocka_unit_test(test_free_edges),
+    cmocka_unit_test(test_offsets), cmocka_unit_test(test_flank),   cmocka_unit_test(test_extrapolated),
+    cmocka_unit_test(test_damped),  cmocka_unit_test(test_way),     cmocka_unit_test(test_ahead)};
 
   if (PartsStart(&argc, &argv)) return 1;
   return PartsEnd(cmocka_run_group_tests(tests, NULL, NULL));

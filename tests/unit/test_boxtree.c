@@ -373,12 +373,56 @@ static void TestEmpty(void **state)
   BoxTreeDestroy(&tree);
 }
 
+/* Boxes that move: those that may come within reach are found, and none else, as each one by itself says. */
+static void TestNearing(void **state)
+{
+  static double least[3 * MAX_BOXES], largest[3 * MAX_BOXES];
+  static int    found[MAX_BOXES];
+
+  (void)state;
+  for (int dim = 2; dim <= 3; ++dim) {
+    BoxTree tree;
+
+    RandomBoxes(dim, 500, 0.05);
+    for (int i = 0; i < 500 * dim; ++i) {
+      least[i]   = lower[i] * lower[i] + Random(0, 0.05);
+      largest[i] = least[i] + Random(0, 0.05);
+    }
+    assert_int_equal(BoxTreeBuild(dim, 500, lower, upper, &tree), 0);
+    assert_int_equal(BoxTreeSetWays(tree, least, largest), 0);
+    for (int trial = 0; trial < 200; ++trial) {
+      const double     point[3] = {Random(0, 1), Random(0, 1), Random(0, 1)};
+      const double     moved[3] = {point[0] * point[0], point[1] * point[1], trial % 2 ? 0 : point[2] * point[2]};
+      const BoxTreeWay way      = {trial % 10 ? moved : NULL, Random(0, 1), Random(0, 0.5)};
+      const double     reach    = Random(-0.05, 0.2);
+      const int        there    = BoxTreeNearing(tree, point, &way, reach, MAX_BOXES, found);
+      double           most     = -1;
+      int              count    = 0;
+
+      for (int i = 0; i < 500; ++i) {
+        double sum = 0, approach;
+
+        for (int k = 0; k < dim; ++k)
+          sum += pow(fmax(moved[k] - least[i * dim + k], largest[i * dim + k] - moved[k]), 2);
+        approach = way.way ? fmin(way.most, way.ahead * sqrt(sum)) : way.most;
+        if (BoxDistance(dim, i, point) >= reach + approach) continue;
+        assert_true(count < there && found[count] == i);
+        most = fmax(most, approach);
+        ++count;
+      }
+      assert_int_equal(there, count);
+      assert_true(fabs(BoxTreeApproach(tree, point, &way, reach) - most) < 1e-14);
+    }
+    BoxTreeDestroy(&tree);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestNear),       cmocka_unit_test(TestClosest),
                                      cmocka_unit_test(TestDirections), cmocka_unit_test(TestBehind),
-                                     cmocka_unit_test(TestGroup),      cmocka_unit_test(TestEqualBoxes),
-                                     cmocka_unit_test(TestEmpty)};
+                                     cmocka_unit_test(TestGroup),      cmocka_unit_test(TestNearing),
+                                     cmocka_unit_test(TestEqualBoxes), cmocka_unit_test(TestEmpty)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -177,6 +177,8 @@ struct _n_Contact {
   PetscReal        t_begun; /* its load parameter */
   PetscReal       *u_gathered; /* local displacements of the last ContactGather() (length); NULL: there was none */
   PetscReal        t_gathered; /* its load parameter */
+  PetscReal       *u_before;   /* the same of the one before, from which the bodies came there; NULL: none */
+  PetscReal        t_before;   /* its load parameter */
   ContactWork      work;
   BlockMatrix      blocks;     /* the last tangent */
   ContactVectors   border;     /* the first variations of its terms */

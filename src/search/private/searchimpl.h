@@ -38,6 +38,15 @@ typedef struct {
   PetscReal  most_lever[LEVERS]; /* the largest of all levers on this rank */
 } Partners;
 
+/* From where the bodies came to the state of a search, and how they have moved since (way.c). */
+typedef struct {
+  const PetscReal *u; /* of the mesh's nodes, before; NULL: nothing is known */
+  PetscReal        t, size, ahead; /* load parameter before; largest displacement since (length); times what follows */
+  PetscBool        known; /* the way ahead follows from it */
+  PetscReal       *way;    /* displacement of each slave point since (length), while lists are made */
+  PetscReal        motion; /* for which these must be good (length) */
+} SearchBefore;
+
 struct _n_ContactSearch {
   Mesh                mesh;
   Scene               scene;
@@ -65,6 +74,7 @@ struct _n_ContactSearch {
   FaceBlocks          blocks_held[2];
   PetscInt            room, points_room; /* of the facets and points of the last lists */
   Partners            partners;
+  SearchBefore        before;
   NeighbourLists spare; /* lists that were given back, of which only what belongs to slave points is left, or NULL */
 };
 
@@ -76,6 +86,7 @@ typedef struct {
   Facet     facet;        /* nodes: contact nodes until the points are numbered, then points */
   PetscInt  first, count; /* fit points of its quadrature rule */
   PetscReal centre[3], normal[3], lower[3], upper[3];
+  PetscReal way_lower[3], way_upper[3]; /* least and largest displacement of its nodes before, see SearchBefore */
   FacetHull hull; /* set where any side of the bodies may meet any other one */
 } Candidate;
 
@@ -123,6 +134,7 @@ typedef struct {
   PetscReal least, tie;
   Foot      foot;      /* on the best candidate */
   PetscReal normal[3]; /* of the master there: where there are fits, one that does not jump from facet to facet */
+  BoxTreeWay way;      /* how it moves against candidates */
   PetscBool averse;    /* a candidate within a face of the slave does not face the point */
   FacetsAt *at;        /* those at which a flank may end */
 } Nearest;
@@ -175,7 +187,7 @@ void           CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candi
 void           CandidateHull(int dim, const PetscReal *x, Candidate *);
 PetscReal      CandidateBulge(const Candidate *, PetscReal size);
 PetscReal      CandidateBoxDistance(int dim, const Candidate *, const PetscReal *x);
-PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, PetscBool facing, BoxTree *);
+PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, PetscBool facing, PetscBool moved, BoxTree *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
 PetscErrorCode ListBufferAddPoints(ListBuffer *, PetscInt first, PetscInt n, const PetscInt *points);
 /* searchbox.c */
