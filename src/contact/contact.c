@@ -45,6 +45,13 @@ static PetscBool MayHaveRidge(Scene scene, const ContactPair *pair)
                      !pair->fit.global_frame);
 }
 
+/* Can the sharp edges of the deformable master of a pair have a pair of their own? */
+static PetscBool MayHaveEdges(Scene scene, const ContactPair *pair)
+{
+  return (PetscBool)(pair->mesh->order > 1 && pair->master && !pair->master->rigid && !pair->friction && !SceneHasFluid(scene) &&
+                     !pair->fit.global_frame && !pair->scene->listed);
+}
+
 /* Adds pairs of the sharp edges of tools behind those of the scene, where the tools have any. */
 static PetscErrorCode AddRidges(Contact contact, Elasticity elasticity)
 {
@@ -52,8 +59,8 @@ static PetscErrorCode AddRidges(Contact contact, Elasticity elasticity)
   for (int p = 0; p < contact->n_scene; p++) {
     ContactPair *pair = &contact->pairs[p], *ridge = &contact->pairs[contact->n_pairs];
 
-    if (!MayHaveRidge(contact->scene, pair)) continue;
-    PetscCall(ContactPairCreateRidge(contact, elasticity, p, ridge));
+    if (MayHaveEdges(contact->scene, pair)) PetscCall(ContactPairCreateEdges(contact, elasticity, p, ridge));
+    if (MayHaveRidge(contact->scene, pair)) PetscCall(ContactPairCreateRidge(contact, elasticity, p, ridge));
     if (!ridge->slave) continue;
     ridge->work = &contact->work;
     pair->ridge = contact->n_pairs++;

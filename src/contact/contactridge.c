@@ -24,6 +24,19 @@
 @*/
 PetscBool ContactIsRidge(const ContactPair *pair)
 {
+  return (PetscBool)(pair->scene == &pair->ridge_scene);
+}
+
+/*@
+  ContactOnTool - says whether the slave points of a pair are points on the edges of a rigid tool, which are no nodes.
+
+  Not collective
+
+  Input Parameter:
+. pair - the pair
+@*/
+PetscBool ContactOnTool(const ContactPair *pair)
+{
   return (PetscBool)(pair->slave->ridge.n > 0);
 }
 
@@ -39,7 +52,7 @@ PetscBool ContactIsRidge(const ContactPair *pair)
 @*/
 PetscInt ContactTermTag(const ContactPair *pair, PetscInt c)
 {
-  return ContactIsRidge(pair) ? pair->slave->ridge.point[pair->node[c]].tag : pair->mesh->node_tag[pair->node[c]];
+  return ContactOnTool(pair) ? pair->slave->ridge.point[pair->node[c]].tag : pair->mesh->node_tag[pair->node[c]];
 }
 
 /*@
@@ -56,7 +69,7 @@ PetscInt ContactTermTag(const ContactPair *pair, PetscInt c)
 @*/
 void ContactTermPlace(const ContactPair *pair, PetscInt c, PetscReal X[3])
 {
-  if (!ContactIsRidge(pair)) {
+  if (!ContactOnTool(pair)) {
     MeshNodePlace(pair->mesh, pair->node[c], X);
     return;
   }

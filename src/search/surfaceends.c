@@ -209,6 +209,71 @@ PetscErrorCode SurfaceFindEnds(ContactSurface surface, PetscReal angle, int n_im
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds half of an edge's length to its nodes, as its other face does: by Simpson's rule where it has a middle node. In the
+   plane its depth: 1, or once round the axis. */
+static void AddEdgeLength(ContactSurface surface, Geometry geometry, const Facet *facet, int edge, PetscReal *length)
+{
+  const Mesh      mesh  = surface->mesh;
+  const Element  *e     = ElementGet(facet->type);
+  const PetscReal *X    = mesh->coords;
+  const int        dim  = mesh->dim;
+  PetscReal        half = 0.5, square = 0;
+  PetscInt         node[2];
+  int              corner[2];
+
+  EdgeCorners(e, edge, corner);
+  for (int k = 0; k < 2; k++) node[k] = facet->nodes[corner[k]];
+  if (dim == 2) {
+    length[node[0]] += half * (geometry == GEOMETRY_AXISYMMETRIC ? 2 * PETSC_PI * (X[node[0] * dim] + mesh->centre[0]) : 1);
+    return;
+  }
+  for (int d = 0; d < dim; d++) square += PetscSqr(X[node[0] * dim + d] - X[node[1] * dim + d]);
+  half *= PetscSqrtReal(square);
+  for (int k = 0; k < 2; k++) length[node[k]] += half * (e->nodes > e->corners ? 1.0 / 6 : 0.5);
+  if (e->nodes > e->corners) length[facet->nodes[e->corners + edge]] += half * 2 / 3;
+}
+
+/*@
+  SurfaceEdgeLengths - sums up at nodes the lengths of the edges at which a surface turns away by more than an angle.
+
+  Collective
+
+  Input Parameters:
++ surface  - a surface of a deformable body, with its free edges
+. geometry - in the plane an edge has the length 1, or that round the axis
+. angle    - the angle
+. n_images - number of mirror images
+- images   - of the pair
+
+  Output Parameters:
++ length - length[nodes of the mesh], the same on all ranks that have the node; of edges in planes of symmetry half
+- n      - number of edges of faces that count, on all ranks
+
+  Note:
+  Edges at which the surface ends do not count.
+@*/
+PetscErrorCode SurfaceEdgeLengths(ContactSurface surface, Geometry geometry, PetscReal angle, int n_images,
+                                  const SurfaceImage *images, PetscReal *length, PetscInt *n)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(length, surface->mesh->n_nodes));
+  PetscCall(SurfaceFindEnds(surface, angle, n_images, images));
+  *n = 0;
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    const int ends = surface->face_ends[f] & ~surface->faces[f].free_edges;
+
+    for (int k = 0; k < 4; k++) {
+      if (!(ends >> k & 1)) continue;
+      AddEdgeLength(surface, geometry, &surface->faces[f], k, length);
+      (*n)++;
+    }
+  }
+  PetscCall(PetscFree(surface->face_ends));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 1, MPIU_INT, MPI_SUM, surface->mesh->comm));
+  PetscCall(MeshSumNodes(surface->mesh, 1, length));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SurfaceRule - returns the quadrature rule of a face of a surface.
 
