@@ -1,5 +1,6 @@
 /* The contact object: all pairs of a scene, their accepted state, and what a checkpoint keeps of them. */
 #include "contactimpl.h"
+#include "search/surfaceends.h"
 #include "mesh/meshpieces.h"
 
 /* Offsets of surfaces that occur in several pairs are taken once, by the first one. */
@@ -48,8 +49,8 @@ static PetscBool MayHaveRidge(Scene scene, const ContactPair *pair)
 /* Can the sharp edges of the deformable master of a pair have a pair of their own? */
 static PetscBool MayHaveEdges(Scene scene, const ContactPair *pair)
 {
-  return (PetscBool)(pair->mesh->order > 1 && pair->master && !pair->master->rigid && !pair->friction && !SceneHasFluid(scene) &&
-                     !pair->fit.global_frame && !pair->scene->listed);
+  return (PetscBool)(SurfaceFollowsEdges(pair->mesh) && pair->master && !pair->master->rigid && !pair->friction &&
+                     !SceneHasFluid(scene) && !pair->fit.global_frame && !pair->scene->listed);
 }
 
 /* Adds pairs of the sharp edges of tools behind those of the scene, where the tools have any. */

@@ -593,10 +593,10 @@ PetscErrorCode ContactPairCreateEdges(Contact contact, Elasticity elasticity, in
   pair->geometry    = scene->geometry;
   PairSetFormulation(scene, mesh->order, pair);
   pair->fit = PairFitSettings(scene, pair, mesh->order);
-  PetscCall(SurfaceCreate(mesh, scene, elasticity, pair->ridge_scene.path, "master", pair->ridge_scene.slave,
-                          &pair->slave));
-  PetscCall(SurfaceCreate(mesh, scene, elasticity, pair->ridge_scene.path, "slave", pair->ridge_scene.master,
-                          &pair->master));
+  PetscCall(
+    SurfaceCreate(mesh, scene, elasticity, pair->ridge_scene.path, "master", pair->ridge_scene.slave, &pair->slave));
+  PetscCall(
+    SurfaceCreate(mesh, scene, elasticity, pair->ridge_scene.path, "slave", pair->ridge_scene.master, &pair->master));
   PetscCall(SurfaceImages(mesh, scene, pair->scene, pair->slave, pair->master, &pair->n_images, pair->images));
   if (pair->scene->find_symmetry && pair->smoother->fitted)
     PetscCall(
