@@ -106,16 +106,13 @@ static PetscErrorCode PairChooseRidge(ContactPair *pair)
 }
 
 /* Has each node of this rank on a sharp edge of the slave carry a term. length[nodes of the mesh]: of these edges. */
-static PetscErrorCode PairChooseEdges(Mesh mesh, Scene scene, const PetscReal *length, ContactPair *pair)
+static PetscErrorCode PairChooseEdges(Mesh mesh, const PetscReal *length, ContactPair *pair)
 {
   const MeshGroup *group = pair->slave->group;
-  PetscReal       *size, *turn, *share;
   PetscMPIInt      rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
-  PetscCall(PetscMalloc3(mesh->n_nodes, &size, mesh->n_nodes, &turn, mesh->n_nodes, &share));
-  PetscCall(SurfaceNodeSizes(pair->slave, scene->geometry, pair->n_images, pair->images, size, turn, share));
   PetscCall(PetscMalloc4(group->n_nodes, &pair->node, group->n_nodes, &pair->area, group->n_nodes, &pair->size,
                          group->n_nodes, &pair->turn));
   for (PetscInt i = 0; i < group->n_nodes; i++) {
@@ -131,7 +128,6 @@ static PetscErrorCode PairChooseEdges(Mesh mesh, Scene scene, const PetscReal *l
   pair->n_nodes = pair->n_sides = pair->n;
   PetscCall(ContactEdgesBelow(pair));
   PetscCall(ContactCornersAdd(pair));
-  PetscCall(PetscFree3(size, turn, share));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -271,7 +267,7 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
     PetscCall(SlavePointsCreateRidge(pair->slave, loads, &pair->slaves));
     PetscCall(PairChooseRidge(pair));
   } else if (ContactIsRidge(pair)) {
-    PetscCall(PairChooseEdges(mesh, scene, pair->edge_length, pair));
+    PetscCall(PairChooseEdges(mesh, pair->edge_length, pair));
     PetscCall(PairCreateNodePoints(mesh, pair));
   } else if (pair->formulation.surface) {
     PetscCall(ContactEndsFind(pair, scene));
