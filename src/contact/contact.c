@@ -1,5 +1,6 @@
 /* The contact object: all pairs of a scene, their accepted state, and what a checkpoint keeps of them. */
 #include "contactimpl.h"
+#include "search/surfaceends.h"
 #include "mesh/meshpieces.h"
 
 /* Offsets of surfaces that occur in several pairs are taken once, by the first one. */
@@ -45,6 +46,13 @@ static PetscBool MayHaveRidge(Scene scene, const ContactPair *pair)
                      !pair->fit.global_frame);
 }
 
+/* Can the sharp edges of the deformable master of a pair have a pair of their own? */
+static PetscBool MayHaveEdges(Scene scene, const ContactPair *pair)
+{
+  return (PetscBool)(SurfaceFollowsEdges(pair->mesh) && pair->master && !pair->master->rigid && !pair->friction &&
+                     !SceneHasFluid(scene) && !pair->fit.global_frame && !pair->scene->listed);
+}
+
 /* Adds pairs of the sharp edges of tools behind those of the scene, where the tools have any. */
 static PetscErrorCode AddRidges(Contact contact, Elasticity elasticity)
 {
@@ -52,8 +60,8 @@ static PetscErrorCode AddRidges(Contact contact, Elasticity elasticity)
   for (int p = 0; p < contact->n_scene; p++) {
     ContactPair *pair = &contact->pairs[p], *ridge = &contact->pairs[contact->n_pairs];
 
-    if (!MayHaveRidge(contact->scene, pair)) continue;
-    PetscCall(ContactPairCreateRidge(contact, elasticity, p, ridge));
+    if (MayHaveEdges(contact->scene, pair)) PetscCall(ContactPairCreateEdges(contact, elasticity, p, ridge));
+    if (MayHaveRidge(contact->scene, pair)) PetscCall(ContactPairCreateRidge(contact, elasticity, p, ridge));
     if (!ridge->slave) continue;
     ridge->work = &contact->work;
     pair->ridge = contact->n_pairs++;

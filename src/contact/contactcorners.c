@@ -39,7 +39,7 @@ static PetscBool ShareEdge(const SlavePoints slaves, PetscInt f, PetscInt g)
 /* Gives the n faces around a node the numbers of their sides: that of the first face of the side, by ascending tag. */
 static void FindSides(const ContactPair *pair, PetscInt n, const ContactCornerFace face[], PetscInt side[])
 {
-  const PetscReal cosine  = PetscCosReal(pair->fit.feature_angle);
+  const PetscReal cosine  = PetscCosReal(ContactSidesAngle(pair));
   PetscBool       changed = PETSC_TRUE;
 
   for (PetscInt i = 0; i < n; i++) side[i] = i;
@@ -133,7 +133,7 @@ PetscErrorCode ContactCornersAdd(ContactPair *pair)
   PetscCall(PetscMalloc2(pair->n_nodes + 1, &pair->first_side, pair->n_nodes, &pair->whole));
   PetscCall(PetscArraycpy(pair->whole, pair->area, pair->n_nodes));
   for (PetscInt c = 0; c <= pair->n_nodes; c++) pair->first_side[c] = pair->n;
-  if (!ContactSidesServe(pair)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ContactSidesAngle(pair) >= PETSC_PI) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(slaves->n_faces * FACE_MAX_NODES, &pair->corner));
   for (PetscInt i = 0; i < slaves->n_faces * FACE_MAX_NODES; i++) pair->corner[i] = -1;
   PetscCall(FacesAround(slaves, &ptr, &face));

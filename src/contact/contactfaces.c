@@ -151,7 +151,7 @@ PetscBool ContactTermAtBound(const ContactPair *pair, PetscInt c)
 @*/
 PetscInt ContactTermId(const ContactPair *pair, PetscInt c)
 {
-  if (ContactIsRidge(pair)) return pair->node[c];
+  if (ContactOnTool(pair)) return pair->node[c];
   if (c < pair->n_nodes) return pair->mesh->node_id[pair->node[c]];
   if (c < pair->n_sides) return ContactCornerId(pair, c);
   return -1 - (PetscInt)pair->slaves->faces[pair->face[c - pair->n_sides]].tag;

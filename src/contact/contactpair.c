@@ -1,5 +1,6 @@
 /* Pairs: surfaces, terms, slave points, offsets and search of each, and what the scene says of it. */
 #include "contactimpl.h"
+#include "search/surfaceends.h"
 #include "search/nodegeometry.h"
 #include "search/ridgepoints.h"
 #include "search/toolside.h"
@@ -99,6 +100,33 @@ static PetscErrorCode PairChooseRidge(ContactPair *pair)
     pair->size[c] = slaves->size[c];
     pair->turn[c] = 0;
   }
+  PetscCall(ContactEdgesBelow(pair));
+  PetscCall(ContactCornersAdd(pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Has each node of this rank on a sharp edge of the slave carry a term. length[nodes of the mesh]: of these edges. */
+static PetscErrorCode PairChooseEdges(Mesh mesh, const PetscReal *length, ContactPair *pair)
+{
+  const MeshGroup *group = pair->slave->group;
+  PetscMPIInt      rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  PetscCall(PetscMalloc4(group->n_nodes, &pair->node, group->n_nodes, &pair->area, group->n_nodes, &pair->size,
+                         group->n_nodes, &pair->turn));
+  for (PetscInt i = 0; i < group->n_nodes; i++) {
+    const PetscInt node = group->nodes[i];
+
+    if (mesh->node_owner[node] != rank || !(length[node] > 0)) continue;
+    pair->node[pair->n] = node;
+    pair->area[pair->n] = length[node] * pair->master->mean_size;
+    pair->size[pair->n] = pair->master->mean_size;
+    pair->turn[pair->n] = 0;
+    pair->n++;
+  }
+  pair->n_nodes = pair->n_sides = pair->n;
+  PetscCall(ContactEdgesBelow(pair));
   PetscCall(ContactCornersAdd(pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -235,9 +263,12 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
   const int finer = PairRule(scene, pair);
 
   PetscFunctionBeginUser;
-  if (ContactIsRidge(pair)) {
+  if (ContactOnTool(pair)) {
     PetscCall(SlavePointsCreateRidge(pair->slave, loads, &pair->slaves));
     PetscCall(PairChooseRidge(pair));
+  } else if (ContactIsRidge(pair)) {
+    PetscCall(PairChooseEdges(mesh, pair->edge_length, pair));
+    PetscCall(PairCreateNodePoints(mesh, pair));
   } else if (pair->formulation.surface) {
     PetscCall(ContactEndsFind(pair, scene));
     PetscCall(SlavePointsCreateQuadrature(pair->slave, scene->geometry, finer, HasLevers(pair), &pair->slaves));
@@ -370,7 +401,7 @@ static PetscErrorCode PairCreateMixing(ContactPair *pair)
 static PetscErrorCode PairComplete(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
 {
   const SceneContact  *contact    = pair->scene;
-  const ContactSurface deformable = ContactIsRidge(pair) ? pair->master : pair->slave;
+  const ContactSurface deformable = ContactOnTool(pair) ? pair->master : pair->slave;
   const PetscBool      friction   = (PetscBool)contact->friction;
   PetscReal            penalty;
 
@@ -380,7 +411,7 @@ static PetscErrorCode PairComplete(Mesh mesh, Scene scene, Loads loads, ContactP
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));
   PetscCall(SurfaceFindFreeEdges(pair->slave, pair->n_images, pair->images));
   pair->automatic =
-    PenaltyAutomatic(deformable->stiffness, pair->master && !ContactIsRidge(pair) ? pair->master->stiffness : 0);
+    PenaltyAutomatic(deformable->stiffness, pair->master && !ContactOnTool(pair) ? pair->master->stiffness : 0);
   pair->most = pair->predicted_most = PETSC_MAX_REAL;
   penalty       = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
   pair->initial = penalty;
@@ -469,6 +500,7 @@ static SceneContact RidgeScene(const SceneContact *of)
   ridge.master      = of->slave;
   ridge.formulation = CONTACT_NODE_TO_SURFACE;
   ridge.share       = 1;
+  ridge.friction    = 0;
   return ridge;
 }
 
@@ -519,6 +551,58 @@ PetscErrorCode ContactPairCreateRidge(Contact contact, Elasticity elasticity, in
 }
 
 /*@
+  ContactPairCreateEdges - creates a pair of the sharp edges of a deformable master and the slave of its pair, without
+  lists.
+
+  Collective
+
+  Input Parameters:
++ contact    - the contact, with that pair
+. elasticity - the bodies, for the automatic penalty
+- of         - number of the pair
+
+  Output Parameter:
+. pair - the pair; all members must be zero before the call; it has no slave where the master has no such edge
+@*/
+PetscErrorCode ContactPairCreateEdges(Contact contact, Elasticity elasticity, int of, ContactPair *pair)
+{
+  const Mesh         mesh  = contact->mesh;
+  const Scene        scene = contact->scene;
+  const ContactPair *first = &contact->pairs[of];
+  PetscInt           n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(mesh->n_nodes, &pair->edge_length));
+  PetscCall(SurfaceEdgeLengths(first->master, scene->geometry, SURFACE_SQUARE, first->n_mirrors, first->mirrors,
+                               pair->edge_length, &n));
+  if (!n) {
+    PetscCall(PetscFree(pair->edge_length));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  pair->tool_pair   = of;
+  pair->ridge_scene = RidgeScene(first->scene);
+  pair->mesh        = mesh;
+  pair->scene       = &pair->ridge_scene;
+  pair->facets      = &Smoother_Facet;
+  pair->smoother    = Smoothers[pair->ridge_scene.smoother];
+  pair->law         = first->law;
+  pair->geometry    = scene->geometry;
+  PairSetFormulation(scene, mesh->order, pair);
+  pair->fit = PairFitSettings(scene, pair, mesh->order);
+  PetscCall(
+    SurfaceCreate(mesh, scene, elasticity, pair->ridge_scene.path, "master", pair->ridge_scene.slave, &pair->slave));
+  PetscCall(
+    SurfaceCreate(mesh, scene, elasticity, pair->ridge_scene.path, "slave", pair->ridge_scene.master, &pair->master));
+  PetscCall(SurfaceImages(mesh, scene, pair->scene, pair->slave, pair->master, &pair->n_images, pair->images));
+  if (pair->scene->find_symmetry && pair->smoother->fitted)
+    PetscCall(
+      SurfaceImagesFromSupports(mesh, scene, pair->slave, pair->master, PETSC_TRUE, &pair->n_images, pair->images));
+  PetscCall(PairMirrors(mesh, scene, pair));
+  PetscCall(PairComplete(mesh, scene, contact->loads, pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactPairDestroy - frees what a pair holds.
 
   Collective
@@ -546,6 +630,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree(pair->corner));
   PetscCall(PetscFree(pair->at_end));
   PetscCall(PetscFree(pair->below));
+  PetscCall(PetscFree(pair->edge_length));
   PetscCall(PetscFree(pair->face));
   PetscCall(PetscFree(pair->term_ptr));
   PetscCall(PetscFree2(pair->term_point, pair->term_weight));

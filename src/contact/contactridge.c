@@ -1,4 +1,4 @@
-/* Pairs of the sharp edges of rigid tools.
+/* Pairs of the sharp edges of masters.
 
    Contact is measured at points of the slave, and an edge of the tool that stands between them is seen by none: it
    sinks in until some points are behind it, and these are pressed out along its sides. So points on the edges of the
@@ -6,8 +6,10 @@
    one. Its force is square to that surface, and search, smoothing, tangent, penalties and checkpoints are those of all
    pairs. The points have no unknowns, they are contact nodes of the tool (neighbourlists.h); a tool with unknowns gets
    its part from the nodes of the deformable side, see contacttool.c. A point counts where no side of its edge lies on
-   the surface (EdgeShare() in flank.c). Slave points of the first pair beside the edge keep their area: what the edge
-   holds is not behind its sides, and where a dent is steep they bear it.
+   the surface (EdgeShare() in flank.c). A right-angled edge, one side of which mostly lies on the surface, presses
+   where it is deeper than ContactEdgesBelow() says. So do the nodes on such edges of deformable masters, which are the
+   slave nodes of pairs like these. Both serve where SurfaceFollowsEdges(). Slave points of the first pair beside the
+   edge keep their area: what the edge holds is not behind its sides, and where a dent is steep they bear it.
 
    The scene does not name these pairs, and nobody outside sees them: forces, moments and work on the tool, penetrations
    and penalties are those of the pair to which they belong. There are none with friction, with a fluid or with a single
@@ -15,7 +17,7 @@
 #include "contactimpl.h"
 
 /*@
-  ContactIsRidge - says whether the slave of a pair is the sharp edges of a rigid tool.
+  ContactIsRidge - says whether the slave of a pair is the sharp edges of the master of another one.
 
   Not collective
 
@@ -23,6 +25,19 @@
 . pair - the pair
 @*/
 PetscBool ContactIsRidge(const ContactPair *pair)
+{
+  return (PetscBool)(pair->scene == &pair->ridge_scene);
+}
+
+/*@
+  ContactOnTool - says whether the slave points of a pair are points on the edges of a rigid tool, which are no nodes.
+
+  Not collective
+
+  Input Parameter:
+. pair - the pair
+@*/
+PetscBool ContactOnTool(const ContactPair *pair)
 {
   return (PetscBool)(pair->slave->ridge.n > 0);
 }
@@ -39,7 +54,7 @@ PetscBool ContactIsRidge(const ContactPair *pair)
 @*/
 PetscInt ContactTermTag(const ContactPair *pair, PetscInt c)
 {
-  return ContactIsRidge(pair) ? pair->slave->ridge.point[pair->node[c]].tag : pair->mesh->node_tag[pair->node[c]];
+  return ContactOnTool(pair) ? pair->slave->ridge.point[pair->node[c]].tag : pair->mesh->node_tag[pair->node[c]];
 }
 
 /*@
@@ -56,7 +71,7 @@ PetscInt ContactTermTag(const ContactPair *pair, PetscInt c)
 @*/
 void ContactTermPlace(const ContactPair *pair, PetscInt c, PetscReal X[3])
 {
-  if (!ContactIsRidge(pair)) {
+  if (!ContactOnTool(pair)) {
     MeshNodePlace(pair->mesh, pair->node[c], X);
     return;
   }

@@ -41,7 +41,7 @@ static PetscReal SlaveMotion(Contact contact, const ContactPair *pair, const Pet
   PetscMPIInt rank;
 
   if (!pair->master || MPI_Comm_rank(contact->mesh->comm, &rank)) return 0;
-  for (PetscInt i = 0; i < pair->slaves->n_nodes && !ContactIsRidge(pair); i++) {
+  for (PetscInt i = 0; i < pair->slaves->n_nodes && !ContactOnTool(pair); i++) {
     const NodeKey *node   = &pair->slaves->nodes[i];
     PetscReal      square = 0;
 

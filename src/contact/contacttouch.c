@@ -81,7 +81,7 @@ static PetscErrorCode TouchStepRows(Contact contact, PetscReal **rows)
 /* Number of the node of a term, or of the point on an edge of a tool, the same on any ranks. */
 static PetscInt NodeId(const ContactPair *pair, PetscInt c)
 {
-  return ContactIsRidge(pair) ? pair->node[c] : pair->mesh->node_id[pair->node[c]];
+  return ContactOnTool(pair) ? pair->node[c] : pair->mesh->node_id[pair->node[c]];
 }
 
 /*@

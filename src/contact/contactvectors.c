@@ -127,7 +127,7 @@ static PetscErrorCode AddZeros(Contact contact, PetscInt node, PetscInt *n)
    zeros there a pipe between plates had 2.5 times the vectors, and its factors took twice the operations. */
 static PetscBool HasPatternOfItsOwn(const ContactPair *pair)
 {
-  return (PetscBool)(!ContactIsRidge(pair) && !pair->scene->listed);
+  return (PetscBool)(!ContactOnTool(pair) && !pair->scene->listed);
 }
 
 /* Adds the values of a term to the vector that was added last. The rows of a node follow each other in both, so that

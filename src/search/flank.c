@@ -554,13 +554,15 @@ static PetscReal RidgeShare(const Nearest *look, int facing, const int *found)
   return 1 - off * NearRidge(look, facing, found);
 }
 
-/* Part of a point on a sharp edge of a tool that presses: 1 where no side of the edge lies on the master there. */
+/* Part of a point on a sharp edge of a tool that presses: 1 where no side of the edge lies on the master there, and at
+   right-angled edges, which press from a depth on. */
 static PetscReal EdgeShare(const Nearest *look)
 {
-  PetscReal share = 1;
+  const PetscReal *sides = look->slaves->sides ? &look->slaves->sides[6 * look->q] : NULL;
+  PetscReal        share = 1;
 
-  for (int k = 0; k < 2 && look->slaves->sides; k++)
-    share = PetscMin(share, StandsOff(look, -Dot(&look->slaves->sides[6 * look->q + 3 * k], look->normal)));
+  if (!sides || Dot(sides, &sides[3]) >= VECTORS_WEDGE) return 1;
+  for (int k = 0; k < 2; k++) share = PetscMin(share, StandsOff(look, -Dot(&sides[3 * k], look->normal)));
   return share;
 }
 

@@ -15,7 +15,8 @@ typedef struct {
 /* What the edges of a tool are compared with */
 typedef struct {
   ContactSurface      tool;
-  PetscReal           size; /* of the faces of the other surface (length) */
+  PetscReal           size;   /* of the faces of the other surface (length) */
+  PetscReal           cosine; /* of the angle by which the surface turns at least at an edge that counts */
   Geometry            geometry;
   int                 n_images;
   const SurfaceImage *images;
@@ -67,9 +68,7 @@ static const SurfaceImage *PlaneOf(const RidgeSearch *s, const RidgeEdge *edge)
 }
 
 /* Finds the unit normals of the two sides of a sharp convex edge, of which `count` faces are known; one that lies in a
-   plane of symmetry has its other side beyond that. Slave points hold the surface at blunter edges: a lid on the square
-   corners of a wall took 3 to 13 times as many iterations with points on them, and its side force scattered more from
-   mesh to mesh. */
+   plane of symmetry has its other side beyond that. */
 static PetscBool FindSides(const RidgeSearch *s, const RidgeEdge *edge, PetscInt count, PetscReal sides[6])
 {
   const SurfaceImage *plane = count == 1 ? PlaneOf(s, edge) : NULL;
@@ -79,7 +78,7 @@ static PetscBool FindSides(const RidgeSearch *s, const RidgeEdge *edge, PetscInt
   if (count == 2) SurfaceEdgeFrame(s->tool, &s->tool->faces[edge[1].face], edge[1].edge, &sides[3], out);
   SurfaceEdgeFrame(s->tool, &s->tool->faces[edge[0].face], edge[0].edge, sides, out);
   for (int d = 0; d < 3 && plane; d++) sides[3 + d] = plane->sign[d] * sides[d];
-  return (PetscBool)(Dot(sides, &sides[3]) < VECTORS_WEDGE && Dot(out, &sides[3]) > 0);
+  return (PetscBool)(Dot(sides, &sides[3]) < s->cosine && Dot(out, &sides[3]) > 0);
 }
 
 /* Number of points along an edge of that length. */
@@ -151,8 +150,9 @@ static PetscErrorCode AddPoints(const RidgeSearch *s, const RidgeEdge *edge, con
 PetscErrorCode RidgeSurfaceCreate(ContactSurface tool, ContactSurface other, Geometry geometry, int n_images,
                                   const SurfaceImage *images, ContactSurface *out)
 {
-  const RidgeSearch s     = {tool, other->mean_size, geometry, n_images, images};
-  RidgePoints       ridge = {.n = 0};
+  const PetscReal   cosine = SurfaceFollowsEdges(tool->mesh) ? PetscCosReal(SURFACE_SQUARE) : VECTORS_WEDGE;
+  const RidgeSearch s      = {tool, other->mean_size, cosine, geometry, n_images, images};
+  RidgePoints       ridge  = {.n = 0};
   RidgeEdge        *edges;
   PetscInt          n;
 

@@ -1,4 +1,5 @@
-/* Points along the convex edges of a rigid tool that are sharper than a right angle, its ridges. Contact is measured at
+/* Points along the convex edges of a rigid tool that are sharper than a right angle, its ridges, and on right-angled
+   ones where SurfaceFollowsEdges(). Contact is measured at
    points of the slave, and no such point sees an edge of the tool that stands between them: the edge sinks in until
    points behind it are pressed out along its sides. So these points take part as slave points of a pair of their own,
    whose master is the slave of the tool's pair. They have no unknowns: the motion of the tool is theirs.

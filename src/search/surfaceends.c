@@ -210,6 +210,70 @@ PetscErrorCode SurfaceFindEnds(ContactSurface surface, PetscReal angle, int n_im
 }
 
 /*@
+  SurfaceFollowsEdges - says whether faces of a mesh bend around a right-angled edge that dents them, between their
+  nodes.
+
+  Not collective
+
+  Input Parameter:
+. mesh - the mesh
+
+  Note:
+  Those of second order do in the plane. A rubber pad under a rigid stamp (10 mm wide, 2 mm deep, faces of 0.5 mm) is 2
+% too stiff if its edges press, and 7 % without; of first order it is 5 % and 3 %. In space coarse faces of second order
+  hold a key in a pad 9 % harder if the sides of its edges have terms of their own.
+@*/
+PetscBool SurfaceFollowsEdges(Mesh mesh)
+{
+  return (PetscBool)(mesh->dim == 2 && mesh->order > 1);
+}
+
+/*@
+  SurfaceEdgeLengths - sums up at nodes the lengths of the edges at which a surface turns away by more than an angle, in
+  the plane.
+
+  Collective
+
+  Input Parameters:
++ surface  - a surface of a deformable body, with its free edges
+. geometry - an edge has the length 1, or that round the axis
+. angle    - the angle
+. n_images - number of mirror images
+- images   - of the pair
+
+  Output Parameters:
++ length - length[nodes of the mesh], the same on all ranks that have the node; of edges in planes of symmetry half
+- n      - number of ends of faces that count, on all ranks
+
+  Note:
+  Edges at which the surface ends do not count.
+@*/
+PetscErrorCode SurfaceEdgeLengths(ContactSurface surface, Geometry geometry, PetscReal angle, int n_images,
+                                  const SurfaceImage *images, PetscReal *length, PetscInt *n)
+{
+  const Mesh mesh = surface->mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(length, mesh->n_nodes));
+  PetscCall(SurfaceFindEnds(surface, angle, n_images, images));
+  *n = 0;
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    for (int k = 0; k < 2; k++) {
+      const PetscInt node = surface->faces[f].nodes[k];
+
+      if (!((surface->face_ends[f] & ~surface->faces[f].free_edges) >> k & 1)) continue;
+      length[node] +=
+        geometry == GEOMETRY_AXISYMMETRIC ? PETSC_PI * (mesh->coords[node * mesh->dim] + mesh->centre[0]) : 0.5;
+      (*n)++;
+    }
+  }
+  PetscCall(PetscFree(surface->face_ends));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  PetscCall(MeshSumNodes(mesh, 1, length));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   SurfaceRule - returns the quadrature rule of a face of a surface.
 
   Not collective

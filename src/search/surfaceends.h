@@ -7,6 +7,13 @@
 #include "search/facequadrature.h"
 #include "search/surface.h"
 
+/* Edges at which the surface turns by at least this angle are right-angled or sharper: what meshes round off is less
+   (radians). */
+#define SURFACE_SQUARE (80 * PETSC_PI / 180)
+
 void            SurfaceEdgeFrame(ContactSurface, const Facet *, int edge, PetscReal normal[3], PetscReal out[3]);
+PetscBool       SurfaceFollowsEdges(Mesh);
+PetscErrorCode  SurfaceEdgeLengths(ContactSurface, Geometry, PetscReal angle, int n_images, const SurfaceImage *,
+                                   PetscReal *length, PetscInt *n);
 PetscErrorCode  SurfaceFindEnds(ContactSurface, PetscReal angle, int n_images, const SurfaceImage *);
 const FaceRule *SurfaceRule(ContactSurface, PetscInt face, int finer);

@@ -436,5 +436,9 @@ JOBS = [
     ], steps=12, stiff=["contact.*.friction.stick.slip=0.001"], picture=["--mirror", "x"]),
     # Bodies that lie flush on each other, and no pairs named
     Job("keystone", "stone flush between two walls, no pairs named", [Answer("thrust", 86.212, 0.01, "limit")], steps=12),
+    # Square edges; the stamp's own faces are coarse for them
+    Job("stamp_on_pad", "steel stamp pressed into a rubber pad", [
+        Answer("force", 25.85, 0.4, "limit", tolerance=3.0),
+    ], steps=12),
     Job("tube_in_box", "rubber tube blown up in a box", [Answer("corner", 4.1137, 0.06, "limit")], steps=12),
 ]

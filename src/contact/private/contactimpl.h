@@ -65,7 +65,8 @@ typedef struct {
   ContactSurface      slave, master; /* master NULL: analytic, in scene */
   const MeshTool     *tool;          /* the master or the slave, where its motion has free components; else NULL */
   int                 ridge;         /* number of the pair of its tool's sharp edges; 0: there is none */
-  int                 tool_pair;     /* of such a pair: number of the one with the tool as master */
+  int                 tool_pair;     /* of such a pair: number of the one to which it belongs */
+  PetscReal          *edge_length;   /* of such a pair of a deformable master: of the edges at each node (length) */
   SceneContact        ridge_scene;   /* of such a pair: what the scene would say of it */
   int                 n_images;      /* of the master, for fits and search */
   int             n_mirrors; /* those and the ones beyond planes at which a surface turns sharply, for its corners */
@@ -210,8 +211,10 @@ PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const PetscInt 
                                  ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
 PetscErrorCode ContactPairCreateRidge(Contact, Elasticity, int of, ContactPair *);
+PetscErrorCode ContactPairCreateEdges(Contact, Elasticity, int of, ContactPair *);
 /* contactridge.c */
 PetscBool      ContactIsRidge(const ContactPair *);
+PetscBool      ContactOnTool(const ContactPair *);
 PetscInt       ContactTermTag(const ContactPair *, PetscInt term);
 void           ContactTermPlace(const ContactPair *, PetscInt term, PetscReal X[3]);
 PetscErrorCode ContactRidgeFaces(const ContactPair *, const PetscBool some[], PetscReal *mine);
@@ -226,13 +229,14 @@ PetscErrorCode ContactNodePressures(Contact, int pair, const PetscReal *u, const
                                     const PetscReal *reaction, PetscReal *area, PetscReal *pressure);
 PetscErrorCode ContactPairPressing(const ContactPair *, ContactPressing *);
 /* contactends.c */
-PetscBool      ContactSidesServe(const ContactPair *);
+PetscReal      ContactSidesAngle(const ContactPair *);
 PetscInt       ContactSideAdd(ContactPair *, PetscInt c);
 PetscErrorCode ContactEndsFind(ContactPair *, Scene);
 PetscErrorCode ContactEndsBegin(ContactPair *);
 void           ContactEndsAdd(ContactPair *, PetscInt c, PetscInt n, const ContactCornerFace face[], PetscInt made[]);
 void           ContactEndsPoints(ContactPair *);
 PetscReal      ContactEndDepth(const ContactPair *, PetscInt term);
+PetscErrorCode ContactEdgesBelow(ContactPair *);
 /* contactcorners.c */
 PetscErrorCode ContactCornersAdd(ContactPair *);
 void           ContactCornersTake(const ContactPair *, PetscInt term[]);
