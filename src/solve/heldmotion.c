@@ -131,8 +131,8 @@ PetscErrorCode ModelHoldInColumns(Model model, Mat Z)
 @*/
 PetscBool ModelMayRoll(Model model)
 {
-  return (PetscBool)(model->scene->solver.hold_rolling && model->problem->bodies && !ProblemIsPlastic(model->problem) &&
-                     !ContactHasFriction(model->contact));
+  return (PetscBool)(model->scene->solver.hold_rolling && !model->work->drag.on && model->problem->bodies &&
+                     !ProblemIsPlastic(model->problem) && !ContactHasFriction(model->contact));
 }
 
 /* Decides whether the softest motion is held, as it alone spoils the step y: the rest turns no cell too far. Either the

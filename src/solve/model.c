@@ -72,6 +72,7 @@ static PetscErrorCode ModelClear(Model m)
   PetscCall(VecDestroy(&m->work->relaxed.y));
   PetscCall(VecDestroy(&m->work->shift.lists));
   PetscCall(ModelHeldDestroy(&m->work->hold));
+  PetscCall(ModelDragDestroy(&m->work->drag));
   PetscCall(ContactCycleDestroy(&m->work->watch));
   PetscCall(ExtrapolationDestroy(&m->work->extrapolation));
   PetscCall(EnergyBalanceDestroy(&m->balance));
@@ -337,6 +338,7 @@ PetscErrorCode ModelRestore(Model model)
   PetscCall(PetscArraycpy(model->u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(work->accepted_x, model->x));
   PetscCall(LinearSolverRenew(work->solver)); /* a step that starts from a look-ahead would not do so itself */
+  if (ModelMayDrag(model)) PetscCall(ModelDragStart(model));
   ModelHeldFail(model);
   model->t = work->accepted_t;
   ToolsAccept(model->mesh, model->u, model->t);
