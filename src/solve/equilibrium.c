@@ -745,7 +745,8 @@ static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly
   PetscCall(ModelContactOverdone(model, &overdone));
   PetscCall(ModelRampPenalty(model, PETSC_FALSE, report));
   if (report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
-  if (LosesWay(report->result) && ModelMayDrag(model)) PetscCall(ModelSolveDragged(model, t, report));
+  if ((LosesWay(report->result) || report->result == SOLVE_LISTS) && ModelMayDrag(model))
+    PetscCall(ModelSolveDragged(model, t, report));
   if (overdone && LosesWay(report->result)) PetscCall(ModelSolveSoftly(model, t, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

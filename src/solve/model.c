@@ -338,7 +338,6 @@ PetscErrorCode ModelRestore(Model model)
   PetscCall(PetscArraycpy(model->u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(work->accepted_x, model->x));
   PetscCall(LinearSolverRenew(work->solver)); /* a step that starts from a look-ahead would not do so itself */
-  if (ModelMayDrag(model)) PetscCall(ModelDragStart(model));
   ModelHeldFail(model);
   model->t = work->accepted_t;
   ToolsAccept(model->mesh, model->u, model->t);

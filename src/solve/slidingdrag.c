@@ -133,23 +133,6 @@ PetscErrorCode ModelDragDestroy(SlidingDrag *drag)
 }
 
 /*@
-  ModelMayDrag - says whether springs against sliding may take the place of held motions: a body in space rolls on its
-  own, motions were held in the solve at hand, and a direct solver knows what they are.
-
-  Not collective
-
-  Input Parameter:
-. model - the model
-@*/
-PetscBool ModelMayDrag(Model model)
-{
-  const HeldMotion *held = &model->work->hold;
-
-  return (PetscBool)(model->contact && model->mesh->dim == 3 && !model->work->shift.on && ModelMayRoll(model) &&
-                     (held->wanted || held->released || held->futile));
-}
-
-/*@
   ModelDragStart - lets springs against sliding take the place of held motions, from the next load step to the end of
   the run.
 

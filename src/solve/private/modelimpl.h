@@ -242,12 +242,12 @@ PetscErrorCode ModelHoldInStep(Model, Vec y);
 PetscErrorCode ModelHoldInColumns(Model, Mat Z);
 PetscErrorCode ModelHoldMotion(Model, Vec x, Vec F, Vec y, PetscBool near);
 PetscBool      ModelMayRoll(Model);
+PetscBool      ModelMayDrag(Model);
 PetscErrorCode ModelHeldResidual(Model, Vec F, PetscReal *norm, PetscReal *force);
 PetscErrorCode ModelJudgeHeld(Model, PetscBool *holds);
 void           ModelReleaseHeld(Model);
 /* slidingdrag.c */
 PetscErrorCode ModelDragDestroy(SlidingDrag *);
-PetscBool      ModelMayDrag(Model);
 PetscErrorCode ModelDragStart(Model);
 PetscErrorCode ModelDragBegin(Model);
 PetscErrorCode ModelDragSolve(Model, SolveReport *);
