@@ -108,7 +108,7 @@ static PetscErrorCode MakeRoom(HeldMotion *held, int i, Vec like)
 PetscErrorCode ModelHeldArchive(Model model, Archive archive, const Hdf5Table *nodes)
 {
   HeldMotion *held     = &model->work->hold;
-  PetscInt    accepted = held->accepted, firm = held->firm, dull = held->dull, drags = model->work->drag.on;
+  PetscInt    accepted = held->accepted, firm = held->firm, dull = held->dull;
   PetscReal  *b;
 
   PetscFunctionBeginUser;
@@ -118,10 +118,8 @@ PetscErrorCode ModelHeldArchive(Model model, Archive archive, const Hdf5Table *n
   held->accepted = (int)accepted;
   PetscCall(ArchiveIntegers(archive, "model/held_firmly", 1, &firm));
   PetscCall(ArchiveIntegers(archive, "model/held_moves_futile", 1, &dull));
-  PetscCall(ArchiveIntegers(archive, "model/sliding_drag", 1, &drags));
-  held->firm           = (PetscBool)firm;
-  held->dull           = (PetscBool)dull;
-  model->work->drag.on = (PetscBool)drags;
+  held->firm = (PetscBool)firm;
+  held->dull = (PetscBool)dull;
   PetscCall(PetscCalloc1(model->mesh->n_nodes * model->mesh->dim, &b));
   for (int i = 0; Remain(model) && i < held->accepted; i++) {
     char name[32];

@@ -1,4 +1,5 @@
 /* Springs against sliding, for bodies whose soft motions are more than can be held one by one, see ModelDragSolve(). */
+#include "files/archive.h"
 #include "kernels/elementkernel.h"
 #include "mesh/meshdofs.h"
 #include "modelimpl.h"
@@ -78,11 +79,7 @@ static PetscErrorCode MakeSprings(Model model)
   PetscReal   *weight;
 
   PetscFunctionBeginUser;
-  PetscCall(FluidRestore(model->problem->fluids, model->work->accepted_u, model->work->accepted_t));
   PetscCall(PetscMalloc1(mesh->n_nodes * mesh->dim, &weight));
-  PetscCall(PetscArrayzero(drag->force, mesh->n_nodes));
-  for (int p = 0; p < ContactPairs(model->contact); p++)
-    PetscCall(ContactTermForces(model->contact, p, 0, drag->force));
   for (PetscInt i = 0; i < mesh->n_nodes * mesh->dim; i++) weight[i] = drag->force[i / mesh->dim];
   PetscCall(DofSpringsDestroy(springs));
   PetscCall(DofSpringsCreate(mesh, weight, model->x, springs));
@@ -166,14 +163,61 @@ PetscErrorCode ModelDragBegin(Model model)
 
   PetscFunctionBeginUser;
   if (!drag->on) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!drag->force) {
-    PetscCall(PetscCalloc1(model->mesh->n_nodes, &drag->force));
-    PetscCall(FindLength(model, &drag->length));
-  }
+  if (!drag->force) PetscCall(PetscCalloc1(model->mesh->n_nodes, &drag->force));
+  if (drag->length == 0) PetscCall(FindLength(model, &drag->length));
   PetscCall(MakeSprings(model));
   drag->idle     = 0;
   drag->least    = PETSC_INFINITY;
   drag->friction = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelDragAccept - notes the contact forces of the accepted state, from which springs may be made.
+
+  Collective
+
+  Input Parameter:
+. model - its contact is that of the state, with fluids on wet places alone
+@*/
+PetscErrorCode ModelDragAccept(Model model)
+{
+  SlidingDrag *drag = &model->work->drag;
+
+  PetscFunctionBeginUser;
+  if (!model->contact || model->mesh->dim < 3 || !(drag->on || ModelMayRoll(model))) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!drag->force) PetscCall(PetscCalloc1(model->mesh->n_nodes, &drag->force));
+  PetscCall(PetscArrayzero(drag->force, model->mesh->n_nodes));
+  for (int p = 0; p < ContactPairs(model->contact); p++)
+    PetscCall(ContactTermForces(model->contact, p, 0, drag->force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelDragArchive - saves or loads whether there are springs, and the contact forces of the accepted state.
+
+  Collective
+
+  Input Parameters:
++ model   - between two steps
+. archive - decides whether they are saved or loaded
+- nodes   - rows of the mesh's nodes
+@*/
+PetscErrorCode ModelDragArchive(Model model, Archive archive, const Hdf5Table *nodes)
+{
+  SlidingDrag *drag = &model->work->drag;
+  PetscInt     on   = drag->on;
+  PetscMPIInt  rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &rank));
+  PetscCall(ArchiveIntegers(archive, "model/sliding_drag", 1, &on));
+  drag->on = (PetscBool)on;
+  if (!model->contact || model->mesh->dim < 3 || !(drag->on || ModelMayRoll(model))) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!drag->force) PetscCall(PetscCalloc1(model->mesh->n_nodes, &drag->force));
+  PetscCall(ArchiveRows(archive, "model/contact_force", nodes, 1, drag->force));
+  for (PetscInt i = 0; i < model->mesh->n_nodes; i++)
+    if (model->mesh->node_owner[i] != rank) drag->force[i] = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

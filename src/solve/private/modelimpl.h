@@ -250,6 +250,8 @@ void           ModelReleaseHeld(Model);
 PetscErrorCode ModelDragDestroy(SlidingDrag *);
 PetscErrorCode ModelDragStart(Model);
 PetscErrorCode ModelDragBegin(Model);
+PetscErrorCode ModelDragAccept(Model);
+PetscErrorCode ModelDragArchive(Model, Archive, const Hdf5Table *nodes);
 PetscErrorCode ModelDragSolve(Model, SolveReport *);
 /* linearcontact.c */
 PetscErrorCode ModelResidualAt(Model, Vec x, PetscBool *ok, PetscReal *norm);
