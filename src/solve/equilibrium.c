@@ -204,6 +204,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscFunctionBeginUser;
   PetscCall(ElasticityRestore(model->problem->elasticity));
   if (model->contact) PetscCall(ContactRestore(model->contact));
+  PetscCall(ModelDragBegin(model));
   PetscCall(FluidBegin(model->problem->fluids, work->accepted_u, t));
   PetscCall(ModelSettle(model, t));
   PetscCall(ContactSpringsRelax(model->problem->springs, work->accepted_x));
@@ -366,7 +367,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     work->left   = PETSC_FALSE;
     work->nearly = -1;
     before       = report->newton;
-    PetscCall(ModelNewton(model, report));
+    PetscCall(ModelDragSolve(model, report));
     work->begun = 0;
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     work->renewed += work->left;
@@ -708,6 +709,20 @@ static PetscErrorCode ModelSolveSoftly(Model model, PetscReal t, SolveReport *re
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds the first solution of a load step to t from the accepted state once more, with springs against sliding instead
+   of held motions. */
+static PetscErrorCode ModelSolveDragged(Model model, PetscReal t, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  report->result = SOLVE_CONVERGED;
+  PetscCall(ModelDragStart(model));
+  PetscCall(ModelDepart(model, t));
+  PetscCall(ModelStart(model, report));
+  if (SolveHasNotBegun(report->result)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelSolveHeld(model, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Finds the first solution of a load step to t from the accepted state. */
 static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly, SolveReport *report)
 {
@@ -730,6 +745,8 @@ static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly
   PetscCall(ModelContactOverdone(model, &overdone));
   PetscCall(ModelRampPenalty(model, PETSC_FALSE, report));
   if (report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
+  if ((LosesWay(report->result) || report->result == SOLVE_LISTS) && ModelMayDrag(model))
+    PetscCall(ModelSolveDragged(model, t, report));
   if (overdone && LosesWay(report->result)) PetscCall(ModelSolveSoftly(model, t, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -740,8 +757,8 @@ static PetscErrorCode ModelEndSolve(Model model, SolveReport *report)
   PetscFunctionBeginUser;
   PetscCall(ModelJudgeTurn(model, report));
   report->cycles   = model->work->cycles;
-  report->motions  = model->work->hold.wanted;
-  report->friction = model->work->hold.wanted ? model->work->hold.friction : 0;
+  report->motions  = model->work->drag.on ? 1 : model->work->hold.wanted;
+  report->friction = model->work->hold.wanted ? model->work->hold.friction : model->work->drag.friction;
   PetscCall(PetscStrncpy(report->cycle, model->work->cycle, sizeof(report->cycle)));
   if (report->result != SOLVE_CONVERGED) {
     PetscCall(ModelExplainFailure(model, report));

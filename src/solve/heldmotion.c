@@ -131,8 +131,25 @@ PetscErrorCode ModelHoldInColumns(Model model, Mat Z)
 @*/
 PetscBool ModelMayRoll(Model model)
 {
-  return (PetscBool)(model->scene->solver.hold_rolling && model->problem->bodies && !ProblemIsPlastic(model->problem) &&
-                     !ContactHasFriction(model->contact));
+  return (PetscBool)(model->scene->solver.hold_rolling && !model->work->drag.on && model->problem->bodies &&
+                     !ProblemIsPlastic(model->problem) && !ContactHasFriction(model->contact));
+}
+
+/*@
+  ModelMayDrag - says whether springs against sliding may take the place of held motions: a body in space rolls on its
+  own, motions were held in the solve at hand, and a direct solver knows what they are.
+
+  Not collective
+
+  Input Parameter:
+. model - the model
+@*/
+PetscBool ModelMayDrag(Model model)
+{
+  const HeldMotion *held = &model->work->hold;
+
+  return (PetscBool)(model->contact && model->mesh->dim == 3 && !model->work->shift.on && ModelMayRoll(model) &&
+                     (held->wanted || held->released || held->futile));
 }
 
 /* Decides whether the softest motion is held, as it alone spoils the step y: the rest turns no cell too far. Either the

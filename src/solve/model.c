@@ -72,6 +72,7 @@ static PetscErrorCode ModelClear(Model m)
   PetscCall(VecDestroy(&m->work->relaxed.y));
   PetscCall(VecDestroy(&m->work->shift.lists));
   PetscCall(ModelHeldDestroy(&m->work->hold));
+  PetscCall(ModelDragDestroy(&m->work->drag));
   PetscCall(ContactCycleDestroy(&m->work->watch));
   PetscCall(ExtrapolationDestroy(&m->work->extrapolation));
   PetscCall(EnergyBalanceDestroy(&m->balance));
@@ -280,6 +281,7 @@ PetscErrorCode ModelAccept(Model model)
     PetscCall(FluidSettle(model->problem->fluids, model->u, model->t));
     PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   }
+  PetscCall(ModelDragAccept(model));
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);
   model->problem->force_so_far = ProblemForceScale(model->problem);
@@ -408,6 +410,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscCall(ArchiveRows(archive, "model/displacement", &nodes, mesh->dim, work->accepted_u));
   if (work->extrapolation) PetscCall(ExtrapolationArchive(work->extrapolation, archive, &nodes, work->accepted_u));
   PetscCall(ModelHeldArchive(model, archive, &nodes));
+  PetscCall(ModelDragArchive(model, archive, &nodes));
   PetscCall(Hdf5TableDestroy(&nodes));
   PetscCall(ArchiveReals(archive, "model/t", 1, &work->accepted_t));
   PetscCall(ArchiveReals(archive, "model/rate", 1, &work->rate));

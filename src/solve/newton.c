@@ -377,6 +377,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   else if (model->contact)
     PetscCall(ModelLeaveLists(model, reason));
   if (model->contact && !*reason) PetscCall(ModelBreakCycle(model, fnorm, reason));
+  if (it > 0 && !*reason && model->work->hold.futile && ModelMayDrag(model)) *reason = SNES_DIVERGED_LINE_SEARCH;
   if (it > 0 && !*reason && !model->work->shift.on) PetscCall(ModelStopCrawl(model, reason));
   if (it > 0 && !*reason && !model->work->shift.on) PetscCall(ModelStopUnstable(model, reason));
   if (!*reason && !model->work->shift.on) PetscCall(ModelStopStall(model, it, snorm, fnorm, reason));

@@ -91,6 +91,7 @@ PetscErrorCode ProblemDestroy(Problem *problem)
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DofSpringsDestroy(&p->damping));
+  PetscCall(DofSpringsDestroy(&p->drag));
   PetscCall(ContactSpringsDestroy(&p->springs));
   PetscCall(FreeBodiesDestroy(&p->bodies));
   PetscCall(FluidDestroy(&p->fluids));
@@ -208,6 +209,7 @@ PetscErrorCode ProblemCollectResidual(Problem problem, Vec x, Vec F)
   PetscCall(MeshLocalToGlobal(problem->mesh, problem->f, F));
   PetscCall(ContactSpringsResidual(problem->springs, x, F));
   PetscCall(DofSpringsResidual(problem->damping, x, F));
+  PetscCall(DofSpringsResidual(problem->drag, x, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -350,7 +352,10 @@ PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const StressR
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(ContactSpringsTangent(problem->springs, problem->P));
   PetscCall(DofSpringsTangent(problem->damping, problem->P));
-  if (problem->tied || DofSpringsChanged(problem->damping)) change->pattern = PETSC_TRUE; /* no earlier factor serves */
+  PetscCall(DofSpringsTangent(problem->drag, problem->P));
+  if (problem->tied) change->pattern = PETSC_TRUE; /* no earlier factor serves */
+  if (DofSpringsChanged(problem->damping)) change->pattern = PETSC_TRUE;
+  if (DofSpringsChanged(problem->drag)) change->pattern = PETSC_TRUE;
   problem->tied = PETSC_FALSE;
   if (!joined) PetscCall(SumOperatorSet(problem->A, change->C));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -57,6 +57,7 @@ typedef struct _n_Problem {
   FreeBodies     bodies;  /* that contact is to hold; NULL: there are none */
   ContactSprings springs; /* of these bodies; NULL: there are none */
   DofSprings     damping; /* of solves with shifted tangents; NULL: there was none yet */
+  DofSprings     drag;    /* against sliding; NULL: there was none yet */
   PetscBool      tied;    /* other motions are tied than in the last tangent */
   TangentForm    form;
   Mat            A;            /* K + C */

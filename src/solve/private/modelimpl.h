@@ -102,6 +102,16 @@ typedef struct {
   PetscReal friction;              /* coefficient of friction that would hold them at the last solution */
 } HeldMotion;
 
+/* Springs against sliding, see ModelDragSolve(). */
+typedef struct {
+  PetscBool  on;       /* they take the place of held motions */
+  PetscReal  length;   /* over which they have the contact force */
+  PetscReal *force;    /* n_nodes: contact force by which the spring at a node is stiff; of terms of this rank */
+  PetscReal  friction; /* coefficient of friction that would do as much work, at the last solution */
+  PetscReal  least;    /* the same, after the last solution that lowered it much in this load step */
+  PetscInt   idle;     /* solutions since then */
+} SlidingDrag;
+
 typedef struct _n_ModelWork {
   LinearSolver   solver;
   PetscBool      ordered;       /* the linear solver has chosen the order of its unknowns */
@@ -171,6 +181,7 @@ typedef struct _n_ModelWork {
   RelaxedStep relaxed;
   ShiftedStep shift;
   HeldMotion  hold;
+  SlidingDrag drag;
   PetscReal   norms[LINE_MEMORY]; /* residuals of the last iterates, where there is friction */
   PetscBool   stalled;            /* with friction: the last LINE_MEMORY iterations have hardly lowered the residual */
   PetscBool   soft;               /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
@@ -231,9 +242,17 @@ PetscErrorCode ModelHoldInStep(Model, Vec y);
 PetscErrorCode ModelHoldInColumns(Model, Mat Z);
 PetscErrorCode ModelHoldMotion(Model, Vec x, Vec F, Vec y, PetscBool near);
 PetscBool      ModelMayRoll(Model);
+PetscBool      ModelMayDrag(Model);
 PetscErrorCode ModelHeldResidual(Model, Vec F, PetscReal *norm, PetscReal *force);
 PetscErrorCode ModelJudgeHeld(Model, PetscBool *holds);
 void           ModelReleaseHeld(Model);
+/* slidingdrag.c */
+PetscErrorCode ModelDragDestroy(SlidingDrag *);
+PetscErrorCode ModelDragStart(Model);
+PetscErrorCode ModelDragBegin(Model);
+PetscErrorCode ModelDragAccept(Model);
+PetscErrorCode ModelDragArchive(Model, Archive, const Hdf5Table *nodes);
+PetscErrorCode ModelDragSolve(Model, SolveReport *);
 /* linearcontact.c */
 PetscErrorCode ModelResidualAt(Model, Vec x, PetscBool *ok, PetscReal *norm);
 PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
