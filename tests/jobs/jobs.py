@@ -218,7 +218,7 @@ JOBS = [
         Answer("on_land", -3194.6, 0.01, "limit"),
     ], steps=10, pairs=2),
     Job("hose_clamp", "band clamp tightened around a hose", [
-        Answer("pull", -18.44, 1.2, "limit"),
+        Answer("pull", -18.017, 0.3, "limit"),
     ], steps=12, pairs=2, picture=["--mirror", "x"]),
     Job("lip_inverted", "wiper lip turned inside out", [
         Answer("radial", -12.044, 0.8, "limit"),
