@@ -217,7 +217,8 @@ PetscErrorCode ModelDragAccept(Model model)
 - nodes   - rows of the mesh's nodes
 
   Note:
-  Older files do not have them. Springs then wait for the next accepted state.
+  Older files do not have them, nor do states in which supports held what only contact holds from then on. Springs then
+  wait for the next accepted state.
 @*/
 PetscErrorCode ModelDragArchive(Model model, Archive archive, const Hdf5Table *nodes)
 {
@@ -233,7 +234,10 @@ PetscErrorCode ModelDragArchive(Model model, Archive archive, const Hdf5Table *n
   PetscCall(ArchiveIntegers(archive, "model/sliding_drag", 1, &on));
   drag->on = (PetscBool)on;
   if (!model->contact || model->mesh->dim < 3 || !(drag->on || ModelMayRoll(model))) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, "model/contact_force", &there));
+  if (!there) PetscFunctionReturn(PETSC_SUCCESS);
   if (!drag->force) PetscCall(PetscCalloc1(model->mesh->n_nodes, &drag->force));
+  if (!ArchiveLoads(archive)) PetscCall(MeshSumNodes(model->mesh, 1, drag->force)); /* rows are alike on all ranks */
   PetscCall(ArchiveRows(archive, "model/contact_force", nodes, 1, drag->force));
   for (PetscInt i = 0; i < model->mesh->n_nodes; i++)
     if (model->mesh->node_owner[i] != rank) drag->force[i] = 0;
