@@ -311,7 +311,7 @@ static void TakeFound(unsigned long long *words, int first, int last, int max, i
 @*/
 int BoxTreeNear(BoxTree tree, const double *point, double radius, int max, int *found)
 {
-  return BoxTreeNearing(tree, point, &(BoxTreeWay){NULL, 0, 0}, radius, max, found);
+  return BoxTreeNearing(tree, point, &(BoxTreeWay){NULL, 0, 0, 0}, radius, max, found);
 }
 
 /*@
@@ -349,7 +349,7 @@ static double Approach(BoxTree tree, int node, const BoxTreeWay *way)
 
     square += d * d;
   }
-  return Smaller(way->most, way->ahead * sqrt(square));
+  return Smaller(way->most, way->ahead * sqrt(square) + way->aside);
 }
 
 /* May a point and a box below a node come within reach of each other? */

@@ -30,6 +30,7 @@ typedef struct {
 typedef struct {
   const double *way;   /* [dim] how far the point has moved (length); NULL: nothing is known of that */
   double        ahead; /* so many times as far may the point and a box move on against each other, */
+  double        aside; /* and by this besides (length), */
   double        most;  /* but no farther than this (length), which counts for all boxes where nothing is known */
 } BoxTreeWay;
 

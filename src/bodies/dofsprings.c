@@ -32,8 +32,9 @@ PetscErrorCode DofSpringsCreate(Mesh mesh, const PetscReal *weight, Vec like, Do
   PetscCall(VecDuplicate(like, &s->work));
   PetscCall(VecZeroEntries(s->anchor));
   PetscCall(MeshLocalToGlobal(mesh, weight, s->weight));
-  s->scale = 1;
-  *out     = s;
+  s->scale   = 1;
+  s->changed = PETSC_TRUE;
+  *out       = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

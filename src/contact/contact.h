@@ -167,7 +167,8 @@ PetscErrorCode ContactRoundOff(Contact, PetscReal *force);
 /* Work from outside and energy in contact */
 const Motion  *ContactPairMotion(Contact, int pair);
 void           ContactWatchTools(Contact, PetscReal *hold);
-PetscErrorCode ContactStored(Contact, PetscReal t_0, PetscBool moved, PetscReal *stored, PetscReal *given);
+PetscErrorCode ContactStored(Contact, PetscReal t_0, const PetscReal *du, PetscBool moved, PetscReal *stored,
+                             PetscReal *given);
 /* Tangent */
 PetscErrorCode ContactKeepFactors(Contact);
 void           ContactForgetForeseen(Contact);

@@ -430,22 +430,58 @@ static PetscErrorCode NoteGathered(Contact contact, const PetscReal *u, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells all searches from where the bodies came to a state. u_before NULL: nothing is known of it. */
-static PetscErrorCode TellBefore(Contact contact, const PetscReal *u_before, PetscReal t_before, const PetscReal *u)
+/* Finds the largest displacement of a node (length), from u_before if that is not NULL, over all ranks. */
+static PetscErrorCode LargestMotion(Mesh mesh, const PetscReal *u, const PetscReal *u_before, PetscReal *motion)
 {
-  const int dim  = contact->mesh->dim;
+  const int dim = mesh->dim;
+
+  PetscFunctionBeginUser;
+  *motion = 0;
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
+    PetscReal square = 0;
+
+    for (int d = 0; d < dim; d++) square += PetscSqr(u[i * dim + d] - (u_before ? u_before[i * dim + d] : 0));
+    *motion = PetscMax(*motion, square);
+  }
+  *motion = PetscSqrtReal(*motion);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, motion, 1, MPIU_REAL, MPIU_MAX, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds by how much prescribed displacements, on from the last ContactGather() to t_next, leave the way there (length,
+   the same on all ranks). The bodies may do the same. */
+static PetscErrorCode FindAside(Contact contact, PetscReal t_next, PetscReal *aside)
+{
+  const PetscInt   n = contact->mesh->n_nodes * contact->mesh->dim;
+  const PetscReal *u = contact->u_gathered, *before = contact->u_before;
+  const PetscReal  since = contact->t_gathered - contact->t_before, ahead = (t_next - contact->t_gathered) / since;
+  PetscReal       *next;
+
+  PetscFunctionBeginUser;
+  *aside = 0;
+  if (!before || t_next == contact->t_gathered) PetscFunctionReturn(PETSC_SUCCESS);
+  *aside = PETSC_INFINITY;
+  if (!(since > 0)) PetscFunctionReturn(PETSC_SUCCESS); /* bodies were moved where the load stood still */
+  PetscCall(PetscMalloc1(n, &next));
+  PetscCall(PetscArraycpy(next, u, n));
+  PetscCall(LoadsPrescribe(contact->loads, t_next, next));
+  for (PetscInt i = 0; i < n; i++)
+    next[i] = LoadsPrescribed(contact->loads, i) ? next[i] - u[i] - ahead * (u[i] - before[i]) : 0;
+  PetscCall(LargestMotion(contact->mesh, next, NULL, aside));
+  PetscCall(PetscFree(next));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells all searches from where the bodies came to a state. u_before NULL: nothing is known of it. aside: by how much
+   prescribed displacements leave the way. */
+static PetscErrorCode TellBefore(Contact contact, const PetscReal *u_before, PetscReal t_before, const PetscReal *u,
+                                 PetscReal aside)
+{
   PetscReal size = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < contact->mesh->n_nodes && u_before; i++) {
-    PetscReal square = 0;
-
-    for (int d = 0; d < dim; d++) square += PetscSqr(u[i * dim + d] - u_before[i * dim + d]);
-    size = PetscMax(size, square);
-  }
-  size = PetscSqrtReal(size);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
-  for (int p = 0; p < contact->n_pairs; p++) SearchSetBefore(contact->pairs[p].search, u_before, t_before, size);
+  if (u_before) PetscCall(LargestMotion(contact->mesh, u, u_before, &size));
+  for (int p = 0; p < contact->n_pairs; p++) SearchSetBefore(contact->pairs[p].search, u_before, t_before, size, aside);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -467,11 +503,13 @@ static PetscErrorCode TellBefore(Contact contact, const PetscReal *u_before, Pet
 @*/
 PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion)
 {
+  PetscReal aside;
   PetscBool again;
 
   PetscFunctionBeginUser;
   PetscCall(NoteGathered(contact, u, t, &again));
-  PetscCall(TellBefore(contact, contact->u_before, contact->t_before, u));
+  PetscCall(FindAside(contact, t_next, &aside));
+  PetscCall(TellBefore(contact, contact->u_before, contact->t_before, u, aside));
   contact->u_begun = u;
   contact->t_begun = t;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
@@ -485,6 +523,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscCall(PairTakeOffsets(pair, u, t, needed, PETSC_TRUE));
     if (pair->slave_offsets) PetscCall(PetscLogEventEnd(contact->event_offset, 0, 0, 0, 0));
     PetscCall(PairFree(pair, &changed));
+    changed = (PetscBool)(changed || SearchLeavesWay(pair->search));
     if (again && !changed) PetscCall(PairBeginsAgain(pair, u, t, needed, &serve));
     if (!serve) PetscCall(PairListsServe(pair, u, t, needed, changed, &serve));
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
@@ -857,7 +896,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
 {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
-  PetscCall(TellBefore(contact, contact->u_gathered, contact->t_gathered, u));
+  PetscCall(TellBefore(contact, contact->u_gathered, contact->t_gathered, u, 0));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = motion;
@@ -908,7 +947,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   PetscCall(LargestPressure(contact, t, &most));
-  PetscCall(TellBefore(contact, contact->u_gathered, contact->t_gathered, u));
+  PetscCall(TellBefore(contact, contact->u_gathered, contact->t_gathered, u, 0));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = next;

@@ -78,6 +78,7 @@ typedef struct {
   PetscReal stored, given;
   PetscReal lets_go, touches; /* parts of given where the whole pair is open at the end of the step, at its start */
   PetscReal pressed[2];       /* terms that press: in the accepted state, now */
+  PetscReal far;              /* terms that press now and were too far away in the accepted state to have a gap there */
 } PairEnergy;
 
 /* Adds those of a term's normal pressure. Between the accepted state and the present one the trapezoidal rule gives
@@ -99,6 +100,7 @@ static void AddPressure(const ContactPair *pair, PetscInt c, PetscReal t_0, Pair
     pair->law->evaluate(accepted->gap[c], &before, &then);
   held = PetscSqr(PetscMax(now.multiplier, 0)) / (2 * now.penalty);
   if (value.pressure > 0) energy->stored += area * (value.psi - held);
+  energy->far += PetscIsNanReal(accepted->gap[c]) && value.pressure > 0;
   if (PetscIsNanReal(accepted->gap[c])) return;
   energy->pressed[0] += then.pressure > 0;
   energy->pressed[1] += value.pressure > 0;
@@ -108,6 +110,43 @@ static void AddPressure(const ContactPair *pair, PetscInt c, PetscReal t_0, Pair
   energy->given += area * (value.pressure + then.pressure) / 2 * (LawOnsetGap(&now) - LawOnsetGap(&before));
   energy->given += area * value.pressure * then.pressure / 2 * (1 / before.penalty - 1 / now.penalty);
   energy->given -= area * (held - PetscSqr(PetscMax(before.multiplier, 0)) / (2 * before.penalty));
+}
+
+/* Adds to what touches the part of a term that was too far away in the accepted state to have a gap there: its opening
+   then follows from the way of the nodes since. */
+static PetscErrorCode AddFar(const ContactPair *pair, PetscInt c, PetscReal t_0, const PetscReal *way,
+                             PairEnergy *energy)
+{
+  const LawState before = ContactTermStateIn(pair, c, &pair->accepted, t_0, PETSC_MAX_REAL);
+  LawValue       value;
+  PetscReal      area, gap, part, closed = 0;
+
+  PetscFunctionBeginUser;
+  ContactTermLaw(pair, c, pair->t, &value, &gap, &area);
+  if (!PetscIsNanReal(pair->accepted.gap[c]) || !(value.pressure > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt q = pair->term_point[k];
+
+    if (PetscIsNanReal(pair->point_gap[q])) continue;
+    PetscCall(ContactVariationsAlong(pair, q, way, &part));
+    closed -= pair->term_weight[k] * pair->factor[q] * part;
+  }
+  energy->touches -= value.pressure / 2 * (closed + area * (gap - LawOnsetGap(&before)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds what AddFar() does for all terms of a pair. The part of this rank is in energy->touches alone. */
+static PetscErrorCode PairAddFar(Contact contact, ContactPair *pair, PetscReal t_0, const PetscReal *du,
+                                 PairEnergy *energy)
+{
+  PetscReal *way;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(pair->lists->n_nodes * contact->mesh->dim, &way));
+  PetscCall(ContactPairMove(contact, pair, du, t_0, pair->t, way));
+  for (PetscInt c = 0; c < pair->n; c++) PetscCall(AddFar(pair, c, t_0, way, energy));
+  PetscCall(PetscFree(way));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Adds those of a term's elastic slip, which begins a step as what the accepted penalty made of it. The tractions less
@@ -142,6 +181,7 @@ static void AddElasticSlip(const ContactPair *pair, PetscInt c, PairEnergy *ener
   Input Parameters:
 + contact - the contact, after ContactResidual() with forces and before ContactAccept()
 . t_0     - load parameter of the accepted state
+. du      - local displacements since then, du[n_nodes*dim] (length)
 - moved   - bodies were moved since then, so that its gaps are not those at which the step began
 
   Output Parameters:
@@ -152,13 +192,14 @@ static void AddElasticSlip(const ContactPair *pair, PetscInt c, PairEnergy *ener
   Note:
   Where a penalty is raised, bodies that overlapped are pushed apart by twice the energy that the penetrations lose.
 @*/
-PetscErrorCode ContactStored(Contact contact, PetscReal t_0, PetscBool moved, PetscReal *stored, PetscReal *given)
+PetscErrorCode ContactStored(Contact contact, PetscReal t_0, const PetscReal *du, PetscBool moved, PetscReal *stored,
+                             PetscReal *given)
 {
   PetscFunctionBeginUser;
   *stored = *given = 0;
   for (int p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair   = &contact->pairs[p];
-    PairEnergy         energy = {.stored = 0};
+    ContactPair *pair   = &contact->pairs[p];
+    PairEnergy   energy = {.stored = 0}, far = {.stored = 0};
 
     for (PetscInt c = 0; c < pair->n; c++) {
       AddPressure(pair, c, t_0, &energy);
@@ -169,7 +210,10 @@ PetscErrorCode ContactStored(Contact contact, PetscReal t_0, PetscBool moved, Pe
     *stored += energy.stored;
     *given += energy.given;
     if (energy.pressed[1] == 0) *given += energy.lets_go;
-    if (energy.pressed[0] == 0 && !moved) *given += energy.touches;
+    if (energy.pressed[0] > 0 || moved) continue;
+    if (energy.far > 0) PetscCall(PairAddFar(contact, pair, t_0, du, &far));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &far.touches, 1, MPIU_REAL, MPI_SUM, contact->mesh->comm));
+    *given += energy.touches + far.touches;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

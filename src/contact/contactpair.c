@@ -504,6 +504,21 @@ static SceneContact RidgeScene(const SceneContact *of)
   return ridge;
 }
 
+/* Gives a pair of the sharp edges of the master of another one what it has from that. */
+static void PairBeginRidge(Contact contact, int of, ContactPair *pair)
+{
+  const ContactPair *first = &contact->pairs[of];
+
+  pair->tool_pair   = of;
+  pair->ridge_scene = RidgeScene(first->scene);
+  pair->mesh        = contact->mesh;
+  pair->scene       = &pair->ridge_scene;
+  pair->facets      = &Smoother_Facet;
+  pair->smoother    = Smoothers[pair->ridge_scene.smoother];
+  pair->law         = first->law;
+  pair->geometry    = contact->scene->geometry;
+}
+
 /*@
   ContactPairCreateRidge - creates a pair of the sharp edges of a tool and the slave of the tool's pair, without lists.
 
@@ -527,17 +542,11 @@ PetscErrorCode ContactPairCreateRidge(Contact contact, Elasticity elasticity, in
   PetscCall(
     RidgeSurfaceCreate(tool->master, tool->slave, scene->geometry, tool->n_mirrors, tool->mirrors, &pair->slave));
   if (!pair->slave) PetscFunctionReturn(PETSC_SUCCESS);
-  pair->tool_pair   = of;
-  pair->ridge_scene = RidgeScene(tool->scene);
-  pair->mesh        = mesh;
-  pair->scene       = &pair->ridge_scene;
-  pair->tool        = tool->tool;
-  pair->facets      = &Smoother_Facet;
+  PairBeginRidge(contact, of, pair);
+  pair->tool = tool->tool;
   /* Tools with unknowns take their part of a gap from motions of slave and tool as one body, in which frames of fits on
      the slave do not turn. */
-  pair->smoother  = pair->tool ? pair->facets : Smoothers[pair->ridge_scene.smoother];
-  pair->law       = tool->law;
-  pair->geometry  = scene->geometry;
+  if (pair->tool) pair->smoother = pair->facets;
   pair->n_images  = tool->n_images;
   pair->n_mirrors = tool->n_mirrors;
   PetscCall(PetscArraycpy(pair->images, tool->images, SURFACE_MAX_IMAGES));
@@ -579,14 +588,7 @@ PetscErrorCode ContactPairCreateEdges(Contact contact, Elasticity elasticity, in
     PetscCall(PetscFree(pair->edge_length));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  pair->tool_pair   = of;
-  pair->ridge_scene = RidgeScene(first->scene);
-  pair->mesh        = mesh;
-  pair->scene       = &pair->ridge_scene;
-  pair->facets      = &Smoother_Facet;
-  pair->smoother    = Smoothers[pair->ridge_scene.smoother];
-  pair->law         = first->law;
-  pair->geometry    = scene->geometry;
+  PairBeginRidge(contact, of, pair);
   PairSetFormulation(scene, mesh->order, pair);
   pair->fit = PairFitSettings(scene, pair, mesh->order);
   PetscCall(

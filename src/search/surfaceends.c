@@ -219,9 +219,9 @@ PetscErrorCode SurfaceFindEnds(ContactSurface surface, PetscReal angle, int n_im
 . mesh - the mesh
 
   Note:
-  Those of second order do in the plane. A rubber pad under a rigid stamp (10 mm wide, 2 mm deep, faces of 0.5 mm) is 2
-% too stiff if its edges press, and 7 % without; of first order it is 5 % and 3 %. In space coarse faces of second order
-  hold a key in a pad 9 % harder if the sides of its edges have terms of their own.
+  Those of second order do in the plane. A rubber pad under a rigid stamp (10 mm wide, 2 mm deep, faces of 0.5 mm) is
+  too stiff by 2 % if its edges press, and by 7 % without; of first order by 5 % and 3 %. In space coarse faces of second
+  order hold a key in a pad 9 % harder if the sides of its edges have terms of their own.
 @*/
 PetscBool SurfaceFollowsEdges(Mesh mesh)
 {

@@ -5,6 +5,13 @@
    for one and a half times the motion that is expected, and a step may be twice as long as the one before it. */
 #define WAY_AHEAD 3
 
+/* May lists follow from the way of the bodies? The nodes of a rigid tool that is the master are not followed, nor is
+   what prescribes the motion of a tool whose edges are slave points. */
+static PetscBool FollowsWay(ContactSearch s)
+{
+  return (PetscBool)(s->before.u && s->master && !s->master->rigid && !s->tool && !s->slaves->surface->ridge.n);
+}
+
 /*@
   SearchSetBefore - says from where the bodies came to the state of the next lists, so that these hold only what can
   come near a slave point if all of them go on in this way.
@@ -12,19 +19,34 @@
   Not collective
 
   Input Parameters:
-+ s    - the search
-. u    - local displacements u[mesh n_nodes*dim] before (length), ghosts included; borrowed, read by each search; NULL:
-         nothing is known
-. t    - load parameter before
-- size - largest displacement of a node since (length), over all ranks
++ s     - the search
+. u     - local displacements u[mesh n_nodes*dim] before (length), ghosts included; borrowed, read by each search; NULL:
+          nothing is known
+. t     - load parameter before
+. size  - largest displacement of a node since (length), over all ranks
+- aside - by so much prescribed displacements leave this way (length), over all ranks
 
   Note:
   A search at the end of the way sees every facet that a slave point may have met on it: where both met, the facet is
   not farther away than they have moved against each other.
 @*/
-void SearchSetBefore(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal size)
+void SearchSetBefore(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal size, PetscReal aside)
 {
-  s->before = (SearchBefore){.u = u, .t = t, .size = size};
+  s->before = (SearchBefore){.u = u, .t = t, .size = size, .aside = aside};
+}
+
+/*@
+  SearchLeavesWay - says whether prescribed displacements leave the way before by more than the reach. Lists that were
+  made without them then serve no more.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. s - the search
+@*/
+PetscBool SearchLeavesWay(ContactSearch s)
+{
+  return (PetscBool)(FollowsWay(s) && s->before.aside > s->reach);
 }
 
 /*@
@@ -40,7 +62,7 @@ void SearchSetBefore(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal
 
   Note:
   The slave points stand at (u, t) afterwards. A motion that is less than the reach counts for all facets: lists are
-  hardly longer for it. The nodes of a rigid tool that is the master are not followed.
+  hardly longer for it.
 @*/
 PetscErrorCode WayBegin(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion)
 {
@@ -50,8 +72,7 @@ PetscErrorCode WayBegin(ContactSearch s, const PetscReal *u, PetscReal t, PetscR
   PetscFunctionBeginUser;
   before->motion = motion;
   before->ahead  = before->size > 0 ? motion / before->size : PETSC_INFINITY;
-  before->known  = (PetscBool)(before->u && s->master && !s->master->rigid && !s->tool && motion > s->reach &&
-                              before->ahead <= WAY_AHEAD);
+  before->known  = (PetscBool)(FollowsWay(s) && motion > s->reach && before->ahead <= WAY_AHEAD);
   if (before->known) {
     PetscCall(PetscMalloc1(s->slaves->n * dim, &before->way));
     ToolsPlace(s->mesh, before->u, before->t);
@@ -98,7 +119,8 @@ BoxTreeWay WayOf(ContactSearch s, PetscInt q)
 {
   const SearchBefore *before = &s->before;
 
-  return (BoxTreeWay){before->known ? &before->way[q * s->mesh->dim] : NULL, before->ahead, before->motion};
+  return (BoxTreeWay){before->known ? &before->way[q * s->mesh->dim] : NULL, before->ahead, before->aside,
+                      before->motion};
 }
 
 /*@
@@ -119,5 +141,5 @@ PetscReal WayApproach(const Nearest *look, const Candidate *c)
   if (!way->way) return way->most;
   for (int d = 0; d < look->lists->dim; d++)
     square += PetscSqr(PetscMax(way->way[d] - c->way_lower[d], c->way_upper[d] - way->way[d]));
-  return PetscMin(way->most, way->ahead * PetscSqrtReal(square));
+  return PetscMin(way->most, way->ahead * PetscSqrtReal(square) + way->aside);
 }

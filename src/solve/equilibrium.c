@@ -723,6 +723,17 @@ static PetscErrorCode ModelSolveDragged(Model model, PetscReal t, SolveReport *r
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Solves on until lists hold and springs hold little. Where that finds no way, the load step to t begins once more with
+   springs against sliding, if held motions may give way to them. */
+static PetscErrorCode ModelSolveOn(Model model, PetscReal t, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  if (report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
+  if ((LosesWay(report->result) || report->result == SOLVE_LISTS) && ModelMayDrag(model))
+    PetscCall(ModelSolveDragged(model, t, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Finds the first solution of a load step to t from the accepted state. */
 static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly, SolveReport *report)
 {
@@ -744,9 +755,7 @@ static PetscErrorCode ModelSolveFirst(Model model, PetscReal t, PetscBool slowly
   if (SolveHasNotBegun(report->result)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelContactOverdone(model, &overdone));
   PetscCall(ModelRampPenalty(model, PETSC_FALSE, report));
-  if (report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
-  if ((LosesWay(report->result) || report->result == SOLVE_LISTS) && ModelMayDrag(model))
-    PetscCall(ModelSolveDragged(model, t, report));
+  PetscCall(ModelSolveOn(model, t, report));
   if (overdone && LosesWay(report->result)) PetscCall(ModelSolveSoftly(model, t, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -810,7 +819,7 @@ static PetscErrorCode ModelSolveWay(Model model, PetscReal t, PetscBool slowly, 
         PetscCall(ModelBoundDepth(model, report, &window));
       if (window == WINDOW_HOLDS && report->result == SOLVE_CONVERGED) ModelEndStages(model, &window);
     }
-    if (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) PetscCall(ModelSolveHeld(model, report));
+    if (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) PetscCall(ModelSolveOn(model, t, report));
   }
   model->work->staged = PETSC_FALSE;
   PetscCall(ModelShiftEnd(model, &report->damping));

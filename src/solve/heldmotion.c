@@ -137,7 +137,8 @@ PetscBool ModelMayRoll(Model model)
 
 /*@
   ModelMayDrag - says whether springs against sliding may take the place of held motions: a body in space rolls on its
-  own, motions were held in the solve at hand, and a direct solver knows what they are.
+  own, motions were held in the solve at hand, and contact has forces in the accepted state, of which springs are
+  made.
 
   Not collective
 
@@ -148,8 +149,8 @@ PetscBool ModelMayDrag(Model model)
 {
   const HeldMotion *held = &model->work->hold;
 
-  return (PetscBool)(model->contact && model->mesh->dim == 3 && !model->work->shift.on && ModelMayRoll(model) &&
-                     (held->wanted || held->released || held->futile));
+  return (PetscBool)(model->contact && model->mesh->dim == 3 && model->work->drag.any && !model->work->shift.on &&
+                     ModelMayRoll(model) && (held->wanted || held->released || held->futile));
 }
 
 /* Decides whether the softest motion is held, as it alone spoils the step y: the rest turns no cell too far. Either the

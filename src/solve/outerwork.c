@@ -116,12 +116,13 @@ static PetscErrorCode Collect(OuterWork work, const PetscReal *u_0, PetscReal t_
   PetscCall(MeshSumNodes(mesh, mesh->dim, all));
   PetscCall(MeshSumNodes(mesh, mesh->dim, now->force));
   for (PetscInt i = 0; i < n; i++) now->force[i] = (LoadsPrescribed(problem->loads, i) ? all[i] : 0) - now->force[i];
-  PetscCall(PetscFree(all));
   if (problem->contact) {
+    for (PetscInt i = 0; i < n; i++) all[i] = u[i] - u_0[i];
     PetscCall(WasMoved(work, u_0, &moved));
-    PetscCall(ContactStored(problem->contact, t_0, moved, &stored, &given));
+    PetscCall(ContactStored(problem->contact, t_0, all, moved, &stored, &given));
     PetscCall(ContactSummarise(problem->contact, &contact));
   }
+  PetscCall(PetscFree(all));
   PetscCallMPI(
     MPI_Allreduce(MPI_IN_PLACE, now->hold, work->n_pairs * MOTION_COMPONENTS, MPIU_REAL, MPI_SUM, mesh->comm));
   work->figures.stored = stored;

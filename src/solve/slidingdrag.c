@@ -172,6 +172,18 @@ PetscErrorCode ModelDragBegin(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Notes whether there is any contact force from which springs may be made. */
+static PetscErrorCode FindAny(Model model)
+{
+  SlidingDrag *drag = &model->work->drag;
+
+  PetscFunctionBeginUser;
+  drag->any = PETSC_FALSE;
+  for (PetscInt i = 0; i < model->mesh->n_nodes; i++) drag->any = (PetscBool)(drag->any || drag->force[i] > 0);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &drag->any, sizeof(PetscBool), MPI_BYTE, MPI_BOR, model->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelDragAccept - notes the contact forces of the accepted state, from which springs may be made.
 
@@ -190,6 +202,7 @@ PetscErrorCode ModelDragAccept(Model model)
   PetscCall(PetscArrayzero(drag->force, model->mesh->n_nodes));
   for (int p = 0; p < ContactPairs(model->contact); p++)
     PetscCall(ContactTermForces(model->contact, p, 0, drag->force));
+  PetscCall(FindAny(model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -202,22 +215,33 @@ PetscErrorCode ModelDragAccept(Model model)
 + model   - between two steps
 . archive - decides whether they are saved or loaded
 - nodes   - rows of the mesh's nodes
+
+  Note:
+  Older files do not have them, nor do states in which supports held what only contact holds from then on. Springs then
+  wait for the next accepted state.
 @*/
 PetscErrorCode ModelDragArchive(Model model, Archive archive, const Hdf5Table *nodes)
 {
-  SlidingDrag *drag = &model->work->drag;
-  PetscInt     on   = drag->on;
+  SlidingDrag *drag  = &model->work->drag;
+  PetscInt     on    = drag->on;
+  PetscBool    there = PETSC_TRUE;
   PetscMPIInt  rank;
 
   PetscFunctionBeginUser;
+  if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, "model/sliding_drag", &there));
+  if (!there) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &rank));
   PetscCall(ArchiveIntegers(archive, "model/sliding_drag", 1, &on));
   drag->on = (PetscBool)on;
   if (!model->contact || model->mesh->dim < 3 || !(drag->on || ModelMayRoll(model))) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, "model/contact_force", &there));
+  if (!there) PetscFunctionReturn(PETSC_SUCCESS);
   if (!drag->force) PetscCall(PetscCalloc1(model->mesh->n_nodes, &drag->force));
+  if (!ArchiveLoads(archive)) PetscCall(MeshSumNodes(model->mesh, 1, drag->force)); /* rows are alike on all ranks */
   PetscCall(ArchiveRows(archive, "model/contact_force", nodes, 1, drag->force));
   for (PetscInt i = 0; i < model->mesh->n_nodes; i++)
     if (model->mesh->node_owner[i] != rank) drag->force[i] = 0;
+  PetscCall(FindAny(model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -253,9 +277,9 @@ static PetscErrorCode Judge(Model model, PetscBool *holds)
   Rubber that rolls in its groove without friction slides along the walls in all motions that cost it next to nothing.
   In space there may be more of these than can be found one by one: sections roll on their own, and each of them in its
   deformed shape. Springs at the nodes in contact, as stiff as the node's contact force over the radius of the cord,
-hold all of them at once, and the tangent is far from indefinite. At a solution they are anchored where it is, if they
-hold more than a small friction would, and the step is solved on. So a body that really rolls goes on, by a bounded way
-each time, and each solve takes two or three iterations.
+  hold all of them at once, and the tangent is far from indefinite. At a solution they are anchored where it is, if they
+  hold more than a small friction would, and the step is solved on. So a body that really rolls goes on, by a bounded
+  way each time, and each solve takes two or three iterations.
 
   On softened penalties the springs stay as they are.
 

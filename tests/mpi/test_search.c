@@ -125,15 +125,16 @@ static void test_nearest(void **state)
 
 /* Where both bodies moved together, lists hold no more than without motion. Where the slave moved against the master,
    they hold what is as far along the way as it may go on. A way that is too short tells nothing, and a motion that is
-   less than the reach counts in full. */
+   less than the reach counts in full. So does by how much prescribed displacements leave the way. */
 static void test_way(void **state)
 {
   static const struct {
-    double motion, lower, upper, more; /* more: by so much the lists are longer than without motion */
-  } cases[] = {{1.2, 0.6, 0.6, 0}, {1.2, 1.2, 1, 0.4}, {1.2, 0, 1.2, 1.2}, {1.2, 0.1, 0.1, 1.2}, {0.8, 0.4, 0.4, 0.8}};
+    double motion, lower, upper, aside, more; /* more: by so much the lists are longer than without motion */
+  } cases[] = {{1.2, 0.6, 0.6, 0, 0},   {1.2, 0.6, 0.6, 0.3, 0.6}, {1.2, 1.2, 1, 0, 0.4},
+               {1.2, 0, 1.2, 0.3, 1.2}, {1.2, 0.1, 0.1, 0, 1.2},   {0.8, 0.4, 0.4, 0, 0.8}};
 
   (void)state;
-  for (int k = 0; k < 5; k++) {
+  for (int k = 0; k < 6; k++) {
     const double   distance = Apart + 1.5 * Size + cases[k].more, reach = sqrt(distance * distance - Apart * Apart);
     NeighbourLists lists;
     PetscReal     *before;
@@ -146,7 +147,7 @@ static void test_way(void **state)
       PartsPlace(&parts, i, X);
       before[2 * i] = -(X[1] > 1.05 ? cases[k].upper : cases[k].lower);
     }
-    SearchSetBefore(Pair()->search, before, 0, PetscMax(cases[k].lower, cases[k].upper));
+    SearchSetBefore(Pair()->search, before, 0, PetscMax(cases[k].lower, cases[k].upper), cases[k].aside);
     OK(SearchLists(Pair()->search, parts.u, 0, cases[k].motion, &lists));
     for (PetscInt c = 0; c < Pair()->n; c++) {
       double X[2];
@@ -402,9 +403,9 @@ static void test_ahead(void **state)
     size = PetscMax(size, hypot(parts.u[2 * i] - before[2 * i], parts.u[2 * i + 1] - before[2 * i + 1]));
   OK(MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPIU_REAL, MPIU_MAX, PETSC_COMM_WORLD));
   OK(SearchLists(Pair()->search, parts.u, 0, 1.5 * size, &full));
-  SearchSetBefore(Pair()->search, before, 0, size);
+  SearchSetBefore(Pair()->search, before, 0, size, 0);
   OK(SearchLists(Pair()->search, parts.u, 0, 1.5 * size, &lists));
-  SearchSetBefore(Pair()->search, NULL, 0, 0);
+  SearchSetBefore(Pair()->search, NULL, 0, 0, 0);
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     count[0] += lists->facet_ptr[q + 1] - lists->facet_ptr[q];
     count[1] += full->facet_ptr[q + 1] - full->facet_ptr[q];

@@ -393,7 +393,7 @@ static void TestNearing(void **state)
     for (int trial = 0; trial < 200; ++trial) {
       const double     point[3] = {Random(0, 1), Random(0, 1), Random(0, 1)};
       const double     moved[3] = {point[0] * point[0], point[1] * point[1], trial % 2 ? 0 : point[2] * point[2]};
-      const BoxTreeWay way      = {trial % 10 ? moved : NULL, Random(0, 1), Random(0, 0.5)};
+      const BoxTreeWay way      = {trial % 10 ? moved : NULL, Random(0, 1), Random(0, 0.1), Random(0, 0.5)};
       const double     reach    = Random(-0.05, 0.2);
       const int        there    = BoxTreeNearing(tree, point, &way, reach, MAX_BOXES, found);
       double           most     = -1;
@@ -404,7 +404,7 @@ static void TestNearing(void **state)
 
         for (int k = 0; k < dim; ++k)
           sum += pow(fmax(moved[k] - least[i * dim + k], largest[i * dim + k] - moved[k]), 2);
-        approach = way.way ? fmin(way.most, way.ahead * sqrt(sum)) : way.most;
+        approach = way.way ? fmin(way.most, way.ahead * sqrt(sum) + way.aside) : way.most;
         if (BoxDistance(dim, i, point) >= reach + approach) continue;
         assert_true(count < there && found[count] == i);
         most = fmax(most, approach);

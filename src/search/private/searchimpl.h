@@ -45,6 +45,7 @@ typedef struct {
   PetscBool        known; /* the way ahead follows from it */
   PetscReal       *way;    /* displacement of each slave point since (length), while lists are made */
   PetscReal        motion; /* for which these must be good (length) */
+  PetscReal        aside;  /* by how much prescribed displacements leave the way (length) */
 } SearchBefore;
 
 struct _n_ContactSearch {

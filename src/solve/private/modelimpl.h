@@ -107,6 +107,7 @@ typedef struct {
   PetscBool  on;       /* they take the place of held motions */
   PetscReal  length;   /* over which they have the contact force */
   PetscReal *force;    /* n_nodes: contact force by which the spring at a node is stiff; of terms of this rank */
+  PetscBool  any;      /* there is such a force, on any rank */
   PetscReal  friction; /* coefficient of friction that would do as much work, at the last solution */
   PetscReal  least;    /* the same, after the last solution that lowered it much in this load step */
   PetscInt   idle;     /* solutions since then */

@@ -1,0 +1,15 @@
+Point(1) = {0, 0, 0}; Point(2) = {20, 0, 0}; Point(3) = {20, 1, 0}; Point(4) = {0, 1, 0};
+Point(5) = {5.3, 2.5, 0}; Point(6) = {15.1, 2.5, 0}; Point(7) = {15.1, 3.3, 0}; Point(8) = {5.3, 3.3, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Line(5) = {5, 6}; Line(6) = {6, 7}; Line(7) = {7, 8}; Line(8) = {8, 5};
+Curve Loop(1) = {1:4}; Plane Surface(1) = {1};
+Curve Loop(2) = {5:8}; Plane Surface(2) = {2};
+Transfinite Curve{1, 3} = 61; Transfinite Curve{2, 4} = 4; Transfinite Curve{5, 7} = 31; Transfinite Curve{6, 8} = 4;
+Transfinite Surface "*"; Recombine Surface "*";
+Physical Surface("strip") = {1}; Physical Surface("lid") = {2};
+Physical Curve("base") = {1}; Physical Curve("top") = {2,3,4}; Physical Curve("back") = {7}; Physical Curve("face") = {5,6,8};
+Point(11) = {0, -20, 0}; Point(12) = {5, -20, 0}; Point(13) = {5, -18, 0}; Point(14) = {0, -18, 0};
+Line(11) = {11, 12}; Line(12) = {12, 13}; Line(13) = {13, 14}; Line(14) = {14, 11};
+Curve Loop(3) = {11:14}; Plane Surface(3) = {3};
+Transfinite Curve{11, 12, 13, 14} = 4; Transfinite Surface{3}; Recombine Surface{3};
+Physical Surface("far") = {3}; Physical Curve("tail") = {11};
