@@ -49,7 +49,7 @@ static PetscBool MayHaveRidge(Scene scene, const ContactPair *pair)
 /* Can the sharp edges of the deformable master of a pair have a pair of their own? */
 static PetscBool MayHaveEdges(Scene scene, const ContactPair *pair)
 {
-  return (PetscBool)(SurfaceFollowsEdges(pair->mesh) && pair->master && !pair->master->rigid && !pair->friction &&
+  return (PetscBool)(SurfaceFollowsEdges(pair->mesh, scene->geometry) && pair->master && !pair->master->rigid && !pair->friction &&
                      !SceneHasFluid(scene) && !pair->fit.global_frame && !pair->scene->listed);
 }
 

@@ -48,7 +48,7 @@ PetscReal ContactSidesAngle(const ContactPair *pair)
 {
   if (!pair->formulation.surface) return PETSC_PI;
   if (MasterKeepsShape(pair)) return pair->fit.feature_angle;
-  return SurfaceFollowsEdges(pair->mesh) ? PetscMax(SURFACE_SQUARE, pair->fit.feature_angle) : PETSC_PI;
+  return SurfaceFollowsEdges(pair->mesh, pair->geometry) ? PetscMax(SURFACE_SQUARE, pair->fit.feature_angle) : PETSC_PI;
 }
 
 /*@

@@ -150,7 +150,7 @@ static PetscErrorCode AddPoints(const RidgeSearch *s, const RidgeEdge *edge, con
 PetscErrorCode RidgeSurfaceCreate(ContactSurface tool, ContactSurface other, Geometry geometry, int n_images,
                                   const SurfaceImage *images, ContactSurface *out)
 {
-  const PetscReal   cosine = SurfaceFollowsEdges(tool->mesh) ? PetscCosReal(SURFACE_SQUARE) : VECTORS_WEDGE;
+  const PetscReal   cosine = SurfaceFollowsEdges(tool->mesh, geometry) ? PetscCosReal(SURFACE_SQUARE) : VECTORS_WEDGE;
   const RidgeSearch s      = {tool, other->mean_size, cosine, geometry, n_images, images};
   RidgePoints       ridge  = {.n = 0};
   RidgeEdge        *edges;

@@ -12,7 +12,7 @@
 #define SURFACE_SQUARE (80 * PETSC_PI / 180)
 
 void            SurfaceEdgeFrame(ContactSurface, const Facet *, int edge, PetscReal normal[3], PetscReal out[3]);
-PetscBool       SurfaceFollowsEdges(Mesh);
+PetscBool       SurfaceFollowsEdges(Mesh, Geometry);
 PetscErrorCode  SurfaceEdgeLengths(ContactSurface, Geometry, PetscReal angle, int n_images, const SurfaceImage *,
                                    PetscReal *length, PetscInt *n);
 PetscErrorCode  SurfaceFindEnds(ContactSurface, PetscReal angle, int n_images, const SurfaceImage *);
