@@ -402,8 +402,8 @@ const SchemaKey SchemaKeys[] = {
    .help = "largest number of iterations of Newton's method in one solve"},
   {"solver.hold_rolling", BOOLEAN, .preset = "true",
    .help = "true: where a body rolls that only contact holds, without friction, and what stops the roll is no more than "
-           "errors of the mesh, it is held as by a coefficient of friction of 0.001 at most, in space of 0.1 where that "
-           "fails; the last screen says what it took; false: it never is"},
+           "errors of the mesh, it is held as by a coefficient of friction of 0.001 at most, in space of 0.01 or 0.1 where "
+           "that fails; the last screen says what it took; false: it never is"},
   {"probes", LIST, .help = "scalar results in steps.csv and summary.json"},
   {"probes.*", MAP, .help = "a probe of exactly one kind"},
   {"probes.*.name", NAME, REQUIRED, .help = "name of its column in steps.csv"},

@@ -22,12 +22,6 @@
 /* Where bodies were moved into contact and more terms change, this share of the terms that are left is tried at first,
    and of the rest again and again. They touch in a point, and the first step presses everything around it. */
 #define LINEAR_CONTACT_SHARE 2
-/* In the plane so many components are added in a round, or this part of those that have changed already, the deepest
-   first: a linear step that bends a thin sheet presses nearly all terms, and few of them bear it. A sheet that is bent
-   to a channel without friction takes a quarter less time than with all terms at once. In space a round costs more, and
-   a pipe between plates takes 2 to 5 % longer. */
-#define LINEAR_CONTACT_FIRST 8
-#define LINEAR_CONTACT_MORE  0.5
 /* Most rounds in which further terms are found to change. Each round computes the columns of the terms that are new.
    The last one computes those of all terms if there is room: a thin body peels off another one term by term. With
    friction most such steps end within twenty rounds and two thirds of the columns; with 16 rounds a sheet that is drawn
@@ -188,18 +182,6 @@ static PetscErrorCode LinearContactAskAll(Model model, const LinearContact *s, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many of the m components whose columns are missing are added in this round. */
-static PetscInt LinearContactPortion(Model model, const LinearContact *s, PetscInt m)
-{
-  PetscInt portion = m;
-
-  if (model->work->settled && s->m + m > LINEAR_CONTACT_TERMS)
-    portion = PetscMax(LINEAR_CONTACT_FIRST, (LINEAR_CONTACT_TERMS - s->m) / LINEAR_CONTACT_SHARE);
-  if (model->mesh->dim == 2)
-    portion = PetscMin(portion, PetscMax(LINEAR_CONTACT_FIRST, (PetscInt)(LINEAR_CONTACT_MORE * s->m)));
-  return portion;
-}
-
 /* Continues on the first rank as far as the columns that are known allow; the other ranks receive the components
    which[m] whose columns are missing. */
 static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt *m, PetscInt *which,
@@ -210,7 +192,8 @@ static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt
 
   PetscFunctionBeginUser;
   if (!s->rank) PetscCall(ActiveSetSolve(s->active, m, which, converged));
-  if (!s->rank) PetscCall(ActiveSetLimit(s->active, LinearContactPortion(model, s, *m), m, which));
+  if (!s->rank && model->work->settled && s->m + *m > LINEAR_CONTACT_TERMS)
+    PetscCall(ActiveSetLimit(s->active, (LINEAR_CONTACT_TERMS - s->m) / LINEAR_CONTACT_SHARE, m, which));
   if (!s->rank) PetscCall(LinearContactAskAll(model, s, m, which));
   PetscCallMPI(MPI_Bcast(m, 1, MPIU_INT, 0, comm));
   PetscCallMPI(MPI_Bcast(converged, sizeof(PetscBool), MPI_BYTE, 0, comm));
