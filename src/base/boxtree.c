@@ -335,21 +335,39 @@ int BoxTreeSetWays(BoxTree tree, const double *least, const double *largest)
   return 0;
 }
 
-/* How far a point and any box below a node may move against each other. */
-static double Approach(BoxTree tree, int node, const BoxTreeWay *way)
+/*@
+  BoxTreeWayOn - bounds how far a point and what moves in a range of ways may yet move against each other
+
+  Not collective, plain C
+
+  Input Parameters:
++ dim     - dimension
+. way     - how both move
+. least   - [dim] least components of how far that has moved (length); not read where nothing is known of the point's way
+- largest - [dim] largest ones
+
+  Note:
+  Returns that motion (length).
+@*/
+double BoxTreeWayOn(int dim, const BoxTreeWay *way, const double *least, const double *largest)
 {
-  const double *least, *largest;
-  double        square = 0;
+  double square = 0;
 
   if (!way->way) return way->most;
-  least   = tree->ways + (size_t)node * 2 * tree->dim;
-  largest = least + tree->dim;
-  for (int k = 0; k < tree->dim; ++k) {
+  for (int k = 0; k < dim; ++k) {
     const double d = Larger(way->way[k] - least[k], largest[k] - way->way[k]);
 
     square += d * d;
   }
   return Smaller(way->most, way->ahead * sqrt(square) + way->aside);
+}
+
+/* How far a point and any box below a node may move against each other. */
+static double Approach(BoxTree tree, int node, const BoxTreeWay *way)
+{
+  const double *least = way->way ? tree->ways + (size_t)node * 2 * tree->dim : NULL;
+
+  return BoxTreeWayOn(tree->dim, way, least, least ? least + tree->dim : NULL);
 }
 
 /* May a point and a box below a node come within reach of each other? */

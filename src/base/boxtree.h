@@ -40,6 +40,7 @@ int    BoxTreeBuildFacing(int dim, int n, const double *lower, const double *upp
 void   BoxTreeDestroy(BoxTree *tree);
 int    BoxTreeNear(BoxTree, const double *point, double radius, int max, int *found);
 int    BoxTreeSetWays(BoxTree, const double *least, const double *largest);
+double BoxTreeWayOn(int dim, const BoxTreeWay *way, const double *least, const double *largest);
 double BoxTreeApproach(BoxTree, const double *point, const BoxTreeWay *way, double reach);
 int    BoxTreeNearing(BoxTree, const double *point, const BoxTreeWay *way, double reach, int max, int *found);
 int    BoxTreeMeet(BoxTree, const double *lower, const double *upper, int max, int *found);

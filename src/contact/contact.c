@@ -49,8 +49,8 @@ static PetscBool MayHaveRidge(Scene scene, const ContactPair *pair)
 /* Can the sharp edges of the deformable master of a pair have a pair of their own? */
 static PetscBool MayHaveEdges(Scene scene, const ContactPair *pair)
 {
-  return (PetscBool)(SurfaceFollowsEdges(pair->mesh, scene->geometry) && pair->master && !pair->master->rigid && !pair->friction &&
-                     !SceneHasFluid(scene) && !pair->fit.global_frame && !pair->scene->listed);
+  return (PetscBool)(SurfaceFollowsEdges(pair->mesh, scene->geometry) && pair->master && !pair->master->rigid &&
+                     !pair->friction && !SceneHasFluid(scene) && !pair->fit.global_frame && !pair->scene->listed);
 }
 
 /* Adds pairs of the sharp edges of tools behind those of the scene, where the tools have any. */

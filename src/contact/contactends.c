@@ -38,11 +38,12 @@ static PetscBool MasterKeepsShape(const ContactPair *pair)
 . pair - the pair
 
   Note:
-  In node to surface contact a node is one point. A rigid master, or one as stiff as the slave, keeps its own shape, with
-  its own corners. A softer one bends around the slave's edges: both sides of a blunt edge then see the same part of it,
-  and one mean over both holds the edge less stiffly. At right-angled edges of second order one mean would press the
-  master away from the one side to bring the edge out of it, and a stamp on a rubber pad (tests/jobs/stamp_on_pad.yaml)
-  takes 12 steps, 6 failed ones and 446 iterations, not 6, none and 110. See SurfaceFollowsEdges().
+  In node to surface contact a node is one point. A rigid master, or one as stiff as the slave, keeps its own shape,
+  with its own corners. A softer one bends around the slave's edges: both sides of a blunt edge then see the same part
+  of it, and one mean over both holds the edge less stiffly. At right-angled edges of second order one mean would press
+  the master away from the one side to bring the edge out of it, and a stamp on a rubber pad
+  (tests/jobs/stamp_on_pad.yaml) takes 12 steps, 6 failed ones and 446 iterations, not 6, none and 110. See
+  SurfaceFollowsEdges().
 @*/
 PetscReal ContactSidesAngle(const ContactPair *pair)
 {

@@ -582,8 +582,7 @@ PetscErrorCode ContactPairCreateEdges(Contact contact, Elasticity elasticity, in
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(mesh->n_nodes, &pair->edge_length));
-  PetscCall(SurfaceEdgeLengths(first->master, scene->geometry, SURFACE_SQUARE, first->n_mirrors, first->mirrors,
-                               pair->edge_length, &n));
+  PetscCall(SurfaceEdgeLengths(first->master, SURFACE_SQUARE, first->n_mirrors, first->mirrors, pair->edge_length, &n));
   if (!n) {
     PetscCall(PetscFree(pair->edge_length));
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -220,10 +220,11 @@ PetscErrorCode SurfaceFindEnds(ContactSurface surface, PetscReal angle, int n_im
 - geometry - of the scene
 
   Note:
-  Those of second order do in the plane. A rubber pad under a rigid stamp (10 mm wide, 2 mm deep, faces of 0.5 mm) is
-  too stiff by 2 % if its edges press, and by 7 % without; of first order by 5 % and 3 %. In space coarse faces of second
-  order hold a key in a pad 9 % harder if the sides of its edges have terms of their own. An axisymmetric punch of steel
-  (radius 5.2) on such a pad is off by 2 % with and without, and with them stops or ends in an unstable equilibrium.
+  Those of second order do in plane strain and plane stress. A rubber pad under a rigid stamp (10 mm wide, 2 mm deep,
+  faces of 0.5 mm) is too stiff by 2 % if its edges press, and by 7 % without; of first order by 5 % and 3 %. In space
+  coarse faces of second order hold a key in a pad 9 % harder if the sides of its edges have terms of their own. An
+  axisymmetric punch of steel (radius 5.2) on such a pad is off by 2 % with and without, and with them stops or ends in
+  an unstable equilibrium.
 @*/
 PetscBool SurfaceFollowsEdges(Mesh mesh, Geometry geometry)
 {
@@ -232,13 +233,12 @@ PetscBool SurfaceFollowsEdges(Mesh mesh, Geometry geometry)
 
 /*@
   SurfaceEdgeLengths - sums up at nodes the lengths of the edges at which a surface turns away by more than an angle, in
-  the plane.
+  plane strain and plane stress, where an edge has the length 1.
 
   Collective
 
   Input Parameters:
 + surface  - a surface of a deformable body, with its free edges
-. geometry - an edge has the length 1, or that round the axis
 . angle    - the angle
 . n_images - number of mirror images
 - images   - of the pair
@@ -250,8 +250,8 @@ PetscBool SurfaceFollowsEdges(Mesh mesh, Geometry geometry)
   Note:
   Edges at which the surface ends do not count.
 @*/
-PetscErrorCode SurfaceEdgeLengths(ContactSurface surface, Geometry geometry, PetscReal angle, int n_images,
-                                  const SurfaceImage *images, PetscReal *length, PetscInt *n)
+PetscErrorCode SurfaceEdgeLengths(ContactSurface surface, PetscReal angle, int n_images, const SurfaceImage *images,
+                                  PetscReal *length, PetscInt *n)
 {
   const Mesh mesh = surface->mesh;
 
@@ -264,8 +264,7 @@ PetscErrorCode SurfaceEdgeLengths(ContactSurface surface, Geometry geometry, Pet
       const PetscInt node = surface->faces[f].nodes[k];
 
       if (!((surface->face_ends[f] & ~surface->faces[f].free_edges) >> k & 1)) continue;
-      length[node] +=
-        geometry == GEOMETRY_AXISYMMETRIC ? PETSC_PI * (mesh->coords[node * mesh->dim] + mesh->centre[0]) : 0.5;
+      length[node] += 0.5;
       (*n)++;
     }
   }

@@ -135,11 +135,5 @@ BoxTreeWay WayOf(ContactSearch s, PetscInt q)
 @*/
 PetscReal WayApproach(const Nearest *look, const Candidate *c)
 {
-  const BoxTreeWay *way    = &look->way;
-  PetscReal         square = 0;
-
-  if (!way->way) return way->most;
-  for (int d = 0; d < look->lists->dim; d++)
-    square += PetscSqr(PetscMax(way->way[d] - c->way_lower[d], c->way_upper[d] - way->way[d]));
-  return PetscMin(way->most, way->ahead * PetscSqrtReal(square) + way->aside);
+  return BoxTreeWayOn(look->lists->dim, &look->way, c->way_lower, c->way_upper);
 }
