@@ -343,7 +343,7 @@ int BoxTreeSetWays(BoxTree tree, const double *least, const double *largest)
   Input Parameters:
 + dim     - dimension
 . way     - how both move
-. least   - [dim] least components of how far that has moved (length); not read where nothing is known of the point's way
+. least   - [dim] least components of how far that has moved (length); not read if nothing is known of the point
 - largest - [dim] largest ones
 
   Note:

@@ -13,7 +13,7 @@
 
 void            SurfaceEdgeFrame(ContactSurface, const Facet *, int edge, PetscReal normal[3], PetscReal out[3]);
 PetscBool       SurfaceFollowsEdges(Mesh, Geometry);
-PetscErrorCode  SurfaceEdgeLengths(ContactSurface, PetscReal angle, int n_images, const SurfaceImage *, PetscReal *length,
-                                   PetscInt *n);
+PetscErrorCode  SurfaceEdgeLengths(ContactSurface, PetscReal angle, int n_images, const SurfaceImage *,
+                                   PetscReal *length, PetscInt *n);
 PetscErrorCode  SurfaceFindEnds(ContactSurface, PetscReal angle, int n_images, const SurfaceImage *);
 const FaceRule *SurfaceRule(ContactSurface, PetscInt face, int finer);

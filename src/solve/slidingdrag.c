@@ -11,6 +11,8 @@
    below this part of what it was, the load step may end with as much as dry rubber has at least, and the next ones go
    on. */
 enum { DRAG_IDLE = 4 };
+/* After so many the step has failed: on a very coarse mesh the springs may ask for more than that for ever. */
+enum { DRAG_MOST = 100 };
 #define DRAG_PAYS          0.5
 #define DRAG_FRICTION_FIRM 0.1
 
@@ -294,6 +296,10 @@ PetscErrorCode ModelDragSolve(Model model, SolveReport *report)
     PetscCall(ModelNewton(model, report));
     if (!model->work->drag.on || report->result != SOLVE_CONVERGED || model->work->left || model->work->soft) break;
     PetscCall(Judge(model, &holds));
+    if (!holds && model->work->drag.idle >= DRAG_MOST) {
+      report->result = SOLVE_ITERATIONS;
+      break;
+    }
     if (!holds) PetscCall(DofSpringsAnchor(model->problem->drag, model->x));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
