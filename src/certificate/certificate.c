@@ -20,6 +20,7 @@ typedef struct {
   ContactSides of;
   Side         side[2]; /* the second is NULL where the master is analytic */
   PieceList    near[2]; /* pieces of each side that come near this rank's part of the other one */
+  PieceList    beside;  /* pieces of the side that is judged, where it comes near the other one */
 } CertifiedPair;
 
 struct _n_Certificate {
@@ -29,8 +30,8 @@ struct _n_Certificate {
   Contact            contact;
   int                n;
   CertifiedPair     *pairs;
-  PetscReal         *pressed; /* of each node of the mesh, of one pair */
-  Look               look;
+  PetscReal         *pressed;   /* of each node of the mesh, of one pair */
+  Look               look, own; /* at the other side; at the side that is judged */
   CertificateFigures figures;
 };
 
@@ -97,8 +98,10 @@ PetscErrorCode CertificateDestroy(Certificate *certificate)
     if (pair->side[1] != pair->side[0]) PetscCall(SideDestroy(&pair->side[1]));
     PetscCall(SideDestroy(&pair->side[0]));
     for (int s = 0; s < 2; s++) PetscCall(PetscFree(pair->near[s].pieces));
+    PetscCall(PetscFree(pair->beside.pieces));
   }
   LookDestroy(&(*certificate)->look);
+  LookDestroy(&(*certificate)->own);
   PetscCall(PetscFree2((*certificate)->pairs, (*certificate)->pressed));
   PetscCall(PetscFree(*certificate));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -115,6 +118,41 @@ static PetscBool TakeFinding(const Finding *here, Finding *worst)
   return worse;
 }
 
+/* Begins the search in a list of pieces. */
+static PetscErrorCode BeginLook(int dim, const PieceList *list, Look *look)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(LookBegin(dim, list, look), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for %" PetscInt_FMT " faces",
+             list->n);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Begins the search in the side s itself, if it is a rigid tool, as far as a chord of the other one from where the two
+   are near each other. `near` is the box of this rank's part of it. The shape of a deformable side explains nothing: a
+   fine one swells between the nodes of a coarse one. */
+static PetscErrorCode LookBeside(Certificate certificate, CertifiedPair *pair, int s, const Box near)
+{
+  const PieceList *list   = &pair->near[1 - s];
+  const PetscReal  extent = pair->side[1 - s]->surface->max_extent + pair->side[s]->surface->max_extent;
+  Box              beside;
+
+  PetscFunctionBeginUser;
+  certificate->look.own = NULL;
+  if (!pair->side[s]->surface->rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  BoxAround(0, NULL, beside);
+  for (PetscInt k = 0; k < list->n; k++) {
+    for (int d = 0; d < 3; d++) {
+      beside[d]     = PetscMin(beside[d], PetscMax(near[d], list->pieces[k].box[d]) - extent);
+      beside[3 + d] = PetscMax(beside[3 + d], PetscMin(near[3 + d], list->pieces[k].box[3 + d]) + extent);
+    }
+  }
+  PetscCall(SideShare(pair->side[s], beside, pair->of.n_images, pair->of.images, &pair->beside));
+  if (!list->n || !pair->beside.n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BeginLook(pair->side[s]->dim, &pair->beside, &certificate->own));
+  certificate->look.own = &certificate->own;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Judges points and edges of one side against the pieces of the other one. Crossings of edges are seen from the
    slave's side alone. */
 static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, int s, PetscReal overlap, Finding *worst)
@@ -128,6 +166,7 @@ static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, in
   PetscFunctionBeginUser;
   SideBox(own, near);
   PetscCall(SideShare(pair->side[1 - s], near, pair->of.n_images, pair->of.images, list));
+  PetscCall(LookBeside(certificate, pair, s, near));
   if (!list->n) PetscFunctionReturn(PETSC_SUCCESS);
   look->penetration = certificate->scene->certificate.penetration;
   look->overlap     = overlap;
@@ -137,12 +176,12 @@ static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, in
 
     look->slave[k] = !pair->side[side]->surface->rigid && (side == 0 || pair->of.scene->listed);
   }
-  PetscCheck(LookBegin(own->dim, list, look), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for %" PetscInt_FMT " faces",
-             list->n);
+  PetscCall(BeginLook(own->dim, list, look));
   for (PetscInt i = 0; i < own->n_points; i++) PointFinding(look, &own->points[i], &here);
   for (PetscInt i = 0; i < own->n_edges; i++) EdgeFinding(look, &own->edges[i], s == 0, &here);
   here.side = s;
   TakeFinding(&here, worst);
+  if (look->own) LookEnd(&certificate->own);
   LookEnd(look);
   PetscCheck(!look->failed, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the faces that a node crosses");
   PetscFunctionReturn(PETSC_SUCCESS);

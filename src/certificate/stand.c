@@ -313,24 +313,34 @@ static double TipOver(double chord, double tip, double side)
   return fmin(PIECE_TIP, tip * fmax(1, 0.5 * chord / side));
 }
 
-/* The highest of the point and of the vertices of pieces that are within a chord of it at the end. */
-static double TipNear(const Look *look, const Point *point, double chord)
+/* The highest of the vertices of a side's pieces that are within a chord of a place at the end. */
+static double TipAround(const Look *side, const double x[3], double chord)
 {
-  double tip = TipOver(chord, point->tip, point->side), lower[3], upper[3];
+  double tip = 0, lower[3], upper[3];
   int    n;
 
   for (int d = 0; d < 3; d++) {
-    lower[d] = point->x[1][d] - chord;
-    upper[d] = point->x[1][d] + chord;
+    lower[d] = x[d] - chord;
+    upper[d] = x[d] + chord;
   }
-  n = BoxTreeMeet(look->tree, lower, upper, look->room, look->around);
+  n = BoxTreeMeet(side->tree, lower, upper, side->room, side->around);
   for (int i = 0; i < n; i++) {
-    const Piece *piece = &look->list->pieces[look->around[i]];
+    const Piece *piece = &side->list->pieces[side->around[i]];
 
-    for (int a = 0; a < look->dim; a++)
-      if (Distance(piece->x[1][a], point->x[1]) <= chord) tip = fmax(tip, TipOver(chord, piece->tip[a], piece->side));
+    for (int a = 0; a < side->dim; a++)
+      if (Distance(piece->x[1][a], x) <= chord) tip = fmax(tip, TipOver(chord, piece->tip[a], piece->side));
   }
   return tip;
+}
+
+/* The highest of the point and of the vertices of either side that are within a chord of it at the end: a chord that
+   rests on a tool's flat on one side of the point rises beside it where the flat ends in a rounded edge. */
+static double TipNear(const Look *look, const Point *point, double chord)
+{
+  const double *x   = point->x[1];
+  double        tip = fmax(TipOver(chord, point->tip, point->side), TipAround(look, x, chord));
+
+  return look->own ? fmax(tip, TipAround(look->own, x, chord)) : tip;
 }
 
 /*@

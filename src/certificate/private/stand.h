@@ -64,19 +64,20 @@ typedef struct {
 } Event;
 
 /* The pieces of the other side. What is allocated serves again in the next step. */
-typedef struct {
-  int              dim;
-  const PieceList *list;
-  BoxTree          tree;
-  int             *found, n_found, room; /* pieces at hand */
-  int             *around;               /* work space of as much room */
-  Event           *events;
-  int              n_events, room_events;
-  double           penetration; /* allowed depth in parts of the smaller face */
-  double           overlap;     /* depth that the scene leaves (length) */
-  int              walls;       /* any side of a body may meet any other one */
-  int              slave[2];    /* contact holds the points and edges that are judged; the vertices of the pieces */
-  int              failed;      /* memory was short: what was found does not count */
+typedef struct _n_Look {
+  int                   dim;
+  const PieceList      *list;
+  const struct _n_Look *own; /* pieces of the points' own side, a rigid tool, near the other one; NULL: none */
+  BoxTree               tree;
+  int                  *found, n_found, room; /* pieces at hand */
+  int                  *around;               /* work space of as much room */
+  Event                *events;
+  int                   n_events, room_events;
+  double                penetration; /* allowed depth in parts of the smaller face */
+  double                overlap;     /* depth that the scene leaves (length) */
+  int                   walls;       /* any side of a body may meet any other one */
+  int                   slave[2]; /* contact holds the points and edges that are judged; the vertices of the pieces */
+  int                   failed;   /* memory was short: what was found does not count */
 } Look;
 
 int    LookBegin(int dim, const PieceList *, Look *);
