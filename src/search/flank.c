@@ -76,6 +76,14 @@ static PetscBool HasNode(const Candidate *c, int corners, PetscInt node)
   return PETSC_FALSE;
 }
 
+/* Do two facets have a corner in common? */
+static PetscBool SharesCorner(const Candidate *c, const Candidate *o)
+{
+  for (int a = 0; a < ElementGet(c->facet.type)->corners; a++)
+    if (HasNode(o, ElementGet(o->facet.type)->corners, c->facet.nodes[a])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Says whether the boxes of two facets are apart: they share nothing then. */
 static PetscBool AreApart(const Nearest *look, const Candidate *c, const Candidate *o)
 {
@@ -157,6 +165,23 @@ static PetscReal BesideFoot(const Nearest *look)
   return PetscAbsReal(look->foot.gap) * PetscSqrtReal(square);
 }
 
+/* Least cosine between the mean normals of the slave at the nodes of the point's own face, reversed, and a facet's; 1
+   where there are none. */
+static PetscReal MeanOpposing(const Nearest *look, const PetscReal normal[3])
+{
+  const SlavePoints slaves = look->slaves;
+  PetscReal         least  = 1;
+
+  if (!look->listed || look->one_body || !slaves->face_sf || !slaves->normal) return least;
+  for (PetscInt k = slaves->ptr[look->q]; k < slaves->ptr[look->q + 1]; k++) {
+    const PetscReal *mean   = &slaves->normal[3 * slaves->node[k]];
+    const PetscReal  length = PetscSqrtReal(Dot(mean, mean));
+
+    if (length > 0) least = PetscMin(least, -Dot(mean, normal) / length);
+  }
+  return least;
+}
+
 /*@
   FlankFaces - says whether a candidate's normal opposes that of the slave point.
 
@@ -165,10 +190,16 @@ static PetscReal BesideFoot(const Nearest *look)
   Input Parameters:
 + look - the slave point
 - c    - the candidate
+
+  Note:
+  Where any side of the bodies may meet any other one and the normals hardly oppose each other, the mean normals of the
+  slave must, too. Coarse faces of a pin are tilted along it, and face the end of the bore that it stands out of.
 @*/
 PetscBool FlankFaces(const Nearest *look, const Candidate *c)
 {
-  return (PetscBool)(NeighbourListsOpposed(look->lists, look->q, c->normal) > 0);
+  const PetscReal opposed = NeighbourListsOpposed(look->lists, look->q, c->normal);
+
+  return (PetscBool)(opposed > 0 && (opposed >= 1 || MeanOpposing(look, c->normal) > SEARCH_OPPOSED_NOT));
 }
 
 /*@
@@ -286,6 +317,35 @@ static PetscBool FormHollow(const Nearest *look, const Candidate *nearest, const
 }
 
 /*@
+  FlankPastEnd - says whether the slave point is past an end of another body's flank: its foot is on an edge of the
+  nearest facet, and a facet at that one which is hidden or turned away is nearer.
+
+  Not collective
+
+  Input Parameters:
++ look  - the slave point with its nearest facet and foot
+. n     - number of facets, with those that were dropped
+- found - their numbers
+
+  Note:
+  The flank ends at the facet that is left out. At the next one the foot would be on that edge still, which is no end of
+  it, and the gap the distance along the end of the flank.
+@*/
+PetscBool FlankPastEnd(const Nearest *look, int n, const int *found)
+{
+  const Candidate *nearest = &look->candidates[look->best];
+
+  if (!look->listed || look->one_body || look->foot.region == FOOT_INTERIOR) return PETSC_FALSE;
+  for (int i = 0; i < n; i++) {
+    const Candidate *c = &look->candidates[found[i]];
+
+    if (c == nearest || !SharesCorner(nearest, c) || !FlankFaces(look, c)) continue;
+    if (CandidateDistance(look, c) < look->distance - look->tie) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/*@
   FlankLeaveCorner - finds a better facet where the nearest one hardly opposes the slave point and forms a hollow with
   another one that does.
 
@@ -370,8 +430,11 @@ static PetscReal EndShare(const Nearest *look, const Candidate *c, const FlankEd
    front of the master. */
 static PetscReal ConvexShare(const Nearest *look, const Candidate *c, const Candidate *beyond, const FlankEdge *edge)
 {
-  return EndShare(look, c, edge, look->size * NeighbourListsAverse(look->lists, look->q, beyond->normal),
-                  SlaveTurns(look, beyond->normal));
+  const PetscReal mean = MeanOpposing(look, beyond->normal);
+  const PetscReal averse =
+    PetscMax(NeighbourListsAverse(look->lists, look->q, beyond->normal), 1 - SmoothStep(mean / SEARCH_OPPOSED_NOT));
+
+  return EndShare(look, c, edge, look->size * averse, SlaveTurns(look, beyond->normal));
 }
 
 /* The way out of facet c across one of its edges, in its plane, of length 1. */

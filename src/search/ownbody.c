@@ -98,13 +98,17 @@ static PetscReal BehindOwnFace(const Nearest *look, const Foot *foot)
   return foot->gap * along;
 }
 
-/* How much of the way between a slave point and its foot on a facet leads along the normal of that. */
+/* How much of the way between a slave point and its foot on a facet leads along the normal of that, or of the smooth
+   surface there, whichever is less. A coarse facet of a bore is tilted along it. */
 static PetscReal AlongNormal(const Nearest *look, const Candidate *c, const Foot *foot)
 {
-  PetscReal along = 0;
+  PetscReal along = 0, smooth = 0, normal[3];
 
   for (int d = 0; d < look->lists->dim; d++) along += c->normal[d] * foot->normal[d];
-  return PetscAbsReal(along);
+  if (!look->corners || foot->region == FOOT_INTERIOR) return PetscAbsReal(along);
+  CornerNormalsAt(look->corners, (PetscInt)(c - look->candidates), foot->xi, normal);
+  for (int d = 0; d < look->lists->dim; d++) smooth += normal[d] * foot->normal[d];
+  return PetscMin(PetscAbsReal(along), PetscAbsReal(smooth));
 }
 
 /* Is a slave point beside a facet of another body, on whose edge it has its foot? */

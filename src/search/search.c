@@ -270,6 +270,7 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   count  = FindFacets(look, field, tree, margin, found);
   if (!ComesNear(look, reach, count, found)) PetscFunctionReturn(PETSC_SUCCESS);
   facing = FlankSort(look, &count, found, &dropped);
+  if (FlankPastEnd(look, count + dropped, found)) PetscFunctionReturn(PETSC_SUCCESS);
   FlankLeaveCorner(look, facing, found);
   TakeNormal(look, fit);
   lists->share[q] = FlankShare(look, facing, count, found, ends);
