@@ -213,7 +213,7 @@ static PetscErrorCode ModelHoldStep(Model model, SNES snes, Vec F, Vec y, PetscR
   PetscCall(KSPSetOperators(ksp, problem->A, problem->P));
   PetscCall(KSPSolve(ksp, b, step));
   if (ok && !LinearCheckLost(model->linear))
-    PetscCall(ModelSolveLinearContact(model, problem->trial, NULL, model->t, step));
+    PetscCall(ModelSolveLinearContact(model, problem->trial, NULL, model->t, b, step));
   PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(VecDotRealPart(F, step, &held));
   PetscCall(PetscInfo(snes, "a step that leads uphill is made anew with contact held: slope %g\n", (double)held));
@@ -265,7 +265,7 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
     PetscCall(ModelNearEquilibrium(model, F, &near));
     PetscCall(ModelHoldMotion(model, x, F, y, near));
   }
-  PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, y));
+  PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, F, y));
   if (model->work->objective == OBJECTIVE_RESIDUAL || ContactHasFriction(model->contact))
     PetscFunctionReturn(PETSC_SUCCESS);
   if (model->contact && conservative && model->work->energy == 0)
