@@ -30,8 +30,9 @@
 
 /* Most products of two numbers in the dense problem for each unknown, after which it is left to the next iteration. An
    iteration in space computes some 1e5 for each. Of a hundred ordinary scenes none that was solved took more than 2e5;
-   a strand of seven wires that touched with all their points took 1e8 without an end. */
-#define LINEAR_CONTACT_WORK 1e6
+   a strand of seven wires that touched with all their points took 1e8 without an end. In a sheet that is drawn to a
+   channel few problems that take more are solved, and each takes as long as twenty iterations. */
+#define LINEAR_CONTACT_WORK 3e5
 
 /* Friction may leave this part of the residual out of balance at the end of a linear step of Newton's method. Where it
    could leave more, nodes that stick in the tangent and begin to slip were each found by an iteration of its own:
