@@ -61,6 +61,7 @@ PetscErrorCode ActiveSetCreate(PetscInt n, PetscInt parts, PetscInt most, const 
   p->parts   = parts;
   p->most    = most;
   p->allowed = PETSC_MAX_REAL;
+  p->enough  = PETSC_MAX_REAL;
   PetscCall(
     PetscMalloc5(n, &p->terms, parts * n, &p->travel, parts * n, &p->end, n, &p->pressed, parts * n, &p->column));
   PetscCall(PetscArraycpy(p->terms, terms, n));
@@ -225,6 +226,26 @@ void ActiveSetLeaveRelaxation(ActiveSet p)
 void ActiveSetBound(ActiveSet p, PetscReal allowed)
 {
   p->allowed = allowed;
+}
+
+/*@
+  ActiveSetEnough - says what force may be left out of balance by friction.
+
+  Not collective
+
+  Input Parameters:
++ p     - the active set
+- force - norm of the forces of all terms
+
+  Note:
+  It is shared by all terms as if they had the largest area of one of them.
+@*/
+void ActiveSetEnough(ActiveSet p, PetscReal force)
+{
+  PetscReal area = 0;
+
+  for (PetscInt i = 0; i < p->n; i++) area = PetscMax(area, p->terms[i].area);
+  if (area > 0) p->enough = force / (area * PetscSqrtReal((PetscReal)p->n));
 }
 
 /*@

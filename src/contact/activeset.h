@@ -42,6 +42,7 @@ PetscErrorCode ActiveSetCreate(PetscInt n, PetscInt parts, PetscInt most, const 
 PetscErrorCode ActiveSetDestroy(ActiveSet *);
 void           ActiveSetLeaveRelaxation(ActiveSet);
 void           ActiveSetBound(ActiveSet, PetscReal allowed);
+void           ActiveSetEnough(ActiveSet, PetscReal force);
 void           ActiveSetAllowPart(ActiveSet);
 PetscErrorCode ActiveSetAddColumns(ActiveSet, PetscInt m, const PetscInt *which, const PetscReal *G);
 PetscErrorCode ActiveSetSolve(ActiveSet, PetscInt *m, PetscInt *which, PetscBool *converged);

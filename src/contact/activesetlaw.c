@@ -5,8 +5,9 @@
 #define ACTIVE_SET_ROUND_OFF 1e-12
 
 /* What friction's law says of a traction at the end may differ from what residual and tangent do by this part of the
-   largest traction that any term can bear. Newton's method takes such differences in its stride, and columns for all
-   terms whose direction of slip turns a little would cost more than they save. */
+   largest traction that any term can bear, or by what ActiveSetEnough() allows, if that is less. Newton's method takes
+   such differences in its stride, and columns for all terms whose direction of slip turns a little would cost more than
+   they save. */
 #define ACTIVE_SET_FRICTION 0.01
 /* And by this part of the largest pressure: without a coefficient, as before friction sets in, rounding would decide
    whether tractions still change. Newton's method is content with more. */
@@ -68,5 +69,5 @@ PetscReal ActiveSetNegligible(ActiveSet p)
     if (p->pressed[i]) most = PetscMax(most, FrictionBound(&p->terms[i].friction.law, pressure));
     largest = PetscMax(largest, pressure);
   }
-  return PetscMax(ACTIVE_SET_FRICTION * most, ACTIVE_SET_TRIFLE * largest);
+  return PetscMax(PetscMin(ACTIVE_SET_FRICTION * most, p->enough), ACTIVE_SET_TRIFLE * largest);
 }

@@ -183,7 +183,7 @@ PetscErrorCode ContactMultiplyEnd(Contact, PetscReal *y);
 /* Linear steps and predictions */
 PetscErrorCode ContactHoldActiveSet(Contact, PetscBool holding, PetscBool touching);
 PetscErrorCode ContactHoldSolved(Contact, PetscBool again);
-PetscErrorCode ContactHoldExpected(Contact, PetscBool *any);
+PetscErrorCode ContactHoldExpected(Contact, PetscBool last, PetscBool *any);
 PetscErrorCode ContactMarkPredicted(Contact);
 PetscErrorCode ContactPredictionMissed(Contact, PetscBool *missed);
 PetscErrorCode ContactUnpredictedEnergy(Contact, const PetscReal *u, PetscReal t, PetscReal *energy);

@@ -269,8 +269,9 @@ linear step to the present state is pulled there.
 
   Collective
 
-  Input Parameter:
-. contact - the contact, after a linear step from the present state was found; ContactHoldActiveSet() ends the new one
+  Input Parameters:
++ contact - the contact, after a linear step from the present state was found; ContactHoldActiveSet() ends the new one
+- last    - nothing was noted of the end of that step, and what was noted last is of the step before
 
   Output Parameter:
 . any - something of that is open at the present state; else no step is begun. The same on all ranks
@@ -279,14 +280,15 @@ linear step to the present state is pulled there.
   Surfaces are curved and bodies turn, so that a linear step leaves a little open of what it is to close. That may be
 all that holds a body.
 @*/
-PetscErrorCode ContactHoldExpected(Contact contact, PetscBool *any)
+PetscErrorCode ContactHoldExpected(Contact contact, PetscBool last, PetscBool *any)
 {
   int open = 0;
 
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
+    ContactPair *pair = &contact->pairs[p];
 
+    if (last) PetscCall(PetscArraycpy(pair->arrived, pair->expected, pair->n));
     for (PetscInt c = 0; c < pair->n; c++) open |= pair->arrived[c] && pair->now.status[c] != CONTACT_CLOSED;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &open, 1, MPI_INT, MPI_LOR, contact->mesh->comm));

@@ -37,7 +37,7 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   report->krylov += its;
   if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(ModelShiftSolve(model, u, model->x, b, dx));
-  PetscCall(ModelSolveLinearContact(model, u, carried, t, dx));
+  PetscCall(ModelSolveLinearContact(model, u, carried, t, b, dx));
   PetscCall(VecAXPY(model->x, -1, dx));
   PetscCall(ModelStepFrom(model, u));
   PetscCall(VecDestroy(&b));

@@ -16,6 +16,7 @@ struct _n_Pressing {
   PetscReal     *G, *excess;    /* m*parts*n, m */
   PetscReal     *change;        /* m: of the excess, by the last iteration */
   PetscReal      work, allowed; /* products that were computed, and how many may be */
+  PetscReal      enough;        /* friction's excess that is no matter, whatever terms can bear (force per area) */
   PetscBool      searches;      /* sets have repeated themselves: each step ends where the energy is least along it */
   PetscBool     *slipped;       /* n: the term slipped where friction was looked at last */
   PetscBool     *sticks;        /* n: its slip has turned round since, so that it is to stick in the next set */

@@ -256,7 +256,7 @@ PetscErrorCode ModelDragArchive(Model, Archive, const Hdf5Table *nodes);
 PetscErrorCode ModelDragSolve(Model, SolveReport *);
 /* linearcontact.c */
 PetscErrorCode ModelResidualAt(Model, Vec x, PetscBool *ok, PetscReal *norm);
-PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
+PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec b, Vec y);
 /* linecuts.c */
 PetscErrorCode ModelCountCut(Model, Vec x);
 /* slopesearch.c */
