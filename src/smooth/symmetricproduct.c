@@ -5,6 +5,10 @@
 
 enum { TILE_ROWS = LANES, TILE_COLUMNS = PRODUCT_VECTORS * LANES };
 
+/* Rows of the factors that are summed at a time: those of a tile's columns then stay in the first cache while all tiles
+   above each other are computed. The factors of sixteen second variations have 288. */
+enum { PRODUCT_DEPTH = 96 };
+
 /*@
   SymmetricProductStride - gives the least length of a row of the factors, which is a whole number of tiles.
 
@@ -33,31 +37,38 @@ LANES_INLINE void AddOuterProducts(const int vectors, int depth, int stride, con
   }
 }
 
-/* Stores a square that lies above the diagonal and wholly within M. If M is wanted in full, stores the mirror image
-   too. */
-LANES_INLINE void StoreInside(const int full, int n, int row, int column, Lanes square[LANES], double *M)
+/* Stores a square that lies above the diagonal and wholly within M, or adds it to what stands there. If M is wanted in
+   full, stores the mirror image too. */
+LANES_INLINE void StoreInside(const int full, const int add, int n, int row, int column, Lanes square[LANES], double *M)
 {
-  for (int r = 0; r < LANES; r++) *(LanesInArray *)(M + (long)(row + r) * n + column) = square[r];
+  for (int r = 0; r < LANES; r++) {
+    LanesInArray *to = (LanesInArray *)(M + (long)(row + r) * n + column);
+
+    if (add) square[r] += *to;
+    *to = square[r];
+  }
   if (!full) return;
   Transpose(square);
   for (int r = 0; r < LANES; r++) *(LanesInArray *)(M + (long)(column + r) * n + row) = square[r];
 }
 
-/* Stores a square that lies on the diagonal or reaches past the end of M. */
-LANES_INLINE void StorePart(const int full, int n, int row, int column, Lanes square[LANES], double *M)
+/* Stores, or adds, a square that lies on the diagonal or reaches past the end of M. */
+LANES_INLINE void StorePart(const int full, const int add, int n, int row, int column, Lanes square[LANES], double *M)
 {
   for (int r = row; r < row + LANES && r < n; r++) {
     for (int c = column < r ? r : column; c < column + LANES && c < n; c++) {
-      M[(long)r * n + c] = square[r - row][c - column];
-      if (full) M[(long)c * n + r] = square[r - row][c - column];
+      const double entry = square[r - row][c - column] + (add ? M[(long)r * n + c] : 0);
+
+      M[(long)r * n + c] = entry;
+      if (full) M[(long)c * n + r] = entry;
     }
   }
 }
 
 /* Computes the tile at (row, column), which is a whole number of vectors wide. If M is wanted in full, its mirror
    image is stored too. */
-LANES_INLINE void ProductTile(const int full, const int vectors, int n, int depth, int stride, const double *K,
-                              const double *J, int row, int column, double *M)
+LANES_INLINE void ProductTile(const int full, const int add, const int vectors, int n, int depth, int stride,
+                              const double *K, const double *J, int row, int column, double *M)
 {
   Lanes tile[TILE_ROWS][PRODUCT_VECTORS] = {{{0}}};
 
@@ -69,14 +80,15 @@ LANES_INLINE void ProductTile(const int full, const int vectors, int n, int dept
 
     for (int r = 0; r < LANES; r++) square[r] = tile[r][c];
     if (first > row && first + LANES <= n)
-      StoreInside(full, n, row, first, square, M);
+      StoreInside(full, add, n, row, first, square, M);
     else
-      StorePart(full, n, row, first, square, M);
+      StorePart(full, add, n, row, first, square, M);
   }
 }
 
-LANES_INLINE void SymmetricProductTile(const int full, int n, int depth, int stride, const double *K, const double *J,
-                                       double *M)
+/* Computes the product of some rows of the factors, or adds it to M. */
+LANES_INLINE void ProductOfRows(const int full, const int add, int n, int depth, int stride, const double *K,
+                                const double *J, double *M)
 {
   for (int column = 0; column < n; column += TILE_COLUMNS) {
     const int end = LanesGroups(n) * LANES < column + TILE_COLUMNS ? LanesGroups(n) * LANES : column + TILE_COLUMNS;
@@ -85,11 +97,23 @@ LANES_INLINE void SymmetricProductTile(const int full, int n, int depth, int str
       const int first = row < column ? column : row;
 
       switch ((end - first) / LANES) {
-      case 1: ProductTile(full, 1, n, depth, stride, K, J, row, first, M); break;
-      case 2: ProductTile(full, 2, n, depth, stride, K, J, row, first, M); break;
-      case 3: ProductTile(full, 3, n, depth, stride, K, J, row, first, M); break;
+      case 1: ProductTile(full, add, 1, n, depth, stride, K, J, row, first, M); break;
+      case 2: ProductTile(full, add, 2, n, depth, stride, K, J, row, first, M); break;
+      case 3: ProductTile(full, add, 3, n, depth, stride, K, J, row, first, M); break;
       }
     }
+  }
+}
+
+/* Computes the product part by part of the factors' rows. */
+LANES_INLINE void ProductInParts(const int full, int n, int depth, int stride, const double *K, const double *J,
+                                 double *M)
+{
+  ProductOfRows(full, 0, n, depth < PRODUCT_DEPTH ? depth : PRODUCT_DEPTH, stride, K, J, M);
+  for (int k = PRODUCT_DEPTH; k < depth; k += PRODUCT_DEPTH) {
+    const int rows = depth - k < PRODUCT_DEPTH ? depth - k : PRODUCT_DEPTH;
+
+    ProductOfRows(full, 1, n, rows, stride, K + (long)k * stride, J + (long)k * stride, M);
   }
 }
 
@@ -113,7 +137,7 @@ LANES_INLINE void SymmetricProductTile(const int full, int n, int depth, int str
 @*/
 void SymmetricProduct(int n, int depth, int stride, const double *K, const double *J, double *M)
 {
-  SymmetricProductTile(1, n, depth, stride, K, J, M);
+  ProductInParts(1, n, depth, stride, K, J, M);
 }
 
 /*@
@@ -137,5 +161,5 @@ void SymmetricProduct(int n, int depth, int stride, const double *K, const doubl
 @*/
 void SymmetricProductUpper(int n, int depth, int stride, const double *K, const double *J, double *M)
 {
-  SymmetricProductTile(0, n, depth, stride, K, J, M);
+  ProductInParts(0, n, depth, stride, K, J, M);
 }

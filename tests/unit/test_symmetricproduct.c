@@ -1,4 +1,5 @@
-/* K^T J + J^T K is correct and symmetric to the last bit for all sizes around those of the tiles. */
+/* K^T J + J^T K is correct and symmetric to the last bit for all sizes around those of the tiles, and for factors whose
+   rows are summed in several parts. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,19 +8,22 @@
 #include <cmocka.h>
 #include "symmetricproduct.h"
 
-enum { MAX = 80, MAX_DEPTH = 15, STRIDE = 120 };
+enum { MAX = 80, MAX_DEPTH = 200, STRIDE = 120 };
 
 static void TestProduct(void **state)
 {
   static double K[MAX_DEPTH * STRIDE] __attribute__((aligned(64))), J[MAX_DEPTH * STRIDE] __attribute__((aligned(64))),
     M[MAX * MAX + 1], upper[MAX * MAX + 1];
+  const int depths[] = {1, 8, 15, 96, 97, MAX_DEPTH};
 
   (void)state;
   for (int i = 0; i < MAX_DEPTH * STRIDE; i++) {
     K[i] = sin(i + 1);
     J[i] = cos(3 * i);
   }
-  for (int depth = 1; depth <= MAX_DEPTH; depth += 7) {
+  for (int d = 0; d < (int)(sizeof(depths) / sizeof(depths[0])); d++) {
+    const int depth = depths[d];
+
     for (int n = 1; n <= MAX; n++) {
       assert_true(SymmetricProductStride(n) <= STRIDE);
       for (int i = 0; i <= n * n; i++) M[i] = upper[i] = 7;
