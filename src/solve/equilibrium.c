@@ -715,6 +715,7 @@ static PetscErrorCode ModelSolveDragged(Model model, PetscReal t, SolveReport *r
 {
   PetscFunctionBeginUser;
   report->result = SOLVE_CONVERGED;
+  PetscCall(ModelDragNote(model));
   PetscCall(ModelDragStart(model));
   PetscCall(ModelDepart(model, t));
   PetscCall(ModelStart(model, report));

@@ -281,7 +281,7 @@ PetscErrorCode ModelAccept(Model model)
     PetscCall(FluidSettle(model->problem->fluids, model->u, model->t));
     PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   }
-  PetscCall(ModelDragAccept(model));
+  PetscCall(ModelDragNote(model));
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);
   model->problem->force_so_far = ProblemForceScale(model->problem);

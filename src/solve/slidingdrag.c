@@ -187,14 +187,15 @@ static PetscErrorCode FindAny(Model model)
 }
 
 /*@
-  ModelDragAccept - notes the contact forces of the accepted state, from which springs may be made.
+  ModelDragNote - notes the contact forces of the last residual, from which springs may be made: those of the accepted
+  state, or those where held motions found no way, as places that came into contact on the way there slide, too.
 
   Collective
 
   Input Parameter:
-. model - its contact is that of the state, with fluids on wet places alone
+. model - with fluids on wet places alone, if the state is accepted
 @*/
-PetscErrorCode ModelDragAccept(Model model)
+PetscErrorCode ModelDragNote(Model model)
 {
   SlidingDrag *drag = &model->work->drag;
 

@@ -251,7 +251,7 @@ void           ModelReleaseHeld(Model);
 PetscErrorCode ModelDragDestroy(SlidingDrag *);
 PetscErrorCode ModelDragStart(Model);
 PetscErrorCode ModelDragBegin(Model);
-PetscErrorCode ModelDragAccept(Model);
+PetscErrorCode ModelDragNote(Model);
 PetscErrorCode ModelDragArchive(Model, Archive, const Hdf5Table *nodes);
 PetscErrorCode ModelDragSolve(Model, SolveReport *);
 /* linearcontact.c */
