@@ -71,8 +71,7 @@ static PetscErrorCode FindLength(Model model, PetscReal *length)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes springs as stiff as the contact forces of the accepted state over the length, without force there. Within a
-   step a fluid carries a part of the forces, and its load may lie where nothing is wet. */
+/* Makes springs as stiff as the contact forces that were noted over the length, without force in the accepted state. */
 static PetscErrorCode MakeSprings(Model model)
 {
   SlidingDrag *drag    = &model->work->drag;

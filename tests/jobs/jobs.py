@@ -353,6 +353,9 @@ JOBS = [
     Job("coin", "disc coined in a collar", [
         Answer("relief", 0.12704, 0.16, "limit"),
     ], steps=35, pairs=3, picture=["--mirror", "x"], stiff=["stepping.dt_max=0.04"]),
+    Job("die_pressed", "plate pressed by a flat die with rounded edges", [
+        Answer("force", 717.1, 0.1, "limit"),
+    ], steps=20, pairs=2, picture=["--mirror", "x"], levels=(2, 3, 4.5), stiff=["stepping.dt_max=0.04"]),
     Job("bead_pressed", "bead pressed into a strip over a groove", [
         Answer("draw", -5.444, 0.05, "limit"),
     ], steps=25, pairs=2, picture=["--mirror", "x"], stiff=["mesh.order=1", "stepping.dt_max=0.02"]),
