@@ -20,7 +20,7 @@ typedef struct {
   ContactSides of;
   Side         side[2]; /* the second is NULL where the master is analytic */
   PieceList    near[2]; /* pieces of each side that come near this rank's part of the other one */
-  PieceList    beside;  /* pieces of the side that is judged, where it comes near the other one */
+  PieceList    beside;  /* pieces of a tool that is judged, where it comes near the other side */
 } CertifiedPair;
 
 struct _n_Certificate {
@@ -31,7 +31,7 @@ struct _n_Certificate {
   int                n;
   CertifiedPair     *pairs;
   PetscReal         *pressed;   /* of each node of the mesh, of one pair */
-  Look               look, own; /* at the other side; at the side that is judged */
+  Look               look, own; /* at the other side; at the side that is judged, if that is a tool */
   CertificateFigures figures;
 };
 
@@ -133,7 +133,7 @@ static PetscErrorCode BeginLook(int dim, const PieceList *list, Look *look)
 static PetscErrorCode LookBeside(Certificate certificate, CertifiedPair *pair, int s, const Box near)
 {
   const PieceList *list   = &pair->near[1 - s];
-  const PetscReal  extent = pair->side[1 - s]->surface->max_extent + pair->side[s]->surface->max_extent;
+  const PetscReal  margin = pair->side[s]->surface->max_extent + certificate->look.overlap;
   Box              beside;
 
   PetscFunctionBeginUser;
@@ -141,9 +141,12 @@ static PetscErrorCode LookBeside(Certificate certificate, CertifiedPair *pair, i
   if (!pair->side[s]->surface->rigid) PetscFunctionReturn(PETSC_SUCCESS);
   BoxAround(0, NULL, beside);
   for (PetscInt k = 0; k < list->n; k++) {
+    const Piece    *piece  = &list->pieces[k];
+    const PetscReal extent = margin + piece->order * piece->side; /* as it is stretched */
+
     for (int d = 0; d < 3; d++) {
-      beside[d]     = PetscMin(beside[d], PetscMax(near[d], list->pieces[k].box[d]) - extent);
-      beside[3 + d] = PetscMax(beside[3 + d], PetscMin(near[3 + d], list->pieces[k].box[3 + d]) + extent);
+      beside[d]     = PetscMin(beside[d], PetscMax(near[d], piece->box[d]) - extent);
+      beside[3 + d] = PetscMax(beside[3 + d], PetscMin(near[3 + d], piece->box[3 + d]) + extent);
     }
   }
   PetscCall(SideShare(pair->side[s], beside, pair->of.n_images, pair->of.images, &pair->beside));
@@ -166,10 +169,10 @@ static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, in
   PetscFunctionBeginUser;
   SideBox(own, near);
   PetscCall(SideShare(pair->side[1 - s], near, pair->of.n_images, pair->of.images, list));
+  look->overlap = overlap;
   PetscCall(LookBeside(certificate, pair, s, near));
   if (!list->n) PetscFunctionReturn(PETSC_SUCCESS);
   look->penetration = certificate->scene->certificate.penetration;
-  look->overlap     = overlap;
   look->walls       = pair->of.scene->listed;
   for (int k = 0; k < 2; k++) {
     const int side = k ? 1 - s : s;

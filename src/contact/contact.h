@@ -184,6 +184,7 @@ PetscErrorCode ContactMultiplyEnd(Contact, PetscReal *y);
 PetscErrorCode ContactHoldActiveSet(Contact, PetscBool holding, PetscBool touching);
 PetscErrorCode ContactHoldSolved(Contact, PetscBool again);
 PetscErrorCode ContactHoldExpected(Contact, PetscBool last, PetscBool *any);
+PetscErrorCode ContactDropExpected(Contact);
 PetscErrorCode ContactMarkPredicted(Contact);
 PetscErrorCode ContactPredictionMissed(Contact, PetscBool *missed);
 PetscErrorCode ContactUnpredictedEnergy(Contact, const PetscReal *u, PetscReal t, PetscReal *energy);

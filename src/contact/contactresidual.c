@@ -265,7 +265,7 @@ PetscErrorCode ContactHoldSolved(Contact contact, PetscBool again)
 
 /*@
   ContactHoldExpected - begins a linear step, in which what is in contact stays so, and what pressed at the end of the
-linear step to the present state is pulled there.
+  linear step to the present state is pulled there.
 
   Collective
 
@@ -278,7 +278,7 @@ linear step to the present state is pulled there.
 
   Note:
   Surfaces are curved and bodies turn, so that a linear step leaves a little open of what it is to close. That may be
-all that holds a body.
+  all that holds a body. ContactDropExpected() follows where the new step is not taken.
 @*/
 PetscErrorCode ContactHoldExpected(Contact contact, PetscBool last, PetscBool *any)
 {
@@ -299,6 +299,26 @@ PetscErrorCode ContactHoldExpected(Contact contact, PetscBool last, PetscBool *a
     ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++) pair->held[c] = (PetscBool)(pair->held[c] || pair->arrived[c]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactDropExpected - forgets what the step of ContactHoldExpected() was to press, because it is not taken.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact
+@*/
+PetscErrorCode ContactDropExpected(Contact contact)
+{
+  PetscFunctionBeginUser;
+  ContactForgetForeseen(contact);
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    PetscCall(PetscArraycpy(pair->expected, pair->arrived, pair->n));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -593,6 +593,9 @@ PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, co
   Input Parameters:
 + step    - the step
 - pressed - pressed[n] of the terms of all ranks
+
+  Note:
+  While only what the prediction did not count on is softened, no step predicts.
 @*/
 PetscErrorCode ContactStepMarkPredicted(ContactStep step, const PetscBool *pressed)
 {
@@ -607,7 +610,7 @@ PetscErrorCode ContactStepMarkPredicted(ContactStep step, const PetscBool *press
     const ContactPair *pair = &step->contact->pairs[step->pair[i]];
 
     pair->expected[step->term[i]] = pressed[step->place[i]];
-    if (pair->holding) pair->predicted[step->term[i]] = pressed[step->place[i]];
+    if (pair->holding && pair->most == pair->predicted_most) pair->predicted[step->term[i]] = pressed[step->place[i]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

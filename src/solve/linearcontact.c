@@ -310,7 +310,8 @@ static PetscErrorCode LinearContactFails(Model model, Vec y, PetscBool *fails)
 
 /* Changes the step y by the excess pressures, which makes its contact right. *taken: that was done. It is not where the
    changed step moves the surfaces further than the terms were chosen for: *beyond is set, and `reach` becomes that
-   step. Nor is it where it ends at a part of the step although the whole of it, with its wrong contact, converges. */
+   step. Nor is it where it ends at a part of the step although the whole of it, with its wrong contact, converges:
+   that step serves as it is. */
 static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, PetscReal t, LinearContact *s, Vec reach,
                                         Vec y, PetscBool *taken, PetscBool *beyond)
 {
@@ -334,7 +335,8 @@ static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, P
   }
   PetscCall(LocalChange(model, end, -1, carried, s->du));
   PetscCall(ContactStepWithin(s->contact, s->du, t, model->t, taken));
-  *beyond = (PetscBool) !*taken;
+  *beyond                = (PetscBool) !*taken;
+  model->work->unsettled = *beyond;
   if (*beyond) PetscCall(VecCopy(end, reach));
   if (*taken && part < 1) PetscCall(LinearContactFails(model, y, taken));
   if (*taken) PetscCall(ContactStepMarkPredicted(s->contact, pressed));
@@ -371,8 +373,8 @@ static PetscErrorCode LinearContactTry(Model model, const PetscReal *u, const Pe
     PetscCall(LinearContactSolve(model, &s, &m, which, &converged));
     if (m) PetscCall(LinearContactAdd(model, &s, m, which, &able));
   }
-  if (converged) PetscCall(LinearContactTake(model, carried, t, &s, reach, y, &converged, beyond));
   model->work->unsettled = (PetscBool)!converged;
+  if (converged) PetscCall(LinearContactTake(model, carried, t, &s, reach, y, &converged, beyond));
   PetscCall(PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s\n", s.n, s.m,
                       converged ? "settled" : "left to the next iteration"));
   PetscCall(PetscFree(which));

@@ -1,5 +1,6 @@
 /* The line search of Newton's method: what it compares, and how Newton's step is corrected for contact before it. */
 #include "bodies/tools.h"
+#include "contact/contactturn.h"
 #include "mesh/meshdofs.h"
 #include "mesh/pressurenodes.h"
 #include "modelimpl.h"
@@ -11,7 +12,6 @@
 #define LINE_NEAR 1e-4
 /* A solve with friction has stalled if its residual is still above this part of that LINE_MEMORY iterations before. */
 #define LINE_STALL 0.9
-#include "contact/contactturn.h"
 
 /* Below this residual, relative to F_ref, the energies that the line search compares differ by round-off only, because
    their differences go with the square of the residual. From there on residuals are compared. */
@@ -189,7 +189,7 @@ static PetscErrorCode ModelTurnStep(Model model, SNES snes, Vec F, Vec y, PetscR
 }
 
 /* Makes the linear step from the iterate x anew, with the contact held that ContactHoldExpected() has begun to hold,
-   and ends that. *ok: no element is inverted, and the step was found. */
+   and ends that. *ok: no element is inverted, and the step was found. It is of no use otherwise. */
 static PetscErrorCode ModelSolveHolding(Model model, SNES snes, Vec step, PetscBool *ok)
 {
   const Problem problem = model->problem;
@@ -229,8 +229,11 @@ static PetscErrorCode ModelHoldStep(Model model, SNES snes, Vec F, Vec y, PetscR
   PetscCall(ModelSolveHolding(model, snes, step, &ok));
   PetscCall(VecDotRealPart(F, step, &held));
   PetscCall(PetscInfo(snes, "a step that leads uphill is made anew with contact held: slope %g\n", (double)held));
-  if (held > 0) PetscCall(VecCopy(step, y));
-  if (held > 0) *slope = held;
+  if (ok && held > 0) {
+    PetscCall(VecCopy(step, y));
+    *slope = held;
+  } else
+    PetscCall(ContactDropExpected(model->contact));
   PetscCall(VecDestroy(&step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -252,14 +255,17 @@ static PetscErrorCode ModelHoldUnsettled(Model model, SNES snes, Vec y)
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(y, &step));
   PetscCall(ModelSolveHolding(model, snes, step, &ok));
-  ok = (PetscBool)(ok && !model->work->unsettled);
   PetscCall(VecNorm(y, NORM_2, &length));
   PetscCall(VecNorm(step, NORM_2, &held));
   PetscCall(PetscInfo(snes,
                       "a step with unsettled contact is made anew with contact held, %ssettled: %g of its length\n",
-                      ok ? "" : "not ", (double)(held / length)));
-  model->work->unsettled = (PetscBool)(!ok || held >= length);
-  if (held < length) PetscCall(VecCopy(step, y));
+                      model->work->unsettled ? "not " : "", (double)(held / length)));
+  if (ok && held < length)
+    PetscCall(VecCopy(step, y));
+  else {
+    PetscCall(ContactDropExpected(model->contact));
+    model->work->unsettled = PETSC_TRUE;
+  }
   PetscCall(VecDestroy(&step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,7 @@
 """Runs judge their steps by default: a needle in a film and beams that cross edge on edge are refused with node, edge
-and place, on any number of ranks; cubes that overhang each other are not, and outer forces and moments balance. What
-the work from outside misses of all energies falls with the square of the step, with self contact and with friction."""
+and place, on any number of ranks. Cubes that overhang each other are not, nor is a coarse plate where it rises beside
+the flat of a punch that it resists. Outer forces and moments balance. What the work from outside misses of all energies
+falls with the square of the step, with self contact and with friction."""
 import re
 
 from harness import Check, arguments, run, SCENES
@@ -9,7 +10,7 @@ BALANCE = 1e-12  # of the outer forces
 RULE = (3, 5)  # by which the error of the trapezoidal rule falls with steps of half the length
 ARMS = 1e-3  # of their moments: surfaces that press stand a little in each other
 
-args = arguments(("case", "needle, beams, blocks or energy"))
+args = arguments(("case", "needle, beams, punch, blocks or energy"))
 check = Check()
 if args.case == "needle":
     film = run(args, SCENES / "film.yaml", out="film", must=2)
@@ -25,6 +26,13 @@ elif args.case == "beams":
         beams = run(args, SCENES / "crossed_beams.yaml", out=f"beams{gap}", must=2,
                     overrides=[f"mesh.parameters.gap={gap}", "stepping={control: fixed, initial: 0.5, dt_min: 0.2}"])
         check.holds(f"gap {gap}: the edges are named", re.search(r"the edge of the nodes \d+ and \d+ ", beams.text))
+elif args.case == "punch":
+    plate = run(args, SCENES / "plate_under_punch.yaml", out="plate").summary()
+    check.holds("a face that rises beside the punch's flat is explained",
+                plate["certified"] is True and plate["steps_failed"] == 0, str(plate["certificate"]))
+    soft = run(args, SCENES / "plate_under_punch.yaml", out="soft", must=2,
+               overrides=["contact.0.penalty={initial: 0.1, scale: 1e-3}"])
+    check.holds("a punch that the plate does not resist is refused there", "cannot be certified" in soft.text)
 elif args.case == "energy":
     folding, jobs = SCENES.parent.parent / "runs/folding", SCENES.parent / "jobs"
     for scene in (folding / "bellows.yaml", jobs / "rope_on_bollard.yaml"):

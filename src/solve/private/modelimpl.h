@@ -157,7 +157,7 @@ typedef struct _n_ModelWork {
   PetscBool extrapolated; /* the prediction started from the extrapolated state */
   PetscBool held;         /* no contact lists were replaced at a solution */
   PetscBool staged;       /* penalties may change after the solution: lists need not settle at it */
-  PetscBool unsettled;    /* the contact at the end of the last linear step was not found */
+  PetscBool unsettled;    /* the last linear step has not found its contact, and may not serve without it */
   PetscBool softens;      /* soft penalties are those of all contact, also of what the prediction counted on */
   PetscBool strayed;      /* a step uphill close to an equilibrium was turned round: the solve may end far from there */
   PetscReal jumped;       /* distance by which the last attempt of this step jumped (length); 0: it did not */
