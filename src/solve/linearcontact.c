@@ -41,11 +41,6 @@
 /* And a step that is carried along by prescribed motions this part of F_ref. */
 #define LINEAR_CONTACT_CARRIED 0.01
 
-/* A contact problem whose solution moves the surfaces farther than its terms were chosen for is solved so many times in
-   all, each time with the terms that the solution before it may reach. A thin sheet moves by ten times what the step
-   says that holds it too much. */
-#define LINEAR_CONTACT_REACHES 3
-
 /* Newton's method converges with a step after which the residual is below this part of what it was. */
 #define LINEAR_CONTACT_CONVERGES 0.5
 
@@ -88,9 +83,9 @@ static PetscErrorCode LinearContactEnough(Model model, PetscBool carried, Vec b,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the terms that may change in the step y and the travel of their gaps: those that the step `reach` may reach. */
+/* Finds the terms that may change in the step y and the travel of their gaps. */
 static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec b,
-                                         Vec reach, Vec y, LinearContact *s)
+                                         Vec y, LinearContact *s)
 {
   const PetscBool      moved = (PetscBool)(carried || t != model->t);
   const ActiveSetTerm *terms;
@@ -101,7 +96,7 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
   *s = (LinearContact){.n = 0};
   PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &s->rank));
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &s->du));
-  PetscCall(LocalChange(model, reach, -1, carried, s->du));
+  PetscCall(LocalChange(model, y, -1, carried, s->du));
   PetscCall(ContactStepCreate(model->contact, u, s->du, t, model->t, &s->contact));
   PetscCall(ContactStepGetTerms(s->contact, &s->n, &terms));
   s->all = s->n * ContactStepParts(s->contact);
@@ -109,7 +104,6 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
   s->most =
     PetscMax(LINEAR_CONTACT_TERMS * ContactStepParts(s->contact), (PetscInt)(LINEAR_CONTACT_CHEAP / PetscMax(1, size)));
   PetscCall(PetscMalloc1(s->all, &s->travel));
-  PetscCall(LocalChange(model, y, -1, carried, s->du));
   PetscCall(ContactStepChange(s->contact, s->du, t, model->t, s->travel));
   if (!s->rank) PetscCall(ActiveSetCreate(s->n, ContactStepParts(s->contact), s->most, terms, s->travel, &s->active));
   if (!s->rank) ActiveSetBound(s->active, LINEAR_CONTACT_WORK * (PetscReal)size);
@@ -309,11 +303,11 @@ static PetscErrorCode LinearContactFails(Model model, Vec y, PetscBool *fails)
 }
 
 /* Changes the step y by the excess pressures, which makes its contact right. *taken: that was done. It is not where the
-   changed step moves the surfaces further than the terms were chosen for: *beyond is set, and `reach` becomes that
-   step. Nor is it where it ends at a part of the step although the whole of it, with its wrong contact, converges:
-   that step serves as it is. */
-static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, PetscReal t, LinearContact *s, Vec reach,
-                                        Vec y, PetscBool *taken, PetscBool *beyond)
+   changed step moves the surfaces further than the terms were chosen for, as with a body that has lost its support, nor
+   where it ends at a part of the step although the whole of it, with its wrong contact, converges: that step serves as
+   it is. */
+static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, PetscReal t, LinearContact *s, Vec y,
+                                        PetscBool *taken)
 {
   PetscReal *excess, part;
   PetscBool *pressed;
@@ -335,9 +329,7 @@ static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, P
   }
   PetscCall(LocalChange(model, end, -1, carried, s->du));
   PetscCall(ContactStepWithin(s->contact, s->du, t, model->t, taken));
-  *beyond                = (PetscBool) !*taken;
-  model->work->unsettled = *beyond;
-  if (*beyond) PetscCall(VecCopy(end, reach));
+  model->work->unsettled = (PetscBool) !*taken;
   if (*taken && part < 1) PetscCall(LinearContactFails(model, y, taken));
   if (*taken) PetscCall(ContactStepMarkPredicted(s->contact, pressed));
   if (*taken) PetscCall(VecCopy(end, y));
@@ -353,33 +345,6 @@ static PetscErrorCode LinearContactForesee(Model model, const PetscReal *carried
   if (!model->work->foresees) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LocalChange(model, y, -1, carried, s->du));
   PetscCall(ContactStepForesee(s->contact, s->du, t, model->t));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Solves the contact problem of the step y with the terms that the step `reach` may reach, as
-   ModelSolveLinearContact() says. *beyond as LinearContactTake() says. */
-static PetscErrorCode LinearContactTry(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec b,
-                                       Vec reach, Vec y, PetscBool *beyond)
-{
-  PetscBool     able = PETSC_TRUE, converged = PETSC_FALSE;
-  PetscInt     *which, m                     = 1;
-  LinearContact s;
-
-  PetscFunctionBeginUser;
-  *beyond = PETSC_FALSE;
-  PetscCall(LinearContactBegin(model, u, carried, t, b, reach, y, &s));
-  PetscCall(PetscMalloc1(s.all, &which));
-  while (able && m) {
-    PetscCall(LinearContactSolve(model, &s, &m, which, &converged));
-    if (m) PetscCall(LinearContactAdd(model, &s, m, which, &able));
-  }
-  model->work->unsettled = (PetscBool)!converged;
-  if (converged) PetscCall(LinearContactTake(model, carried, t, &s, reach, y, &converged, beyond));
-  PetscCall(PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s\n", s.n, s.m,
-                      converged ? "settled" : "left to the next iteration"));
-  PetscCall(PetscFree(which));
-  PetscCall(LinearContactForesee(model, carried, t, y, &s));
-  PetscCall(LinearContactEnd(&s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -412,8 +377,9 @@ static PetscErrorCode LinearContactTry(Model model, const PetscReal *u, const Pe
 PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec b,
                                        Vec y)
 {
-  PetscBool able, beyond = PETSC_TRUE;
-  Vec       reach;
+  PetscBool     able, converged = PETSC_FALSE;
+  PetscInt     *which, m        = 1;
+  LinearContact s;
 
   PetscFunctionBeginUser;
   model->work->unsettled = PETSC_FALSE;
@@ -424,11 +390,19 @@ PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const Pe
   PetscCall(LinearSolverDirect(model->work->solver, &able));
   if (!able) PetscFunctionReturn(PETSC_SUCCESS);
   TimingBegin(TIMING_ASSEMBLY_CONTACT);
-  PetscCall(VecDuplicate(y, &reach));
-  PetscCall(VecCopy(y, reach));
-  for (int i = 0; i < LINEAR_CONTACT_REACHES && beyond; i++)
-    PetscCall(LinearContactTry(model, u, carried, t, b, reach, y, &beyond));
-  PetscCall(VecDestroy(&reach));
+  PetscCall(LinearContactBegin(model, u, carried, t, b, y, &s));
+  PetscCall(PetscMalloc1(s.all, &which));
+  while (able && m) {
+    PetscCall(LinearContactSolve(model, &s, &m, which, &converged));
+    if (m) PetscCall(LinearContactAdd(model, &s, m, which, &able));
+  }
+  model->work->unsettled = (PetscBool)!converged;
+  if (converged) PetscCall(LinearContactTake(model, carried, t, &s, y, &converged));
+  PetscCall(PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s\n", s.n, s.m,
+                      converged ? "settled" : "left to the next iteration"));
+  PetscCall(PetscFree(which));
+  PetscCall(LinearContactForesee(model, carried, t, y, &s));
+  PetscCall(LinearContactEnd(&s));
   TimingEnd(TIMING_ASSEMBLY_CONTACT);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
