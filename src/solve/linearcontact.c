@@ -329,7 +329,7 @@ static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, P
   }
   PetscCall(LocalChange(model, end, -1, carried, s->du));
   PetscCall(ContactStepWithin(s->contact, s->du, t, model->t, taken));
-  model->work->unsettled = (PetscBool) !*taken;
+  model->work->unsettled = model->work->beyond = (PetscBool) !*taken;
   if (*taken && part < 1) PetscCall(LinearContactFails(model, y, taken));
   if (*taken) PetscCall(ContactStepMarkPredicted(s->contact, pressed));
   if (*taken) PetscCall(VecCopy(end, y));
@@ -382,7 +382,7 @@ PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const Pe
   LinearContact s;
 
   PetscFunctionBeginUser;
-  model->work->unsettled = PETSC_FALSE;
+  model->work->unsettled = model->work->beyond = PETSC_FALSE;
   PetscCall(ModelHoldInStep(model, y));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   ContactForgetForeseen(model->contact);

@@ -158,6 +158,7 @@ typedef struct _n_ModelWork {
   PetscBool held;         /* no contact lists were replaced at a solution */
   PetscBool staged;       /* penalties may change after the solution: lists need not settle at it */
   PetscBool unsettled;    /* the last linear step has not found its contact, and may not serve without it */
+  PetscBool beyond;       /* because its solution goes farther than the terms were chosen for */
   PetscBool softens;      /* soft penalties are those of all contact, also of what the prediction counted on */
   PetscBool strayed;      /* a step uphill close to an equilibrium was turned round: the solve may end far from there */
   PetscReal jumped;       /* distance by which the last attempt of this step jumped (length); 0: it did not */
