@@ -71,15 +71,19 @@ static PetscErrorCode LocalChange(Model model, Vec x, PetscReal scale, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What force friction may leave out of balance at the end of the step, which begins with the residual b. To a step that
-   is carried along this tells nothing: b has what prescribed motions do to cells and contact. */
-static PetscErrorCode LinearContactEnough(Model model, PetscBool carried, Vec b, PetscReal *force)
+/* Says what force friction may leave out of balance at the end of the step, which begins with the residual b. To a step
+   that is carried along this tells nothing: b has what prescribed motions do to cells and contact. */
+static PetscErrorCode LinearContactEnough(Model model, PetscBool carried, Vec b, const LinearContact *s)
 {
+  PetscReal force = LINEAR_CONTACT_CARRIED * ProblemForceScale(model->problem), norm;
+
   PetscFunctionBeginUser;
-  *force = LINEAR_CONTACT_CARRIED * ProblemForceScale(model->problem);
-  if (carried) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecNorm(b, NORM_2, force));
-  *force *= LINEAR_CONTACT_ENOUGH;
+  if (!ContactHasFriction(model->contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!carried) {
+    PetscCall(VecNorm(b, NORM_2, &norm));
+    force = LINEAR_CONTACT_ENOUGH * norm;
+  }
+  if (!s->rank) ActiveSetEnough(s->active, force);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,7 +93,6 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
 {
   const PetscBool      moved = (PetscBool)(carried || t != model->t);
   const ActiveSetTerm *terms;
-  PetscReal            enough;
   PetscInt             size;
 
   PetscFunctionBeginUser;
@@ -107,8 +110,7 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
   PetscCall(ContactStepChange(s->contact, s->du, t, model->t, s->travel));
   if (!s->rank) PetscCall(ActiveSetCreate(s->n, ContactStepParts(s->contact), s->most, terms, s->travel, &s->active));
   if (!s->rank) ActiveSetBound(s->active, LINEAR_CONTACT_WORK * (PetscReal)size);
-  PetscCall(LinearContactEnough(model, moved, b, &enough));
-  if (!s->rank) ActiveSetEnough(s->active, enough);
+  PetscCall(LinearContactEnough(model, moved, b, s));
   if (!s->rank && !moved) ActiveSetAllowPart(s->active);
   if (!s->rank && model->work->stalled) ActiveSetLeaveRelaxation(s->active);
   PetscFunctionReturn(PETSC_SUCCESS);

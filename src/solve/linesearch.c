@@ -313,7 +313,7 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
     PetscCall(ModelHoldMotion(model, x, F, y, near));
   }
   PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, F, y));
-  if (model->contact && ContactHasFriction(model->contact)) PetscCall(ModelHoldUnsettled(model, snes, y));
+  if (ContactHasFriction(model->contact)) PetscCall(ModelHoldUnsettled(model, snes, y));
   if (model->work->objective == OBJECTIVE_RESIDUAL || ContactHasFriction(model->contact))
     PetscFunctionReturn(PETSC_SUCCESS);
   if (model->contact && conservative && model->work->energy == 0)

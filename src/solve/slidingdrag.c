@@ -11,10 +11,10 @@
    below this part of what it was, the load step may end with as much as dry rubber has at least, and the next ones go
    on. */
 enum { DRAG_IDLE = 4 };
-/* After so many the step has failed: on a very coarse mesh the springs may ask for more than that for ever. */
-enum { DRAG_MOST = 100 };
 #define DRAG_PAYS          0.5
 #define DRAG_FRICTION_FIRM 0.1
+/* After so many in a row the step has failed: on a very coarse mesh the springs may ask for more than that for ever. */
+enum { DRAG_MOST = 100 };
 
 /* Volume of the bodies of this rank in the reference. */
 static PetscReal Volume(const Model model)
