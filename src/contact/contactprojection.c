@@ -148,6 +148,6 @@ PetscErrorCode ContactPairMove(Contact contact, ContactPair *pair, const PetscRe
 {
   PetscFunctionBeginUser;
   PetscCall(NeighbourListsBroadcast(pair->search, pair->lists, x, t, t_next, values));
-  if (!pair->master && !pair->tool) AnalyticTravel(contact, pair, t, t_next, values);
+  if (!pair->master && !pair->tool && t != t_next) AnalyticTravel(contact, pair, t, t_next, values);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -177,15 +177,19 @@ PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, Ne
 PetscErrorCode NeighbourListsBroadcast(ContactSearch s, NeighbourLists lists, const PetscReal *x, PetscReal t,
                                        PetscReal t_next, PetscReal *values)
 {
+  const int dim = lists->dim;
+
   PetscFunctionBeginUser;
   PetscCall(PetscSFBcastBegin(lists->sf, lists->block, x, values, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(lists->sf, lists->block, x, values, MPI_REPLACE));
+  PetscCall(PetscArrayzero(&values[lists->n_deformable * dim], (lists->n_nodes - lists->n_deformable) * dim));
+  if (s->tool || t == t_next) PetscFunctionReturn(PETSC_SUCCESS); /* linear problems ask for thousands of such moves */
   for (PetscInt i = lists->n_deformable; i < lists->n_nodes; i++) {
     PetscReal from[3], to[3];
 
     SearchRigidPosition(s, lists->node_id[i], t, from);
     SearchRigidPosition(s, lists->node_id[i], t_next, to);
-    for (int d = 0; d < lists->dim; d++) values[i * lists->dim + d] = s->tool ? 0 : to[d] - from[d];
+    for (int d = 0; d < dim; d++) values[i * dim + d] = to[d] - from[d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
