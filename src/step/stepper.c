@@ -700,8 +700,8 @@ static PetscBool LosesStability(const StepperReport *report, const SolveReport *
 }
 
 /* Says whether an unstable equilibrium counts as none. Where damping is the last resort it does if solves for the load
-   have failed: Newton's method has then wandered there, and does not follow the stable states before. That is asked once
-   only: a damped solve comes next. */
+   have failed: Newton's method has then wandered there, and does not follow the stable states before. That is asked
+   once only: a damped solve comes next. */
 static PetscBool RefusesUnstable(LoadStepper stepper)
 {
   const Wall       *wall    = &stepper->tried.wall;
