@@ -381,9 +381,9 @@ const SchemaKey SchemaKeys[] = {
   {"stepping.damping", CHOICE, .values = "none | last | auto", .preset = "last",
    .help = "where static steps fail, Newton's method goes on with a tangent that is stiffened as long as it is not "
            "positive definite; the end is a static equilibrium, and the last screen says how much energy was lost. last: "
-           "where the run would stop, and once before, after six failed solves for a load; auto: each time after three "
-           "failed solves for a load, where an unstable equilibrium after a stable one counts as a failure; none: "
-           "never"},
+           "where the run would stop, and once before, after six failed solves for a load, or after a failed one where an "
+           "unstable equilibrium follows a stable one; auto: each time after three failed solves for a load, where an "
+           "unstable equilibrium after a stable one counts as a failure; none: never"},
   {"stepping.at", REALS, .range = "(0, 1]", .help = "load parameters at which a step must end"},
   {"stepping.steps", LIST, .range = "[1, inf)",
    .help = "parts of the way from t = 0 to 1, with names that `during` uses. Each may have many load steps, and one ends "

@@ -87,9 +87,9 @@ static PetscErrorCode LinearContactEnough(Model model, PetscBool carried, Vec b,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the terms that may change in the step y and the travel of their gaps. */
+/* Finds the terms that may change in the step y and the travel of their gaps: those that the step `reach` may reach. */
 static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec b,
-                                         Vec y, LinearContact *s)
+                                         Vec reach, Vec y, LinearContact *s)
 {
   const PetscBool      moved = (PetscBool)(carried || t != model->t);
   const ActiveSetTerm *terms;
@@ -99,7 +99,7 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
   *s = (LinearContact){.n = 0};
   PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &s->rank));
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &s->du));
-  PetscCall(LocalChange(model, y, -1, carried, s->du));
+  PetscCall(LocalChange(model, reach, -1, carried, s->du));
   PetscCall(ContactStepCreate(model->contact, u, s->du, t, model->t, &s->contact));
   PetscCall(ContactStepGetTerms(s->contact, &s->n, &terms));
   s->all = s->n * ContactStepParts(s->contact);
@@ -107,6 +107,7 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
   s->most =
     PetscMax(LINEAR_CONTACT_TERMS * ContactStepParts(s->contact), (PetscInt)(LINEAR_CONTACT_CHEAP / PetscMax(1, size)));
   PetscCall(PetscMalloc1(s->all, &s->travel));
+  PetscCall(LocalChange(model, y, -1, carried, s->du));
   PetscCall(ContactStepChange(s->contact, s->du, t, model->t, s->travel));
   if (!s->rank) PetscCall(ActiveSetCreate(s->n, ContactStepParts(s->contact), s->most, terms, s->travel, &s->active));
   if (!s->rank) ActiveSetBound(s->active, LINEAR_CONTACT_WORK * (PetscReal)size);
@@ -305,11 +306,11 @@ static PetscErrorCode LinearContactFails(Model model, Vec y, PetscBool *fails)
 }
 
 /* Changes the step y by the excess pressures, which makes its contact right. *taken: that was done. It is not where the
-   changed step moves the surfaces further than the terms were chosen for, as with a body that has lost its support, nor
-   where it ends at a part of the step although the whole of it, with its wrong contact, converges: that step serves as
-   it is. */
-static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, PetscReal t, LinearContact *s, Vec y,
-                                        PetscBool *taken)
+   changed step moves the surfaces further than the terms were chosen for: work->beyond is set, and `reach` becomes that
+   step. Nor is it where it ends at a part of the step although the whole of it, with its wrong contact, converges:
+   that step serves as it is. */
+static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, PetscReal t, LinearContact *s, Vec reach,
+                                        Vec y, PetscBool *taken)
 {
   PetscReal *excess, part;
   PetscBool *pressed;
@@ -332,6 +333,7 @@ static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, P
   PetscCall(LocalChange(model, end, -1, carried, s->du));
   PetscCall(ContactStepWithin(s->contact, s->du, t, model->t, taken));
   model->work->unsettled = model->work->beyond = (PetscBool) !*taken;
+  if (!*taken) PetscCall(VecCopy(end, reach));
   if (*taken && part < 1) PetscCall(LinearContactFails(model, y, taken));
   if (*taken) PetscCall(ContactStepMarkPredicted(s->contact, pressed));
   if (*taken) PetscCall(VecCopy(end, y));
@@ -347,6 +349,33 @@ static PetscErrorCode LinearContactForesee(Model model, const PetscReal *carried
   if (!model->work->foresees) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LocalChange(model, y, -1, carried, s->du));
   PetscCall(ContactStepForesee(s->contact, s->du, t, model->t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves the contact problem of the step y with the terms that the step `reach` may reach, as
+   ModelSolveLinearContact() says. */
+static PetscErrorCode LinearContactTry(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec b,
+                                       Vec reach, Vec y)
+{
+  PetscBool     able = PETSC_TRUE, converged = PETSC_FALSE;
+  PetscInt     *which, m                     = 1;
+  LinearContact s;
+
+  PetscFunctionBeginUser;
+  model->work->beyond = PETSC_FALSE;
+  PetscCall(LinearContactBegin(model, u, carried, t, b, reach, y, &s));
+  PetscCall(PetscMalloc1(s.all, &which));
+  while (able && m) {
+    PetscCall(LinearContactSolve(model, &s, &m, which, &converged));
+    if (m) PetscCall(LinearContactAdd(model, &s, m, which, &able));
+  }
+  model->work->unsettled = (PetscBool)!converged;
+  if (converged) PetscCall(LinearContactTake(model, carried, t, &s, reach, y, &converged));
+  PetscCall(PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s\n", s.n, s.m,
+                      converged ? "settled" : "left to the next iteration"));
+  PetscCall(PetscFree(which));
+  PetscCall(LinearContactForesee(model, carried, t, y, &s));
+  PetscCall(LinearContactEnd(&s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -373,15 +402,19 @@ static PetscErrorCode LinearContactForesee(Model model, const PetscReal *carried
   of the step, linear but for its contact conditions, is solved to its end with the factor that is known. With friction
   it finds what sticks and what slips too: a pinched pipe takes 65 iterations instead of 88.
 
+  Where the solution moves the surfaces farther than the terms were chosen for, the problem is solved once more, with
+the terms that it may reach. Where that solution goes too far in its turn, as with a body that has lost its support, the
+  step stays as it is: a third solution took a loose key in its seat past its contact, and the key 319 iterations
+  instead of 52.
+
   Source: Josephy, Newton's method for generalized equations, 1979. The convergence is of second order, whatever opens
   or closes.
 @*/
 PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec b,
                                        Vec y)
 {
-  PetscBool     able, converged = PETSC_FALSE;
-  PetscInt     *which, m        = 1;
-  LinearContact s;
+  PetscBool able;
+  Vec       reach;
 
   PetscFunctionBeginUser;
   model->work->unsettled = model->work->beyond = PETSC_FALSE;
@@ -392,19 +425,14 @@ PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const Pe
   PetscCall(LinearSolverDirect(model->work->solver, &able));
   if (!able) PetscFunctionReturn(PETSC_SUCCESS);
   TimingBegin(TIMING_ASSEMBLY_CONTACT);
-  PetscCall(LinearContactBegin(model, u, carried, t, b, y, &s));
-  PetscCall(PetscMalloc1(s.all, &which));
-  while (able && m) {
-    PetscCall(LinearContactSolve(model, &s, &m, which, &converged));
-    if (m) PetscCall(LinearContactAdd(model, &s, m, which, &able));
+  PetscCall(VecDuplicate(y, &reach));
+  PetscCall(VecCopy(y, reach));
+  PetscCall(LinearContactTry(model, u, carried, t, b, reach, y));
+  if (model->work->beyond) {
+    PetscCall(LinearContactTry(model, u, carried, t, b, reach, y));
+    model->work->beyond = model->work->unsettled;
   }
-  model->work->unsettled = (PetscBool)!converged;
-  if (converged) PetscCall(LinearContactTake(model, carried, t, &s, y, &converged));
-  PetscCall(PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s\n", s.n, s.m,
-                      converged ? "settled" : "left to the next iteration"));
-  PetscCall(PetscFree(which));
-  PetscCall(LinearContactForesee(model, carried, t, y, &s));
-  PetscCall(LinearContactEnd(&s));
+  PetscCall(VecDestroy(&reach));
   TimingEnd(TIMING_ASSEMBLY_CONTACT);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -243,7 +243,7 @@ static PetscErrorCode ModelHoldStep(Model model, SNES snes, Vec F, Vec y, PetscR
    tangent without that lets a sheet between tools go far, and next to all its contact changes on the way. A steel sheet
    of 1 mm that is drawn to a channel takes 170 iterations for the first 3.8 mm in place of 279. A longer step leads
    away: that of a brake block that sticks, past a snap, to an equilibrium that is not stable. A step whose solution
-   goes farther than the terms were chosen for stays as it is. */
+   goes farther than the terms were chosen for, twice, stays as it is. */
 static PetscErrorCode ModelHoldUnsettled(Model model, SNES snes, Vec y)
 {
   PetscReal length, held;

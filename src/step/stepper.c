@@ -695,7 +695,19 @@ static PetscErrorCode LoadStepperBound(LoadStepper stepper, PetscReal dt, PetscR
 /* Says whether a solve ended in an unstable equilibrium, after a state that was not known for one. */
 static PetscBool LosesStability(const StepperReport *report, const SolveReport *solve)
 {
-  return (PetscBool)(solve->negatives > 0 && solve->gives > MODEL_GIVES && !(report->gives > MODEL_GIVES));
+  return (PetscBool)(solve->result == SOLVE_CONVERGED && solve->negatives > 0 && solve->gives > MODEL_GIVES &&
+                     !(report->gives > MODEL_GIVES));
+}
+
+/* Says whether an unstable equilibrium counts as none. Where damping is the last resort it does if solves for the load
+   have failed: Newton's method has then wandered there, and does not follow the stable states before. That is asked
+   once only: a damped solve comes next. */
+static PetscBool RefusesUnstable(LoadStepper stepper)
+{
+  const Wall       *wall    = &stepper->tried.wall;
+  const StepDamping damping = stepper->model->scene->stepping.damping;
+
+  return (PetscBool)(damping == DAMPING_AUTO || (damping == DAMPING_LAST && wall->failures > 0 && !wall->slowly));
 }
 
 /* Says whether static solves have failed so often that the next one is damped. */
@@ -714,6 +726,7 @@ static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscRe
   const StepDamping damping = stepper->model->scene->stepping.damping;
   const PetscBool   last    = (PetscBool)(STEPPER_CUT * dt < stepper->size.dt_min || stepper->damped);
   const PetscBool   slowly  = StepperTurnsSlow(stepper);
+  PetscBool         leaves;
 
   PetscFunctionBeginUser;
   PetscCall(
@@ -726,11 +739,13 @@ static PetscErrorCode LoadStepperTry(LoadStepper stepper, PetscReal end, PetscRe
     stepper->tried.wall.slowly += solve->result != SOLVE_CONVERGED;
   } else {
     PetscCall(ModelSolve(stepper->model, end, solve));
-    if (damping == DAMPING_AUTO && solve->result == SOLVE_CONVERGED && LosesStability(&stepper->report, solve))
-      solve->result = SOLVE_UNSTABLE;
+    leaves = (PetscBool)(LosesStability(&stepper->report, solve) && RefusesUnstable(stepper));
+    if (leaves) solve->result = SOLVE_UNSTABLE;
     if (damping != DAMPING_NONE && MayBeUnstable(solve->result)) {
       stepper->tried.wall.at = stepper->tried.wall.at > 0 ? PetscMin(stepper->tried.wall.at, end) : end;
-      stepper->tried.wall.failures += last ? STEPPER_LAST : damping == DAMPING_AUTO || !stepper->tried.wall.slowly;
+      stepper->tried.wall.failures += last || (leaves && damping == DAMPING_LAST)
+                                        ? STEPPER_LAST
+                                        : damping == DAMPING_AUTO || !stepper->tried.wall.slowly;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
