@@ -127,7 +127,7 @@ static PetscErrorCode BeginLook(int dim, const PieceList *list, Look *look)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Begins the search in the side s itself, if it is a rigid tool, as far as a chord of the other one from where the two
+/* Chooses the pieces of the side s itself, if it is a rigid tool, as far as a chord of the other one from where the two
    are near each other. `near` is the box of this rank's part of it. The shape of a deformable side explains nothing: a
    fine one swells between the nodes of a coarse one. */
 static PetscErrorCode LookBeside(Certificate certificate, CertifiedPair *pair, int s, const Box near)
@@ -151,8 +151,10 @@ static PetscErrorCode LookBeside(Certificate certificate, CertifiedPair *pair, i
   }
   PetscCall(SideShare(pair->side[s], beside, pair->of.n_images, pair->of.images, &pair->beside));
   if (!list->n || !pair->beside.n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BeginLook(pair->side[s]->dim, &pair->beside, &certificate->own));
-  certificate->look.own = &certificate->own;
+  certificate->own.dim    = pair->side[s]->dim;
+  certificate->own.list   = &pair->beside;
+  certificate->own.failed = 0;
+  certificate->look.own   = &certificate->own;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -186,7 +188,8 @@ static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, in
   TakeFinding(&here, worst);
   if (look->own) LookEnd(&certificate->own);
   LookEnd(look);
-  PetscCheck(!look->failed, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the faces that a node crosses");
+  PetscCheck(!look->failed && !certificate->own.failed, PETSC_COMM_SELF, PETSC_ERR_MEM,
+             "No memory for the faces that a node crosses");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -306,6 +306,14 @@ double AllowedDepth(const Look *look, const Point *point, const Piece *piece)
   return allowed;
 }
 
+/* The depth up to which edges explain that faces cross: a part of the thinner element below, as no wall is thinner. */
+static double EdgeDepth(const Point *point, const Piece *piece)
+{
+  const double most = fmax(point->height, piece->height);
+
+  return STAND_EDGE * (point->height > 0 && piece->height > 0 ? fmin(point->height, piece->height) : most);
+}
+
 /* Height of a surface over a chord, over half the chord. Where it turns by an edge, that is the tip there. Where it is
    round, and each of its pieces turns by as much, it goes on turning over the chord. */
 static double TipOver(double chord, double tip, double side)
@@ -333,6 +341,14 @@ static double TipAround(const Look *side, const double x[3], double chord)
   return tip;
 }
 
+/* Makes the tree of the points' own side when a depth first asks for it: in most steps none does. */
+static int LookBeside(Look *own)
+{
+  if (!own || own->failed) return 0;
+  if (!own->tree) own->failed = !LookBegin(own->dim, own->list, own);
+  return !own->failed;
+}
+
 /* The highest of the point and of the vertices of either side that are within a chord of it at the end: a chord that
    rests on a tool's flat on one side of the point rises beside it where the flat ends in a rounded edge. */
 static double TipNear(const Look *look, const Point *point, double chord)
@@ -340,7 +356,7 @@ static double TipNear(const Look *look, const Point *point, double chord)
   const double *x   = point->x[1];
   double        tip = fmax(TipOver(chord, point->tip, point->side), TipAround(look, x, chord));
 
-  return look->own ? fmax(tip, TipAround(look->own, x, chord)) : tip;
+  return LookBeside(look->own) ? fmax(tip, TipAround(look->own, x, chord)) : tip;
 }
 
 /*@
@@ -368,7 +384,7 @@ double ExplainedDepth(const Look *look, const Point *point, const Piece *piece, 
   if (depth <= explained + AllowedDepth(look, point, piece)) return explained;
   if (look->slave[0]) chord = point->order * point->side;
   if (look->slave[1]) chord = fmax(chord, piece->order * piece->side);
-  return explained + 0.5 * chord * TipNear(look, point, chord);
+  return explained + fmin(0.5 * chord * TipNear(look, point, chord), EdgeDepth(point, piece));
 }
 
 /*@

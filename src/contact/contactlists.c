@@ -209,6 +209,7 @@ static void PairKeepRungs(ContactPair *pair)
   for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.fitted; q++) {
     const int next = FitRung(pair->next, q);
 
+    if (pair->next->rung[q] == RUNG_UNASKED) continue;
     if (next <= FitRung(pair->lists, q)) continue;
     if (pair->fallen[q]) pair->first_rung[q] = PetscMax(pair->first_rung[q], next);
     pair->fallen[q] = PETSC_TRUE;

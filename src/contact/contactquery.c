@@ -575,6 +575,7 @@ static PetscErrorCode TallyPoint(const ContactPair *pair, PetscInt q, FitTally *
   PetscBool             found, within;
 
   PetscFunctionBeginUser;
+  if (lists->rung[q] == RUNG_UNASKED) PetscFunctionReturn(PETSC_SUCCESS);
   tally->points++;
   tally->rung[rung]++;
   PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, -1, SMOOTHER_GAP, &found));
@@ -690,7 +691,7 @@ static void AppendPlanes(const ContactPair *pair, char *text, size_t size)
 
       if (image->sign[d] > 0 || (pair->geometry == GEOMETRY_AXISYMMETRIC && image->shift[d] == 0 && d == 0)) continue;
       snprintf(text + used, size - used, "%s %c = %g", word, "xyz"[d],
-               PetscAbsReal(at) > CONTACT_ROUND * pair->mesh->size ? (double)at : 0.0);
+               PetscAbsReal(at) > CONTACT_ROUND * pair -> mesh -> size ? (double)at : 0.0);
       word = " and";
     }
   }

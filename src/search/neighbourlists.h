@@ -26,8 +26,16 @@ typedef struct _n_ContactSearch *ContactSearch; /* in search.h */
 #define NEIGHBOUR_LISTS_DEEP 0.25
 
 /* The rung of the ladder of fall-backs on which a slave point's fit was found: fits of decreasing quality, then the
-   facets. */
-enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_QUADRATIC = 5, RUNG_DEGREE_2 = 6, RUNG_LINEAR = 7 };
+   facets. RUNG_UNASKED: the point is too far away for contact, and no fit was tried. */
+enum {
+  RUNG_UNASKED   = -2,
+  RUNG_FACET     = -1,
+  RUNG_PLAIN     = 0,
+  RUNG_WIDER     = 4,
+  RUNG_QUADRATIC = 5,
+  RUNG_DEGREE_2  = 6,
+  RUNG_LINEAR    = 7
+};
 enum { RUNGS = 8 };
 
 /* Contact nodes are the nodes that the terms of the pair touch. Nodes with unknowns come first (leaves of sf, whose

@@ -12,6 +12,9 @@
    motion), so that the point may slide there within a solve. The size is that of the point's own face or of the nearest
    one, whichever is larger: large faces elsewhere do not lengthen lists between fine faces. */
 #define SEARCH_MARGIN 1.5
+/* A slave point is fitted if it may come within this many face sizes of its nearest facet while lists stand still. Else
+   the facets tell that it is open, as fits are nearer to them than that. */
+#define SEARCH_FITTED 1.0
 /* Lists begin with room for those before and this part of them, one over it. */
 enum { LIST_ROOM = 16 };
 
@@ -247,6 +250,15 @@ static void TakeNormal(Nearest *look, const FitSupport *fit)
     for (int d = 0; d < 3; d++) look->normal[d] = look->candidates[look->best].normal[d];
 }
 
+/* May a slave point come so near to its nearest facet while lists stand still that its fit matters? size: of its own
+   face or of the nearest facet (length). */
+static PetscBool NeedsFit(const Nearest *look, PetscReal size)
+{
+  const PetscReal approach = WayApproach(look, &look->candidates[look->best]);
+
+  return (PetscBool)(look->distance <= SEARCH_FITTED * size + approach);
+}
+
 /* Finds the nearest facet of one slave point, lists it with all facets within margin and motion of it, and fits the
    surface there. look gives the slave point, the size of its face and the distance within which it is searched, reach
    that without the motion. found and ends have room for all candidates. possible: which points may have a partner;
@@ -282,7 +294,9 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
     lists->nearest[q] = i;
     convex            = ends[i] % FLANK_CUT / FLANK_CONVEX;
   }
-  if (fit && !FlankNearRidge(look, fit->neighbourhoods, facing, found))
+  if (fit && !NeedsFit(look, margin / SEARCH_MARGIN))
+    lists->rung[q] = RUNG_UNASKED;
+  else if (fit && !FlankNearRidge(look, fit->neighbourhoods, facing, found))
     PetscCall(FitSupportSlave(fit, look, q, convex, first, buffer));
   else if (fit && look->two_sided && FlankLies(look)) /* the edge has terms of its own */
     PetscCall(FitSupportLift(fit, look, q));

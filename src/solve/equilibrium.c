@@ -100,6 +100,29 @@ static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds to the text which bodies the loads drive out from between others at displacements u, and what would hold them.
+   touching: nothing may press there. *any: there are some. */
+static PetscErrorCode ModelBlameLoose(Model model, const PetscReal *u, PetscReal t, PetscBool touching, char *text,
+                                      size_t size, PetscBool *any)
+{
+  char   bodies[256];
+  size_t used;
+
+  PetscFunctionBeginUser;
+  *any = PETSC_FALSE;
+  if (!model->problem->bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeBodiesDrivenOut(model->problem->bodies, u, t, model->t, touching, sizeof(bodies), bodies));
+  *any = (PetscBool)(bodies[0] != '\0');
+  if (!*any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrlen(text, &used));
+  PetscCall(
+    PetscSNPrintf(text + used, size - used,
+                  "%sthe loads on other bodies drive out %s, which contact does not hold: %sfriction, a support "
+                  "or a spring does",
+                  used ? "; " : "", bodies, SceneHasFriction(model->scene) ? "more " : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Writes into the report what is known of a failed solve: the bodies that nothing holds where the system is singular,
    otherwise the nodes with the largest residuals. */
 static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
@@ -125,12 +148,21 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
   if (model->problem->bodies)
     PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t, PETSC_TRUE,
                               sizeof(report->detail), report->detail));
-  if (report->detail[0] && !adrift)
+  if (report->detail[0] && !adrift) {
+    char      bodies[sizeof(report->detail)] = "";
+    PetscBool out;
+
+    PetscCall(ModelBlameLoose(model, model->problem->trial, model->t, PETSC_FALSE, bodies, sizeof(bodies), &out));
+    if (out) {
+      PetscCall(PetscStrncpy(report->detail, bodies, sizeof(report->detail)));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
     PetscCall(PetscStrlcat(report->detail,
                            SceneHasFriction(model->scene)
                              ? ", is driven by the loads, and friction alone holds it, which slips"
                              : ", is driven by the loads, and contact alone holds it",
                            sizeof(report->detail)));
+  }
   if (report->detail[0]) PetscFunctionReturn(PETSC_SUCCESS);
   if (adrift) PetscCall(FreeModesUnheld(model->mesh, model->scene, model->problem->loads, sizeof(loose), loose));
   if (adrift && loose[0])
@@ -142,6 +174,8 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
     if (report->result == SOLVE_LINE_SEARCH || report->result == SOLVE_ITERATIONS || report->result == SOLVE_STALLED)
       PetscCall(ModelBlameFacets(model, report->detail, sizeof(report->detail), &edge));
     if (!edge) PetscCall(ModelBlamePenalty(model, report->detail, sizeof(report->detail)));
+    PetscCall(ModelBlameLoose(model, model->work->accepted_u, model->work->accepted_t, PETSC_TRUE, report->detail,
+                              sizeof(report->detail), &edge));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -28,4 +28,6 @@ PetscErrorCode FreeBodiesRelease(FreeBodies, const PetscReal *u, PetscReal scale
 PetscErrorCode FreeBodiesAccept(FreeBodies, ContactSprings);
 PetscErrorCode FreeBodiesArchive(FreeBodies, Archive);
 PetscErrorCode FreeBodiesLoose(FreeBodies, const PetscReal *u, PetscReal t, PetscBool driven, size_t size, char *text);
+PetscErrorCode FreeBodiesDrivenOut(FreeBodies, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool touching,
+                                   size_t size, char *text);
 const char    *FreeBodiesMoved(FreeBodies);

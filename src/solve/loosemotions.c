@@ -323,6 +323,71 @@ PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the names of the bodies without a load of their own that a motion a[n] moves to the text, each once. loaded[]:
+   which bodies have one. */
+static void AddDrivenOut(FreeBodies b, const double a[], const PetscBool loaded[], size_t size, char *text)
+{
+  for (PetscInt p = 0; p < b->n_pieces; p++) {
+    const size_t used = strlen(text);
+    double       q[RIGID_MODES];
+    char         name[FREE_TEXT + 2];
+    PetscBool    moves = PETSC_FALSE;
+
+    FreeBodiesPieceMotion(b, p, a, q);
+    for (int i = 0; i < RIGID_MODES; i++) moves = (PetscBool)(moves || PetscAbsReal(q[i]) > 1e-2);
+    snprintf(name, sizeof(name), "'%s'", b->pieces[p].name);
+    if (!moves || loaded[p] || strstr(text, name) || used >= size) continue;
+    snprintf(text + used, size - used, "%s%s", used ? ", " : "", name);
+  }
+}
+
+/*@
+  FreeBodiesDrivenOut - names the bodies without a load of their own that the loads on others drive out from between
+  them, as nothing holds them along the contact.
+
+  Collective
+
+  Input Parameters:
++ b        - the bodies
+. u        - local displacements u[n_nodes*dim] (length), within the reach of the contact's lists
+. t        - load parameter there
+. t_loads  - load parameter at which the loads are taken
+. touching - what touches holds, and friction there sticks; otherwise what presses, and friction that does not slip
+- size     - of the text
+
+  Output Parameter:
+. text - "'left', 'right'"; empty: there are none
+
+  Note:
+  A body between two others that a force presses together, as a roller between plates, may have a motion along which no
+  gap changes, or only together with them. If the loads do work along it, no equilibrium is near.
+@*/
+PetscErrorCode FreeBodiesDrivenOut(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool touching,
+                                   size_t size, char *text)
+{
+  const int  n = b->n;
+  double    *gram, *free, *force, *scale;
+  int       *pivot, m;
+  PetscBool *drives, *loaded;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeBodiesCentre(b, u));
+  PetscCall(PetscMalloc6(n * n, &gram, n * n, &free, n, &force, n, &scale, n, &pivot, n, &drives));
+  PetscCall(PetscCalloc1(b->n_pieces, &loaded));
+  PetscCall(ContactGram(b, u, t, touching, touching ? GRAM_STICKS : GRAM_SLIPS, gram));
+  PetscCall(FreeBodiesBasis(b, gram, FREE_BODIES_HELD, &m, free, pivot));
+  PetscCall(FreeBodiesDriven(b, u, t_loads, FREE_BODIES_UNEVEN, m, free, drives));
+  PetscCall(FreeBodiesForce(b, u, t_loads, force, scale));
+  for (int k = 0; k < n; k++) loaded[b->owner[k]] = (PetscBool)(loaded[b->owner[k]] || scale[k] > 0);
+  for (int f = 0; f < m; f++)
+    if (drives[f]) AddDrivenOut(b, &free[f * n], loaded, size, text);
+  PetscCall(PetscFree6(gram, free, force, scale, pivot, drives));
+  PetscCall(PetscFree(loaded));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Says whether a contact of stiffness gram[n][n] acts on a piece at all. */
 PetscBool FreeBodiesInContact(FreeBodies b, PetscInt piece, const double gram[])
 {

@@ -91,7 +91,7 @@ typedef struct {
   PetscReal   facing;     /* SOLVE_FACING: turn of surfaces that lie opposite each other (radians) */
   PetscReal   far;        /* SOLVE_FAR: turn of cells in the first linear step, over the largest one */
   PetscReal   excess;     /* SOLVE_UNCERTIFIED: depth over what is allowed; INFINITY: it is no depth */
-  char        detail[256]; /* where a failed solve failed, in gmsh's tags */
+  char        detail[640]; /* where a failed solve failed, in gmsh's tags */
   Failure     failure;     /* more about a failed solve */
 } SolveReport;
 

@@ -23,6 +23,8 @@
 /* Part of the height of an element up to which faces may cross where any side of a body may meet any other one: deeper,
    the other side of a wall would be nearer (ownbody.h). */
 #define STAND_WALL 0.25
+/* The same up to which edges explain it: deeper, a face has passed through the element. */
+#define STAND_EDGE 1.0
 /* Part of a face around a point in which its closest piece is looked for. What goes deeper has crossed a piece. */
 #define STAND_REACH 0.5
 /* Normals whose cosine is below this belong to the two sides of a wall, not of a corner. */
@@ -65,19 +67,19 @@ typedef struct {
 
 /* The pieces of the other side. What is allocated serves again in the next step. */
 typedef struct _n_Look {
-  int                   dim;
-  const PieceList      *list;
-  const struct _n_Look *own; /* pieces of the points' own side, a rigid tool, near the other one; NULL: none */
-  BoxTree               tree;
-  int                  *found, n_found, room; /* pieces at hand */
-  int                  *around;               /* work space of as much room */
-  Event                *events;
-  int                   n_events, room_events;
-  double                penetration; /* allowed depth in parts of the smaller face */
-  double                overlap;     /* depth that the scene leaves (length) */
-  int                   walls;       /* any side of a body may meet any other one */
-  int                   slave[2]; /* contact holds the points and edges that are judged; the vertices of the pieces */
-  int                   failed;   /* memory was short: what was found does not count */
+  int              dim;
+  const PieceList *list;
+  struct _n_Look  *own;  /* pieces of the points' own side, a rigid tool, near the other one; NULL: none */
+  BoxTree          tree; /* NULL: of the own side before the first depth that asks for it */
+  int             *found, n_found, room; /* pieces at hand */
+  int             *around;               /* work space of as much room */
+  Event           *events;
+  int              n_events, room_events;
+  double           penetration; /* allowed depth in parts of the smaller face */
+  double           overlap;     /* depth that the scene leaves (length) */
+  int              walls;       /* any side of a body may meet any other one */
+  int              slave[2];    /* contact holds the points and edges that are judged; the vertices of the pieces */
+  int              failed;      /* memory was short: what was found does not count */
 } Look;
 
 int    LookBegin(int dim, const PieceList *, Look *);
