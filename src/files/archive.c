@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 /* The layout of the state. It must be raised whenever a value gets another name, shape or meaning. */
-#define ARCHIVE_VERSION 23
+#define ARCHIVE_VERSION 24
 /* The first bytes of the file, by which it is known. */
 #define ARCHIVE_MARK "burnish checkpoint\nversion "
 /* The length of the head in bytes, the least that HDF5 leaves alone at the start of a file. */

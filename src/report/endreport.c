@@ -282,6 +282,7 @@ static void PrintEnergy(const EnergyFigures *energy, PetscBool plastic, PetscBoo
   if (outer.stored > 0) fprintf(stream, " + %.4g contact", (double)outer.stored);
   if (outer.friction > 0) fprintf(stream, " + %.6g friction", (double)outer.friction);
   if (energy->damping > 0) fprintf(stream, " + %.4g damping", (double)energy->damping);
+  if (outer.held != 0) fprintf(stream, " + %.4g held", (double)outer.held);
   if (isnan(apart)) fprintf(stream, ", without that of overlaps resolved at once");
   if (sum > 0 && !isnan(apart))
     fprintf(stream, ", %.2g %% apart by %sthe trapezoidal rule over the steps", 100 * apart / sum,

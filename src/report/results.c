@@ -344,7 +344,8 @@ static PetscErrorCode ResultsArchiveStep(Results results, Archive archive)
                                &last->energy.outer.work,
                                &last->energy.outer.stored,
                                &last->energy.outer.given,
-                               &last->energy.outer.friction};
+                               &last->energy.outer.friction,
+                               &last->energy.outer.held};
   PetscInt       *integer[] = {&last->step,     &last->attempts, &last->newton, &last->krylov,           &last->tied,
                                &contact->nodes, &contact->in,    &contact->out, &contact->outside_window};
 

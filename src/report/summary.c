@@ -290,6 +290,7 @@ static void AddEnergy(cJSON *json, const RunFigures *figures)
   AddReal(map, "contact", energy.outer.stored);
   AddReal(map, "friction", energy.outer.friction);
   AddReal(map, "damping", energy.damping);
+  AddReal(map, "held", energy.outer.held);
   AddReal(map, "external", energy.outer.work);
   if (!plastic) return;
   AddReal(map, "work", energy.work);

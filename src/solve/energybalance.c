@@ -173,7 +173,8 @@ EnergyFigures EnergyBalanceGet(EnergyBalance balance)
 @*/
 PetscReal EnergySum(const EnergyFigures *figures)
 {
-  return figures->elastic + figures->plastic + figures->damping + figures->outer.stored + figures->outer.friction;
+  return figures->elastic + figures->plastic + figures->damping + figures->outer.stored + figures->outer.friction +
+         figures->outer.held;
 }
 
 /*@

@@ -5,7 +5,7 @@
    integral of the internal forces over the displacements, by the trapezoidal rule over the steps. Elastic energy and
    plastic work follow from the state alone. Their sum is the work, up to the error of that rule. Bodies that do not
    yield have their elastic energy alone. The work from outside is that of EnergyBalanceOuter(). What contact stores and
-   friction takes comes to the sum there. EnergyBalanceEnd() compares what has been dissipated. */
+   what friction and held motions take comes to the sum there. EnergyBalanceEnd() compares what has been dissipated. */
 #pragma once
 #include "solve/outerwork.h"
 

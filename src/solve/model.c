@@ -255,6 +255,7 @@ PetscErrorCode ModelAccept(Model model)
 {
   ModelWork      *work    = model->work;
   const PetscBool stepped = model->t > work->accepted_t ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool holds   = (PetscBool)(work->hold.wanted > 0 || work->drag.on);
   PetscReal       motion;
   ForceBalance    balance;
   PlasticPath     path;
@@ -266,7 +267,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u, model->t, &path));
   if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u, model->t, &path));
   if (SceneBreaks(model->scene, model->t)) ElasticityForgetFlow(model->problem->elasticity);
-  if (model->balance) PetscCall(OuterWorkBegin(EnergyBalanceOuter(model->balance)));
+  if (model->balance) PetscCall(OuterWorkBegin(EnergyBalanceOuter(model->balance), holds));
   if (model->certificate && stepped) {
     PetscCall(ForceBalanceFind(model->problem, model->u, model->t, &balance, &ok));
     CertificateBalance(model->certificate, balance.force, balance.moment);
@@ -274,7 +275,8 @@ PetscErrorCode ModelAccept(Model model)
     PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   }
   if (model->balance) {
-    PetscCall(OuterWorkAdd(EnergyBalanceOuter(model->balance), work->accepted_u, work->accepted_t, model->u, model->t));
+    PetscCall(OuterWorkAdd(EnergyBalanceOuter(model->balance), work->accepted_u, work->accepted_t, model->u, model->t,
+                           work->drag.on ? work->drag.taken : NAN));
     EnergyBalanceEnd(model->balance);
   }
   if (model->problem->fluids) { /* the work of the step was that of the loads as they lay */

@@ -5,6 +5,7 @@
 /* What acts from outside in a state. */
 typedef struct {
   PetscReal *force; /* [n_nodes*dim] of supports, loads and springs, complete at every node */
+  PetscReal *held;  /* [n_nodes*dim] of what holds soft motions, complete at every node */
   PetscReal *hold;  /* [n_pairs*MOTION_COMPONENTS] of tools with prescribed motions, of all ranks */
 } Outside;
 
@@ -13,6 +14,7 @@ struct _n_OuterWork {
   int          n_pairs;
   PetscMPIInt  rank;
   PetscBool    begun; /* there is an accepted state */
+  PetscBool    holds; /* soft motions are held in the state at hand, or springs act against sliding */
   PetscReal   *u;     /* [n_nodes*dim] local displacements of that state (length) */
   Outside      now, before;
   OuterFigures figures; /* the same on all ranks */
@@ -40,9 +42,9 @@ PetscErrorCode OuterWorkCreate(Problem problem, OuterWork *work)
   w->problem = problem;
   w->n_pairs = problem->contact ? ContactPairs(problem->contact) : 0;
   PetscCallMPI(MPI_Comm_rank(problem->mesh->comm, &w->rank));
-  PetscCall(PetscCalloc2(n, &w->now.force, w->n_pairs * MOTION_COMPONENTS, &w->now.hold));
+  PetscCall(PetscCalloc3(n, &w->now.force, n, &w->now.held, w->n_pairs * MOTION_COMPONENTS, &w->now.hold));
   PetscCall(PetscCalloc1(n, &w->u));
-  PetscCall(PetscCalloc2(n, &w->before.force, w->n_pairs * MOTION_COMPONENTS, &w->before.hold));
+  PetscCall(PetscCalloc3(n, &w->before.force, n, &w->before.held, w->n_pairs * MOTION_COMPONENTS, &w->before.hold));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -58,9 +60,9 @@ PetscErrorCode OuterWorkDestroy(OuterWork *work)
 {
   PetscFunctionBeginUser;
   if (!*work) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree2((*work)->now.force, (*work)->now.hold));
+  PetscCall(PetscFree3((*work)->now.force, (*work)->now.held, (*work)->now.hold));
   PetscCall(PetscFree((*work)->u));
-  PetscCall(PetscFree2((*work)->before.force, (*work)->before.hold));
+  PetscCall(PetscFree3((*work)->before.force, (*work)->before.held, (*work)->before.hold));
   PetscCall(PetscFree(*work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -70,16 +72,18 @@ PetscErrorCode OuterWorkDestroy(OuterWork *work)
 
   Not collective
 
-  Input Parameter:
-. work - OuterWorkAdd() follows the residual
+  Input Parameters:
++ work  - OuterWorkAdd() follows the residual
+- holds - soft motions are held in the state, or springs act against sliding
 @*/
-PetscErrorCode OuterWorkBegin(OuterWork work)
+PetscErrorCode OuterWorkBegin(OuterWork work, PetscBool holds)
 {
   const Outside before = work->before;
 
   PetscFunctionBeginUser;
   work->before = work->now;
   work->now    = before;
+  work->holds  = holds;
   PetscCall(PetscArrayzero(work->now.hold, work->n_pairs * MOTION_COMPONENTS));
   if (work->problem->contact) ContactWatchTools(work->problem->contact, work->now.hold);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -115,7 +119,12 @@ static PetscErrorCode Collect(OuterWork work, const PetscReal *u_0, PetscReal t_
   PetscCall(LoadsResidual(problem->loads, t, u, now->force, NULL, NULL));
   PetscCall(MeshSumNodes(mesh, mesh->dim, all));
   PetscCall(MeshSumNodes(mesh, mesh->dim, now->force));
-  for (PetscInt i = 0; i < n; i++) now->force[i] = (LoadsPrescribed(problem->loads, i) ? all[i] : 0) - now->force[i];
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscBool prescribed = LoadsPrescribed(problem->loads, i);
+
+    now->force[i] = (prescribed ? all[i] : 0) - now->force[i];
+    now->held[i]  = work->holds && !prescribed ? all[i] : 0;
+  }
   if (problem->contact) {
     for (PetscInt i = 0; i < n; i++) all[i] = u[i] - u_0[i];
     PetscCall(WasMoved(work, u_0, &moved));
@@ -175,24 +184,48 @@ static PetscErrorCode Start(OuterWork work)
 . u_0  - local displacements u_0[n_nodes*dim] (length) of the accepted state before
 . t_0  - its load parameter
 . u    - local displacements of the state
-- t    - its load parameter
+. t    - its load parameter
+- taken - energy that springs against sliding have taken in the step; NaN: there are none
 @*/
-PetscErrorCode OuterWorkAdd(OuterWork work, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t)
+PetscErrorCode OuterWorkAdd(OuterWork work, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t,
+                            PetscReal taken)
 {
-  const Mesh mesh = work->problem->mesh;
-  PetscReal  sum  = 0;
+  const Mesh mesh   = work->problem->mesh;
+  PetscReal  sum[2] = {0, 0}; /* from outside, by what holds */
 
   PetscFunctionBeginUser;
   if (work->problem->contact) ContactWatchTools(work->problem->contact, NULL);
   PetscCall(Collect(work, u_0, t_0, u, t));
   if (!work->begun) PetscCall(Start(work));
   PetscCall(PetscArraycpy(work->u, u, mesh->n_nodes * mesh->dim));
-  for (PetscInt i = 0; i < mesh->n_nodes * mesh->dim; i++)
-    if (mesh->node_owner[i / mesh->dim] == work->rank)
-      sum += (work->before.force[i] + work->now.force[i]) / 2 * (u[i] - u_0[i]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, mesh->comm));
-  work->figures.work += sum + ToolsWork(work, t_0, t);
+  for (PetscInt i = 0; i < mesh->n_nodes * mesh->dim; i++) {
+    if (mesh->node_owner[i / mesh->dim] != work->rank) continue;
+    sum[0] += (work->before.force[i] + work->now.force[i]) / 2 * (u[i] - u_0[i]);
+    sum[1] += (work->before.held[i] + work->now.held[i]) / 2 * (u[i] - u_0[i]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, mesh->comm));
+  work->figures.work += sum[0] + ToolsWork(work, t_0, t);
+  work->figures.held += PetscIsNanReal(taken) ? -sum[1] : taken;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  OuterWorkHeld - gives the forces that hold soft motions in the last accepted state.
+
+  Not collective
+
+  Input Parameter:
+. work - the work
+
+  Output Parameter:
+. force - force[n_nodes*dim] of the nodes that this rank owns, 0 elsewhere
+@*/
+void OuterWorkHeld(OuterWork work, PetscReal *force)
+{
+  const Mesh mesh = work->problem->mesh;
+
+  for (PetscInt i = 0; i < mesh->n_nodes * mesh->dim; i++)
+    force[i] = mesh->node_owner[i / mesh->dim] == work->rank ? work->now.held[i] : 0;
 }
 
 /*@
@@ -222,8 +255,8 @@ PetscErrorCode OuterWorkArchive(OuterWork work, Archive archive, const PetscReal
 {
   const Mesh    mesh    = work->problem->mesh;
   OuterFigures *figures = &work->figures;
-  PetscReal *value[] = {&figures->work, &figures->stored, &figures->given, &figures->friction};
-  Hdf5Table  nodes;
+  PetscReal    *value[] = {&figures->work, &figures->stored, &figures->given, &figures->friction, &figures->held};
+  Hdf5Table     nodes;
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveBoolean(archive, "model/outer_begun", &work->begun));
@@ -231,6 +264,7 @@ PetscErrorCode OuterWorkArchive(OuterWork work, Archive archive, const PetscReal
   PetscCall(ArchiveReals(archive, "model/outer_hold", work->n_pairs * MOTION_COMPONENTS, work->now.hold));
   PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_global, mesh->n_nodes, mesh->node_id, &nodes));
   PetscCall(ArchiveRows(archive, "model/outer_force", &nodes, mesh->dim, work->now.force));
+  PetscCall(ArchiveRows(archive, "model/outer_held", &nodes, mesh->dim, work->now.held));
   PetscCall(Hdf5TableDestroy(&nodes));
   if (ArchiveLoads(archive)) PetscCall(PetscArraycpy(work->u, u, mesh->n_nodes * mesh->dim));
   PetscFunctionReturn(PETSC_SUCCESS);

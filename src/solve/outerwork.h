@@ -2,7 +2,9 @@
    loads and springs, by tools, by overlaps that grow over t and by penalties that are raised.
 
    Around the ProblemResidual() of an accepted state stand OuterWorkBegin() and OuterWorkAdd(). Forces and
-   displacements of two accepted states give the work of the step between them, by the trapezoidal rule. */
+   displacements of two accepted states give the work of the step between them, by the trapezoidal rule. So do the
+   forces that soft motions are held by: what bodies do to them is lost. Springs against sliding count themselves what
+   they take, as they give way within a step. */
 #pragma once
 #include "solve/problem.h"
 
@@ -11,13 +13,16 @@ typedef struct {
   PetscReal stored;   /* in penetrations and elastic slip */
   PetscReal given;    /* such energy in the first state: of overlaps that are resolved at once; nothing does its work */
   PetscReal friction; /* energy that friction has taken so far */
+  PetscReal held;     /* energy that held motions and springs against sliding have taken so far */
 } OuterFigures;
 
 typedef struct _n_OuterWork *OuterWork;
 
 PetscErrorCode OuterWorkCreate(Problem, OuterWork *);
 PetscErrorCode OuterWorkDestroy(OuterWork *);
-PetscErrorCode OuterWorkBegin(OuterWork);
-PetscErrorCode OuterWorkAdd(OuterWork, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t);
+PetscErrorCode OuterWorkBegin(OuterWork, PetscBool holds);
+PetscErrorCode OuterWorkAdd(OuterWork, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t,
+                            PetscReal taken);
+void           OuterWorkHeld(OuterWork, PetscReal *force);
 OuterFigures   OuterWorkGet(OuterWork);
 PetscErrorCode OuterWorkArchive(OuterWork, Archive, const PetscReal *u);

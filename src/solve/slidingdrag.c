@@ -90,6 +90,45 @@ static PetscErrorCode MakeSprings(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Begins to count what the springs take in a load step, at the forces that they had in the accepted state. */
+static PetscErrorCode BeginWork(Model model)
+{
+  SlidingDrag *drag = &model->work->drag;
+  const Mesh   mesh = model->mesh;
+  PetscReal   *pull;
+
+  PetscFunctionBeginUser;
+  if (!drag->at) PetscCall(VecDuplicate(model->x, &drag->at));
+  if (!drag->pull) PetscCall(VecDuplicate(model->x, &drag->pull));
+  drag->taken = 0;
+  PetscCall(VecCopy(model->work->accepted_x, drag->at));
+  PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &pull));
+  if (model->balance) OuterWorkHeld(EnergyBalanceOuter(model->balance), pull);
+  PetscCall(MeshLocalToGlobal(mesh, pull, drag->pull));
+  PetscCall(VecScale(drag->pull, -1));
+  PetscCall(PetscFree(pull));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Counts what the springs have taken since the last solution, by the trapezoidal rule. There they may have been
+   anchored anew: what they held until then drives the body on. */
+static PetscErrorCode CountWork(Model model)
+{
+  SlidingDrag *drag = &model->work->drag;
+  PetscScalar  before, now;
+  Vec          force;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecAYPX(drag->at, -1, model->x)); /* the way */
+  PetscCall(VecDot(drag->pull, drag->at, &before));
+  PetscCall(DofSpringsForces(model->problem->drag, model->x, &force));
+  PetscCall(VecDot(force, drag->at, &now));
+  drag->taken += PetscRealPart(before + now) / 2;
+  PetscCall(VecCopy(force, drag->pull));
+  PetscCall(VecCopy(model->x, drag->at));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Finds the coefficient of friction whose work over the way from the anchors is that of the springs. */
 static PetscErrorCode FindFriction(Model model, PetscReal *coefficient)
 {
@@ -127,6 +166,8 @@ PetscErrorCode ModelDragDestroy(SlidingDrag *drag)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(drag->force));
+  PetscCall(VecDestroy(&drag->at));
+  PetscCall(VecDestroy(&drag->pull));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -167,6 +208,7 @@ PetscErrorCode ModelDragBegin(Model model)
   if (!drag->force) PetscCall(PetscCalloc1(model->mesh->n_nodes, &drag->force));
   if (drag->length == 0) PetscCall(FindLength(model, &drag->length));
   PetscCall(MakeSprings(model));
+  PetscCall(BeginWork(model));
   drag->idle     = 0;
   drag->least    = PETSC_INFINITY;
   drag->friction = 0;
@@ -295,6 +337,7 @@ PetscErrorCode ModelDragSolve(Model model, SolveReport *report)
   while (!holds) {
     PetscCall(ModelNewton(model, report));
     if (!model->work->drag.on || report->result != SOLVE_CONVERGED || model->work->left || model->work->soft) break;
+    PetscCall(CountWork(model));
     PetscCall(Judge(model, &holds));
     if (!holds && model->work->drag.idle >= DRAG_MOST) {
       report->result = SOLVE_ITERATIONS;

@@ -422,11 +422,11 @@ static PetscInt StepIterations(const SolveReport *solve)
 static void ScaleRecord(Scene scene, StepRecord *record)
 {
   PetscReal *per_thickness[] = {
-    &record->contact.force,        &record->contact.dissipated,  &record->energy.elastic,
-    &record->energy.plastic,       &record->energy.work,         &record->energy.lag,
-    &record->energy.damping,       &record->energy.dissipated,   &record->energy.least,
-    &record->energy.outer.work,    &record->energy.outer.stored, &record->energy.outer.given,
-    &record->energy.outer.friction};
+    &record->contact.force,         &record->contact.dissipated,  &record->energy.elastic,
+    &record->energy.plastic,        &record->energy.work,         &record->energy.lag,
+    &record->energy.damping,        &record->energy.dissipated,   &record->energy.least,
+    &record->energy.outer.work,     &record->energy.outer.stored, &record->energy.outer.given,
+    &record->energy.outer.friction, &record->energy.outer.held};
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(per_thickness); i++) *per_thickness[i] *= scene->thickness;
 }

@@ -116,9 +116,12 @@ CASES["line contact, mu over the pressure, cohesion"] = (RUNS / "hertz_line.yaml
 CASES["follower pressure, springs"] = (SCENES / "lame.yaml",
                                        [*FOLLOWER, "supports.2={surface: outer, spring: [80, 300]}"])
 
-# The fluid pushes the squeezed ring against the outer wall, and comes up to its contact with floor and lid.
+# The fluid pushes the squeezed ring against the outer wall, and comes up to its contact with floor and lid. With load
+# steps of 0.5 Newton's method goes astray, and an iterate may lie where the fit of a slave point is close to singular:
+# its force has noise of 1e-4 N there. That is a deviation of 0.07 with differences of 3e-10, 4e-4 with 1.5e-8, 4e-5 with
+# 5e-7, and with 2e-6 no more than at all other iterates, so that no term of the tangent is missing.
 CASES["rubber ring, fluid up to the contact"] = (RUNS / "o_ring_pressure.yaml", [
-    "mesh.parameters.n=3", "loads.0.pressure=1", "stepping={control: fixed, initial: 0.5}",
+    "mesh.parameters.n=3", "loads.0.pressure=1", "stepping={control: fixed, initial: 0.25}",
     "contact.0.penalty.scale=1", "contact.1.penalty.scale=1", "output.certificate=false"
 ])
 # The fluid's load lies ahead of what is wet, and contact presses no more than the fluid there: friction alone acts.

@@ -111,6 +111,8 @@ typedef struct {
   PetscReal  friction; /* coefficient of friction that would do as much work, at the last solution */
   PetscReal  least;    /* the same, after the last solution that lowered it much in this load step */
   PetscInt   idle;     /* solutions since then */
+  Vec at, pull;    /* free displacements of the last solution (length), forces of the springs there; NULL: no springs */
+  PetscReal taken; /* energy that the springs have taken in this load step */
 } SlidingDrag;
 
 typedef struct _n_ModelWork {
