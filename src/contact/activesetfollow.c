@@ -159,10 +159,12 @@ static void Closing(ActiveSet p, const PetscReal *excess, PetscInt components, P
   }
 }
 
-/* Says whether the problem has taken as much work as it may. */
+/* Says whether the problem has taken as much work as it may: what was allowed, or that of some dense solves. */
 PetscBool ActiveSetSpent(ActiveSet p)
 {
-  return (PetscBool)(p->work > p->allowed);
+  const PetscReal columns = (PetscReal)p->m;
+
+  return (PetscBool)(p->work > PetscMax(p->allowed, ACTIVE_SET_SOLVES * columns * columns * columns / 3));
 }
 
 /* Finds the set that the excess at hand leads to, and says whether it is another one, or friction's excess another. */
