@@ -59,24 +59,28 @@ static void Note(FindingKind kind, double depth, double allowed, double over_h, 
 
   Note:
   A straight motion past a round tool cuts a corner. The point has passed through it where it came in and went out on
-  opposite sides: nearer to the centre than the radius times the cosine of half the angle between their normals.
+  opposite sides: nearer to the centre than the radius times the cosine of half the angle between their normals; where
+  the tool presses nowhere at either state, where it was deeper than it may stand.
 @*/
 void AnalyticPointFinding(const AnalyticTool *tool, const Point *point, Finding *worst)
 {
   const double tip     = point->closed ? 0.5 * point->order * point->side * point->tip : 0;
   const double allowed = tool->penetration * point->size + tool->overlap + tip;
   Place        r[2], closest, at;
-  double       end, least;
+  double       start, end, least;
 
   for (int state = 0; state < 2; state++) FromTool(tool, point->x[state], state, r[state]);
-  end = GapOf(tool, r[1], 1);
+  start = GapOf(tool, r[0], 0);
+  end   = GapOf(tool, r[1], 1);
   if (end < 0) Note(FINDING_DEPTH, -end, allowed, fmax(0, -end - tool->overlap) / point->size, point, worst);
   if (tool->surface.shape == ANALYTIC_PLANE || tool->surface.inside || -end > allowed) return;
   (void)PieceClosest(2, (const Place *)r, (const Place){0, 0, 0}, closest);
   memcpy(at, closest, sizeof(at));
   least = GapOf(tool, at, 1);
-  if (least + tool->surface.radius > sqrt((1 + STAND_OPPOSED) / 2) * tool->surface.radius) return;
-  if (-least > allowed) Note(FINDING_PASSED, -least, allowed, 0, point, worst);
+  if ((!tool->apart || start < 0 || end < 0) &&
+      least + tool->surface.radius > sqrt((1 + STAND_OPPOSED) / 2) * tool->surface.radius)
+    return;
+  if (-least > allowed + ArcDepth(point)) Note(FINDING_PASSED, -least, allowed, 0, point, worst);
 }
 
 /*@

@@ -21,6 +21,7 @@ typedef struct {
   Side         side[2]; /* the second is NULL where the master is analytic */
   PieceList    near[2]; /* pieces of each side that come near this rank's part of the other one */
   PieceList    beside;  /* pieces of a tool that is judged, where it comes near the other side */
+  PetscBool    apart;   /* nothing pressed at either state of the step */
 } CertifiedPair;
 
 struct _n_Certificate {
@@ -176,6 +177,7 @@ static PetscErrorCode JudgeSide(Certificate certificate, CertifiedPair *pair, in
   if (!list->n) PetscFunctionReturn(PETSC_SUCCESS);
   look->penetration = certificate->scene->certificate.penetration;
   look->walls       = pair->of.scene->listed;
+  look->apart       = pair->apart;
   for (int k = 0; k < 2; k++) {
     const int side = k ? 1 - s : s;
 
@@ -227,7 +229,8 @@ static void JudgeAnalytic(Certificate certificate, const CertifiedPair *pair, co
   AnalyticTool        tool  = {.dim         = slave->dim,
                                .surface     = scene->analytic,
                                .penetration = certificate->scene->certificate.penetration,
-                               .overlap     = overlap};
+                               .overlap     = overlap,
+                               .apart       = pair->apart};
 
   for (int state = 0; state < 2; state++) {
     ToolsPlace(certificate->mesh, u[state], t[state]);
@@ -240,11 +243,12 @@ static void JudgeAnalytic(Certificate certificate, const CertifiedPair *pair, co
   for (PetscInt k = 0; k < slave->n_pieces; k++) AnalyticPieceFinding(&tool, &slave->pieces[k], worst);
 }
 
-/* Finds where terms of a pair pressed, and the overlap that the scene leaves in it. */
-static PetscErrorCode FindPressed(Certificate certificate, const CertifiedPair *pair, PetscReal t, PetscReal *overlap)
+/* Finds where terms of a pair pressed, whether any did at all, and the overlap that the scene leaves in the pair. */
+static PetscErrorCode FindPressed(Certificate certificate, CertifiedPair *pair, PetscReal t, PetscReal *overlap)
 {
   const int partner = ContactPairPartner(certificate->contact, pair->pair);
   PetscReal other   = 0;
+  PetscBool apart   = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(certificate->pressed, certificate->mesh->n_nodes));
@@ -255,6 +259,9 @@ static PetscErrorCode FindPressed(Certificate certificate, const CertifiedPair *
     PetscCall(ContactPairOverlap(certificate->contact, partner, t, &other));
   }
   *overlap = PetscMax(*overlap, other);
+  PetscCall(ContactPairApart(certificate->contact, pair->pair, &pair->apart));
+  if (partner >= 0) PetscCall(ContactPairApart(certificate->contact, partner, &apart));
+  pair->apart = (PetscBool)(pair->apart && apart);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -84,6 +84,57 @@ static void JudgePassage(const Look *look, const Point *point, const Event *in, 
   PassageFinding(look, point, 0, in, out, depth, worst);
 }
 
+/* Finds where a point crossed a piece, on the piece as it is at the end. Returns 0 where that cannot be told. */
+static int CrossedAt(int dim, const Event *event, const Point *point, Place at)
+{
+  const Piece *piece = event->piece;
+  Place        x[3], p;
+
+  for (int a = 0; a < dim; a++) Between(piece->x[0][a], piece->x[1][a], event->at.s, x[a]);
+  Between(point->x[0], point->x[1], event->at.s, p);
+  return PieceCarry(dim, (const Place *)x, p, (const Place *)piece->x[1], at);
+}
+
+/* How deep a place is in the other side at the end, where a place on its surface is not farther than `reach`; less than
+   0 in front of it. The pieces at hand are those around the place then. */
+static double DepthAtEnd(Look *look, const Place p, double reach)
+{
+  double least = INFINITY, depth = 0;
+  Box    box;
+
+  BoxAround(1, (const Place *)p, box);
+  LookAt(look, box, reach);
+  for (int i = 0; i < look->n_found; i++) {
+    const Place *x = (const Place *)look->list->pieces[look->found[i]].x[1];
+    double       foot[3];
+
+    (void)PieceClosest(look->dim, x, p, foot);
+    if (Distance(foot, p) >= least) continue;
+    least = Distance(foot, p);
+    depth = PieceFront(look->dim, x, p) > 0 ? -least : least;
+  }
+  return depth;
+}
+
+/* Judges a point that came in and went out on the same side of a body. A straight motion cuts the corners of what the
+   point slides along or turns about. Where contact presses at neither state, nothing has led the point around the body:
+   it has been carried through something that should have held it, such as the lip of a snap joint, if the chord between
+   the places where it crossed the body lies deep in the body as it is at the end. */
+static void JudgeGraze(Look *look, const Point *point, const Event *in, const Event *out, Finding *worst)
+{
+  const double size = fmin(point->size, fmin(in->piece->size, out->piece->size));
+  const double allowed =
+    look->penetration * size + look->overlap + fmax(in->piece->sagitta, out->piece->sagitta) + ArcDepth(point);
+  Place  from, to, middle;
+  double depth;
+
+  if (!look->apart || in->at.s == 0) return;
+  if (!CrossedAt(look->dim, in, point, from) || !CrossedAt(look->dim, out, point, to)) return;
+  Between(from, to, 0.5, middle);
+  depth = DepthAtEnd(look, middle, Distance(from, middle));
+  if (depth > allowed) KeepPassed(point, 0, in, depth, allowed, worst);
+}
+
 /* Judges a point that has gone behind a piece and is not found behind any surface at the end. */
 static void JudgeGone(const Look *look, const Point *point, const Event *in, const Stand *end, Finding *worst)
 {
@@ -155,7 +206,10 @@ void PointFinding(Look *look, Point *point, Finding *worst)
     if (event->at.inward && !in.piece) {
       in = *event;
     } else if (!event->at.inward && in.piece) {
-      JudgePassage(look, point, &in, event, worst);
+      if (Cosine(in.piece, event->piece) > STAND_OPPOSED)
+        JudgeGraze(look, point, &in, event, worst);
+      else
+        JudgePassage(look, point, &in, event, worst);
       in.piece = NULL;
     }
   }

@@ -360,6 +360,22 @@ static double TipNear(const Look *look, const Point *point, double chord)
 }
 
 /*@
+  ArcDepth - returns how far the straight motion of a point is off the arc of a body that turns as the surface there.
+
+  Not collective
+
+  Input Parameter:
+. point - the point
+@*/
+double ArcDepth(const Point *point)
+{
+  const double *a = point->normal[0], *b = point->normal[1], lengths = sqrt(Dot(a, a) * Dot(b, b));
+  const double  turn = lengths > 0 ? acos(fmax(-1, fmin(1, Dot(a, b) / lengths))) : 0;
+
+  return 0.5 * Distance(point->x[0], point->x[1]) * tan(turn / 4);
+}
+
+/*@
   ExplainedDepth - returns the depth of a point in a piece that the shape of the faces and the scene explain.
 
   Not collective

@@ -257,6 +257,43 @@ int PieceClosest(int dim, const Place x[], const Place p, Place closest)
 }
 
 /*@
+  PieceCarry - takes a place on a piece along with it.
+
+  Not collective
+
+  Input Parameters:
++ dim  - 2 or 3
+. from - vertices of the piece
+. p    - the place on it
+- to   - vertices of the piece elsewhere
+
+  Output Parameter:
+. out - where the place has come
+
+  Note:
+  It returns 0 where the piece has no extent.
+@*/
+int PieceCarry(int dim, const Place from[], const Place p, const Place to[], Place out)
+{
+  double lambda[3] = {0, 0, 0}, t[3], r[3];
+
+  if (dim == 3) {
+    if (!Barycentric(from, p, lambda)) return 0;
+  } else {
+    Minus(from[1], from[0], t);
+    Minus(p, from[0], r);
+    if (!(Dot(t, t) > 0)) return 0;
+    lambda[1] = Dot(r, t) / Dot(t, t);
+    lambda[0] = 1 - lambda[1];
+  }
+  for (int d = 0; d < 3; d++) {
+    out[d] = 0;
+    for (int a = 0; a < dim; a++) out[d] += lambda[a] * to[a][d];
+  }
+  return 1;
+}
+
+/*@
   PiecePierce - finds where an edge stands through a piece.
 
   Not collective

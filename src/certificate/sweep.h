@@ -6,7 +6,8 @@
 
    SweepPoint() finds when a moving point crosses a moving piece, SweepEdges() when a moving edge crosses a moving edge,
    SweepHinge() whether two pieces have turned through each other about what they share. PieceClosest() finds the point
-   of a piece that is closest to a place, PiecePierce() where an edge stands through a piece. PieceHeight() measures how
+   of a piece that is closest to a place, PieceCarry() where a place on it comes with it, PiecePierce() where an edge
+   stands through a piece. PieceHeight() measures how
    far a piece is from a smooth surface with the normals of its vertices. PieceDivide() divides faces into pieces. */
 #pragma once
 #include "kernels/element.h"
@@ -43,6 +44,7 @@ double PieceHeight(int dim, const Place x[], const Place normal[], double cosine
 double PieceAngle(const Place x[], int a);
 void   PieceAcross(const Place x[], int a, const double one[3], const double other[3], double across[3]);
 int    PieceClosest(int dim, const Place x[], const Place p, Place closest);
+int    PieceCarry(int dim, const Place from[], const Place p, const Place to[], Place out);
 int    PiecePierce(int dim, const Place x[], const double normal[3], const Place edge[2], double *at, int *inward);
 int    SweepPoint(int dim, const Place start[], const Place end[], const Place from, const Place to, Crossing[]);
 int    SweepHinge(int dim, const Place start[], const Place end[], const Place from, const Place to);

@@ -232,6 +232,7 @@ PetscErrorCode      ContactPatchAreas(Contact, int pair, const PetscReal middle[
 PetscErrorCode      ContactPairSurface(Contact, int pair, const MeshGroup **slave, PetscReal *mean_face_size);
 PetscBool           ContactPairToolMoves(Contact, int pair);
 PetscErrorCode      ContactPairTermStiffness(Contact, int pair, PetscReal *stiffness);
+PetscErrorCode      ContactPairApart(Contact, int pair, PetscBool *apart);
 PetscErrorCode      ContactPairClosed(Contact, int pair, const PetscInt *label, PetscInt n, PetscInt *closed);
 PetscBool           ContactOffsetsLag(Contact);
 PetscBool           ContactHasFriction(Contact);

@@ -52,6 +52,37 @@ static PetscErrorCode MarkRidgeFaces(const ContactPair *pair, PetscReal *mine)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is a term of a pair closed in either state? */
+static PetscBool IsClosed(const ContactPair *pair, PetscInt c)
+{
+  return (PetscBool)(pair->now.status[c] == CONTACT_CLOSED || pair->accepted.status[c] == CONTACT_CLOSED);
+}
+
+/*@
+  ContactPairApart - says whether a pair presses nowhere, now and in the accepted state.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Output Parameter:
+. apart - the same on all ranks
+@*/
+PetscErrorCode ContactPairApart(Contact contact, int p, PetscBool *apart)
+{
+  const ContactPair *pair = &contact->pairs[p], *ridge = pair->ridge ? &contact->pairs[pair->ridge] : NULL;
+  PetscMPIInt        open = 1;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n && open; c++) open = !IsClosed(pair, c);
+  for (PetscInt c = 0; ridge && c < ridge->n && open; c++) open = !IsClosed(ridge, c);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &open, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
+  *apart = (PetscBool)open;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactPairPressed - marks the slave nodes of a pair that are closed, now or in the accepted state. In surface to
   surface contact nodes with an open mean gap of up to half a face count, too.

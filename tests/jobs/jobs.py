@@ -444,4 +444,8 @@ JOBS = [
         Answer("force", 25.85, 0.4, "limit", tolerance=3.0),
     ], steps=12),
     Job("tube_in_box", "rubber tube blown up in a box", [Answer("corner", 4.1137, 0.06, "limit")], steps=12),
+    Job("ball_joint", "ball stud pressed into a plastic socket", [
+        Answer("force", 1138.7, 0.82, "limit"),
+        Answer("bead", 0.2889, 0.13, "limit"),
+    ], steps=8, stiff=["contact.*.friction.stick.slip=0.001"], picture=["--mirror", "x"]),
 ]

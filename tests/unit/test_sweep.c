@@ -84,7 +84,7 @@ static Point MakePoint(const double from[3], const double to[3], const double no
 static Finding JudgePoint(Plate *plate, Point *point, int walls)
 {
   const PieceList list  = {plate->n, plate->n, plate->pieces};
-  Look            look  = {.penetration = 0.1, .walls = walls, .slave = {0, 1}};
+  Look            look  = {.penetration = 0.1, .walls = walls, .slave = {0, 1}, .apart = 1};
   Finding         worst = {.kind = FINDING_NONE};
 
   assert_true(LookBegin(plate->dim, &list, &look));
@@ -283,6 +283,54 @@ static void PlantedSolidsAreFound(void **context)
   assert_int_equal(JudgePoint(&plate, &point, 0).kind, FINDING_NONE);
   for (int k = 0; k < plate.n; k++) plate.pieces[k].marks = 8; /* slave of the first, master of the second pair */
   assert_int_equal(JudgePoint(&plate, &point, 0).kind, FINDING_PASSED);
+}
+
+/* A round bar of radius 5 about the third axis that turns by an angle, from z = -2 to 2 in space. */
+static void RoundBar(Plate *plate, int dim, double turn)
+{
+  enum { SIDES = 40 };
+
+  *plate = (Plate){.dim = dim};
+  for (int k = 0; k < SIDES; k++) {
+    for (int t = 0; t < dim - 1; t++) {
+      Piece *piece;
+
+      AddPiece(plate, (const double[3][3]){{0}}, still, still, 1000 + 10 * (k + SIDES * t));
+      piece = &plate->pieces[plate->n - 1];
+      for (int a = 0; a < dim; a++) {
+        const int    next  = dim == 2 ? a : (t ? a > 0 : a == 1);
+        const double angle = 2 * M_PI * (k + next) / SIDES, z = dim == 2 ? 0 : (t ? a == 2 : a > 0) ? 2 : -2;
+
+        memcpy(piece->X[a], AT(5 * cos(angle), 5 * sin(angle), z), sizeof(Place));
+        memcpy(piece->x[0][a], piece->X[a], sizeof(Place));
+        memcpy(piece->x[1][a], AT(5 * cos(angle + turn), 5 * sin(angle + turn), z), sizeof(Place));
+      }
+      PiecePlace(piece, dim);
+    }
+  }
+}
+
+static void LeapsOverRoundsAreFound(void **context)
+{
+  static Plate bar;
+
+  (void)context;
+  for (int dim = 2; dim <= 3; dim++) {
+    const double z = dim == 2 ? 0 : 0.3, arc = 0.5;
+    Point        point = MakePoint(AT(4.5, 4, z), AT(4.5, -4, z), AT(-1, 0, 0));
+
+    RoundBar(&bar, dim, 0);
+    assert_int_equal(JudgePoint(&bar, &point, 0).kind, FINDING_PASSED);
+    point = MakePoint(AT(4.95, 4, z), AT(4.95, -4, z), AT(-1, 0, 0)); /* within what is allowed */
+    assert_int_equal(JudgePoint(&bar, &point, 0).kind, FINDING_NONE);
+    point = MakePoint(AT(5.05 * cos(arc), 5.05 * sin(arc), z), AT(5.05 * cos(arc), -5.05 * sin(arc), z),
+                      AT(-cos(arc), -sin(arc), 0)); /* it turns around the bar with its body */
+    memcpy(point.normal[1], AT(-cos(arc), sin(arc), 0), sizeof(Place));
+    assert_int_equal(JudgePoint(&bar, &point, 0).kind, FINDING_NONE);
+    RoundBar(&bar, dim, 2 * arc); /* the bar turns, on straight motions smaller in between */
+    point = MakePoint(AT(5.05, 0, z), AT(5.05, 0, z), AT(-1, 0, 0));
+    assert_int_equal(JudgePoint(&bar, &point, 0).kind, FINDING_NONE);
+  }
 }
 
 /* A point crosses a hundred films that are thinner than round-off, and then a wall: 19. */
@@ -606,6 +654,7 @@ int main(void)
     cmocka_unit_test(HonestStatesHold),
     cmocka_unit_test(PlantedPointsAreFound),
     cmocka_unit_test(PlantedSolidsAreFound),
+    cmocka_unit_test(LeapsOverRoundsAreFound),
     cmocka_unit_test(ManyCrossingsAreFollowed),
     cmocka_unit_test(EdgesExplainTheirChords),
     cmocka_unit_test(PlantedFacesAreFound),

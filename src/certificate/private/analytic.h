@@ -9,6 +9,7 @@ typedef struct {
   AnalyticSurface surface;
   Place           point[2], axis[2];
   double          penetration, overlap; /* of Look */
+  int             apart;
 } AnalyticTool;
 
 void AnalyticPointFinding(const AnalyticTool *, const Point *, Finding *worst);

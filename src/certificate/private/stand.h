@@ -79,6 +79,7 @@ typedef struct _n_Look {
   double           overlap;     /* depth that the scene leaves (length) */
   int              walls;       /* any side of a body may meet any other one */
   int              slave[2];    /* contact holds the points and edges that are judged; the vertices of the pieces */
+  int              apart;       /* contact of the pair presses nowhere at either state */
   int              failed;      /* memory was short: what was found does not count */
 } Look;
 
@@ -91,6 +92,7 @@ void   LookSort(Look *);
 Stand  PointStand(const Look *, const Point *, int state);
 int    HasTag(const Piece *, int dim, long tag);
 double AllowedDepth(const Look *, const Point *, const Piece *);
+double ArcDepth(const Point *);
 double ExplainedDepth(const Look *, const Point *, const Piece *, double depth);
 void   JudgeDepth(const Look *, const Point *, const Stand *, const long tag[2], Finding *worst);
 void   FindingKeep(const Finding *, Finding *worst);
