@@ -306,7 +306,8 @@ double AllowedDepth(const Look *look, const Point *point, const Piece *piece)
   return allowed;
 }
 
-/* The depth up to which edges explain that faces cross: a part of the thinner element below, as no wall is thinner. */
+/* The depth up to which edges explain that faces cross: a part of the thinner element below, as no wall is thinner. A
+   rigid tool has no elements. */
 static double EdgeDepth(const Point *point, const Piece *piece)
 {
   const double most = fmax(point->height, piece->height);
@@ -342,7 +343,7 @@ static double TipAround(const Look *side, const double x[3], double chord)
 }
 
 /* Makes the tree of the points' own side when a depth first asks for it: in most steps none does. */
-static int LookBeside(Look *own)
+static int LookOwn(Look *own)
 {
   if (!own || own->failed) return 0;
   if (!own->tree) own->failed = !LookBegin(own->dim, own->list, own);
@@ -356,7 +357,7 @@ static double TipNear(const Look *look, const Point *point, double chord)
   const double *x   = point->x[1];
   double        tip = fmax(TipOver(chord, point->tip, point->side), TipAround(look, x, chord));
 
-  return LookBeside(look->own) ? fmax(tip, TipAround(look->own, x, chord)) : tip;
+  return LookOwn(look->own) ? fmax(tip, TipAround(look->own, x, chord)) : tip;
 }
 
 /*@

@@ -309,6 +309,7 @@ static FitSettings PairFitSettings(Scene scene, const ContactPair *pair, int ord
   fit.derivatives   = contact->diffuse_derivatives ? FIT_DIFFUSE : FIT_FULL;
   fit.global_frame  = contact->global_frame ? PETSC_TRUE : PETSC_FALSE;
   fit.feature_angle = SceneSharpAngle(contact);
+  fit.far           = (PetscBool)(contact->initial_overlap == OVERLAP_ADD);
   return fit;
 }
 

@@ -680,7 +680,8 @@ PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
 /* Appends the planes of symmetry that the supports have shown. */
 static void AppendPlanes(const ContactPair *pair, char *text, size_t size)
 {
-  const char *word = ", mirrored at";
+  const PetscReal round = CONTACT_ROUND * pair->mesh->size;
+  const char     *word  = ", mirrored at";
 
   for (int bit = 1; bit < pair->n_images && pair->scene->find_symmetry; bit <<= 1) {
     const SurfaceImage *image = &pair->images[bit];
@@ -690,8 +691,7 @@ static void AppendPlanes(const ContactPair *pair, char *text, size_t size)
       const PetscReal at = image->shift[d] / 2 + pair->mesh->centre[d];
 
       if (image->sign[d] > 0 || (pair->geometry == GEOMETRY_AXISYMMETRIC && image->shift[d] == 0 && d == 0)) continue;
-      snprintf(text + used, size - used, "%s %c = %g", word, "xyz"[d],
-               PetscAbsReal(at) > CONTACT_ROUND * pair -> mesh -> size ? (double)at : 0.0);
+      snprintf(text + used, size - used, "%s %c = %g", word, "xyz"[d], PetscAbsReal(at) > round ? (double)at : 0.0);
       word = " and";
     }
   }

@@ -32,8 +32,7 @@
    support, where the facets are wrong by that of one face. Past a free edge of the master all its points lie on one
    side, and it is not taken. Past the end of a bore chords closed gaps that are open, by several times the overlap of a
    press fit. Where points lie in a plane the facets tell the same, but for what bends under the contact, and lists went
-   to and fro between both: past the end of a keyway they differed by twenty penetrations, and a loose key took 209
-   iterations instead of 104. */
+   to and fro between both past the end of a keyway: a loose key with friction took 209 iterations instead of 104. */
 static const struct {
   int    degree;
   double widen;

@@ -12,8 +12,8 @@
    motion), so that the point may slide there within a solve. The size is that of the point's own face or of the nearest
    one, whichever is larger: large faces elsewhere do not lengthen lists between fine faces. */
 #define SEARCH_MARGIN 1.5
-/* A slave point is fitted if it may come within this many face sizes of its nearest facet while lists stand still. Else
-   the facets tell that it is open, as fits are nearer to them than that. */
+/* A slave point is fitted if it is behind its nearest facet, or may come within this many face sizes of it while lists
+   stand still. Else the facets tell that it is open, as fits are nearer to them than that. */
 #define SEARCH_FITTED 1.0
 /* Lists begin with room for those before and this part of them, one over it. */
 enum { LIST_ROOM = 16 };
@@ -250,13 +250,13 @@ static void TakeNormal(Nearest *look, const FitSupport *fit)
     for (int d = 0; d < 3; d++) look->normal[d] = look->candidates[look->best].normal[d];
 }
 
-/* May a slave point come so near to its nearest facet while lists stand still that its fit matters? size: of its own
-   face or of the nearest facet (length). */
-static PetscBool NeedsFit(const Nearest *look, PetscReal size)
+/* Does the fit of a slave point matter while lists stand still, as it overlaps or may come near to its nearest facet?
+   size: of its own face or of the nearest facet (length). */
+static PetscBool NeedsFit(const Nearest *look, const FitSettings *fit, PetscReal size)
 {
   const PetscReal approach = WayApproach(look, &look->candidates[look->best]);
 
-  return (PetscBool)(look->distance <= SEARCH_FITTED * size + approach);
+  return (PetscBool)(fit->far || look->foot.gap < 0 || look->distance <= SEARCH_FITTED * size + approach);
 }
 
 /* Finds the nearest facet of one slave point, lists it with all facets within margin and motion of it, and fits the
@@ -294,7 +294,7 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
     lists->nearest[q] = i;
     convex            = ends[i] % FLANK_CUT / FLANK_CONVEX;
   }
-  if (fit && !NeedsFit(look, margin / SEARCH_MARGIN))
+  if (fit && !NeedsFit(look, fit->s->fit, margin / SEARCH_MARGIN))
     lists->rung[q] = RUNG_UNASKED;
   else if (fit && !FlankNearRidge(look, fit->neighbourhoods, facing, found))
     PetscCall(FitSupportSlave(fit, look, q, convex, first, buffer));

@@ -123,6 +123,25 @@ static PetscErrorCode ModelBlameLoose(Model model, const PetscReal *u, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Completes the report on a motion that the loads drive, or tells instead of it which bodies they drive out. */
+static PetscErrorCode ModelBlameDriven(Model model, SolveReport *report)
+{
+  char      bodies[sizeof(report->detail)] = "";
+  PetscBool out;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelBlameLoose(model, model->problem->trial, model->t, PETSC_FALSE, bodies, sizeof(bodies), &out));
+  if (out)
+    PetscCall(PetscStrncpy(report->detail, bodies, sizeof(report->detail)));
+  else
+    PetscCall(PetscStrlcat(report->detail,
+                           SceneHasFriction(model->scene)
+                             ? ", is driven by the loads, and friction alone holds it, which slips"
+                             : ", is driven by the loads, and contact alone holds it",
+                           sizeof(report->detail)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Writes into the report what is known of a failed solve: the bodies that nothing holds where the system is singular,
    otherwise the nodes with the largest residuals. */
 static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
@@ -148,21 +167,7 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
   if (model->problem->bodies)
     PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t, PETSC_TRUE,
                               sizeof(report->detail), report->detail));
-  if (report->detail[0] && !adrift) {
-    char      bodies[sizeof(report->detail)] = "";
-    PetscBool out;
-
-    PetscCall(ModelBlameLoose(model, model->problem->trial, model->t, PETSC_FALSE, bodies, sizeof(bodies), &out));
-    if (out) {
-      PetscCall(PetscStrncpy(report->detail, bodies, sizeof(report->detail)));
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-    PetscCall(PetscStrlcat(report->detail,
-                           SceneHasFriction(model->scene)
-                             ? ", is driven by the loads, and friction alone holds it, which slips"
-                             : ", is driven by the loads, and contact alone holds it",
-                           sizeof(report->detail)));
-  }
+  if (report->detail[0] && !adrift) PetscCall(ModelBlameDriven(model, report));
   if (report->detail[0]) PetscFunctionReturn(PETSC_SUCCESS);
   if (adrift) PetscCall(FreeModesUnheld(model->mesh, model->scene, model->problem->loads, sizeof(loose), loose));
   if (adrift && loose[0])

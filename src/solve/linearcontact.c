@@ -403,9 +403,9 @@ static PetscErrorCode LinearContactTry(Model model, const PetscReal *u, const Pe
   it finds what sticks and what slips too: a pinched pipe takes 65 iterations instead of 88.
 
   Where the solution moves the surfaces farther than the terms were chosen for, the problem is solved once more, with
-the terms that it may reach. Where that solution goes too far in its turn, as with a body that has lost its support, the
-  step stays as it is: a third solution took a loose key in its seat past its contact, and the key 319 iterations
-  instead of 52.
+  the terms that it may reach. Where that solution goes too far in its turn, as with a body that has lost its
+  support, the step stays as it is: a third solution took a loose key in its seat past its contact, and the run took
+  319 iterations instead of 52.
 
   Source: Josephy, Newton's method for generalized equations, 1979. The convergence is of second order, whatever opens
   or closes.

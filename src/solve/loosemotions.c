@@ -122,6 +122,16 @@ PetscErrorCode FreeBodiesRub(FreeBodies b, const PetscReal *u, PetscReal t, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether a motion a[n] moves a piece, and how it does (q). */
+static PetscBool PieceMoves(FreeBodies b, PetscInt piece, const double a[], double q[RIGID_MODES])
+{
+  PetscBool moves = PETSC_FALSE;
+
+  FreeBodiesPieceMotion(b, piece, a, q);
+  for (int i = 0; i < RIGID_MODES; i++) moves = (PetscBool)(moves || PetscAbsReal(q[i]) > 1e-2);
+  return moves;
+}
+
 /* Adds "BODY: motion; with it BODY: motion" to the text. */
 static void AddMotion(FreeBodies b, const double a[], size_t size, char *text)
 {
@@ -130,13 +140,10 @@ static void AddMotion(FreeBodies b, const double a[], size_t size, char *text)
 
   if (used && used < size) used += (size_t)snprintf(text + used, size - used, "; ");
   for (PetscInt p = 0; p < b->n_pieces && used < size; p++) {
-    double    q[RIGID_MODES];
-    char      motion[FREE_TEXT];
-    PetscBool moves = PETSC_FALSE;
+    double q[RIGID_MODES];
+    char   motion[FREE_TEXT];
 
-    FreeBodiesPieceMotion(b, p, a, q);
-    for (int i = 0; i < RIGID_MODES; i++) moves = (PetscBool)(moves || PetscAbsReal(q[i]) > 1e-2);
-    if (!moves) continue;
+    if (!PieceMoves(b, p, a, q)) continue;
     FreeModesMotionText(b->modes, p, q, motion);
     used +=
       (size_t)snprintf(text + used, size - used, "%s'%s': %s", more ? ", with it " : "", b->pieces[p].name, motion);
@@ -331,12 +338,9 @@ static void AddDrivenOut(FreeBodies b, const double a[], const PetscBool loaded[
     const size_t used = strlen(text);
     double       q[RIGID_MODES];
     char         name[FREE_TEXT + 2];
-    PetscBool    moves = PETSC_FALSE;
 
-    FreeBodiesPieceMotion(b, p, a, q);
-    for (int i = 0; i < RIGID_MODES; i++) moves = (PetscBool)(moves || PetscAbsReal(q[i]) > 1e-2);
     snprintf(name, sizeof(name), "'%s'", b->pieces[p].name);
-    if (!moves || loaded[p] || strstr(text, name) || used >= size) continue;
+    if (loaded[p] || !PieceMoves(b, p, a, q) || strstr(text, name)) continue;
     snprintf(text + used, size - used, "%s%s", used ? ", " : "", name);
   }
 }

@@ -2,9 +2,9 @@
    loads and springs, by tools, by overlaps that grow over t and by penalties that are raised.
 
    Around the ProblemResidual() of an accepted state stand OuterWorkBegin() and OuterWorkAdd(). Forces and
-   displacements of two accepted states give the work of the step between them, by the trapezoidal rule. So do the
-   forces that soft motions are held by: what bodies do to them is lost. Springs against sliding count themselves what
-   they take, as they give way within a step. */
+   displacements of two accepted states give the work of the step between them, by the trapezoidal rule. What the bodies
+   do against the forces that hold soft motions is lost, and is counted in the same way. Springs against sliding give
+   way within a step, and what they take is counted there, see ModelDragSolve(). */
 #pragma once
 #include "solve/problem.h"
 

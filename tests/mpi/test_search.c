@@ -235,6 +235,24 @@ static void test_reach(void **state)
   PartsDestroy(&parts);
 }
 
+/* Points that are a little more than a facet's size from the master, before it or in it, are fitted where they overlap
+   it, or the scene has them press before they meet it. */
+static void test_far(void **state)
+{
+  const char *pairs[] = {", smoother: diffuse", ", smoother: diffuse, initial_overlap: {add: 0.6}"};
+
+  (void)state;
+  for (int add = 0; add < 2; add++)
+    for (int side = -1; side <= 1; side += 2) {
+      Create(NULL, "", pairs[add]);
+      ShiftUpper(0, side * 1.1 * Size - Apart);
+      OK(ContactGather(parts.problem->contact, parts.u, 0, 0, 0));
+      for (PetscInt q = 0; q < Pair()->lists->n_slaves; q++)
+        assert_int_equal(Pair()->lists->rung[q], add || side < 0 ? RUNG_PLAIN : RUNG_UNASKED);
+      PartsDestroy(&parts);
+    }
+}
+
 /* The ends of the slave at x = 3.3 and 4.3, and those of the master, whose end facets know them. */
 static void test_free_edges(void **state)
 {
@@ -517,7 +535,8 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_lists),   cmocka_unit_test(test_nearest), cmocka_unit_test(test_distance),
     cmocka_unit_test(test_hold),    cmocka_unit_test(test_reach),   cmocka_unit_test(test_free_edges),
     cmocka_unit_test(test_offsets), cmocka_unit_test(test_flank),   cmocka_unit_test(test_extrapolated),
-    cmocka_unit_test(test_damped),  cmocka_unit_test(test_way),     cmocka_unit_test(test_ahead)};
+    cmocka_unit_test(test_damped),  cmocka_unit_test(test_way),     cmocka_unit_test(test_ahead),
+    cmocka_unit_test(test_far)};
 
   if (PartsStart(&argc, &argv)) return 1;
   return PartsEnd(cmocka_run_group_tests(tests, NULL, NULL));
