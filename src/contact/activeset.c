@@ -217,15 +217,17 @@ void ActiveSetLeaveRelaxation(ActiveSet p)
 
   Input Parameters:
 + p       - the active set
-- allowed - products of two numbers
+. allowed - products of two numbers
+- solves  - dense solves with all columns at hand, if that is more
 
   Note:
   The bound is looked at after each dense solve and after each sweep of relaxation, so that it is passed by one of them
   at most.
 @*/
-void ActiveSetBound(ActiveSet p, PetscReal allowed)
+void ActiveSetBound(ActiveSet p, PetscReal allowed, PetscReal solves)
 {
   p->allowed = allowed;
+  p->solves  = solves;
 }
 
 /*@

@@ -41,7 +41,7 @@ PetscErrorCode ActiveSetCreate(PetscInt n, PetscInt parts, PetscInt most, const 
                                const PetscReal *travel, ActiveSet *);
 PetscErrorCode ActiveSetDestroy(ActiveSet *);
 void           ActiveSetLeaveRelaxation(ActiveSet);
-void           ActiveSetBound(ActiveSet, PetscReal allowed);
+void           ActiveSetBound(ActiveSet, PetscReal allowed, PetscReal solves);
 void           ActiveSetEnough(ActiveSet, PetscReal force);
 void           ActiveSetAllowPart(ActiveSet);
 PetscErrorCode ActiveSetAddColumns(ActiveSet, PetscInt m, const PetscInt *which, const PetscReal *G);

@@ -164,7 +164,7 @@ PetscBool ActiveSetSpent(ActiveSet p)
 {
   const PetscReal columns = (PetscReal)p->m;
 
-  return (PetscBool)(p->work > PetscMax(p->allowed, ACTIVE_SET_SOLVES * columns * columns * columns / 3));
+  return (PetscBool)(p->work > PetscMax(p->allowed, p->solves * columns * columns * columns / 3));
 }
 
 /* Finds the set that the excess at hand leads to, and says whether it is another one, or friction's excess another. */

@@ -235,6 +235,7 @@ PetscErrorCode      ContactPairTermStiffness(Contact, int pair, PetscReal *stiff
 PetscErrorCode      ContactPairApart(Contact, int pair, PetscBool *apart);
 PetscErrorCode      ContactPairClosed(Contact, int pair, const PetscInt *label, PetscInt n, PetscInt *closed);
 PetscBool           ContactOffsetsLag(Contact);
+void                ContactFitAll(Contact);
 PetscBool           ContactHasFriction(Contact);
 MPI_Comm            ContactComm(Contact);
 /* What an accepted step is checked for */

@@ -755,6 +755,22 @@ PetscBool ContactOffsetsLag(Contact contact)
 }
 
 /*@
+  ContactFitAll - lets all slave points be fitted that have a master, also those that are too far away for contact.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact, before its lists are made
+
+  Note:
+  It is for a report on the surfaces. A run fits what may come into contact.
+@*/
+void ContactFitAll(Contact contact)
+{
+  for (int p = 0; p < contact->n_pairs; p++) contact->pairs[p].fit.far = PETSC_TRUE;
+}
+
+/*@
   ContactHasFriction - says whether some pair has friction, so that forces have no potential and the tangent is not
   symmetric.
 

@@ -585,6 +585,41 @@ PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, co
 }
 
 /*@
+  ContactStepMeets - says whether each pair that presses at the end of the linear step presses somewhere in the present
+  state.
+
+  Collective
+
+  Input Parameters:
++ step    - the step; the present state is that where it ends
+- pressed - pressed[n] of the terms of all ranks: they press at the end of the linear step
+
+  Output Parameter:
+. meets - the same on all ranks
+@*/
+PetscErrorCode ContactStepMeets(ContactStep step, const PetscBool *pressed, PetscBool *meets)
+{
+  const int n = step->contact->n_pairs;
+  PetscInt *terms; /* of each pair: those that should press, then those that do */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * n, &terms));
+  for (PetscInt i = 0; i < step->mine; i++) {
+    const int p = (int)step->pair[i];
+
+    if (!pressed[step->place[i]]) continue;
+    terms[p]++;
+    terms[n + p] += step->contact->pairs[p].now.status[step->term[i]] == CONTACT_CLOSED;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, terms, 2 * n, MPIU_INT, MPI_SUM, step->contact->mesh->comm));
+  *meets = PETSC_TRUE;
+  for (int p = 0; p < n; p++)
+    if (terms[p] && !terms[n + p]) *meets = PETSC_FALSE;
+  PetscCall(PetscFree(terms));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactStepMarkPredicted - notes what presses at the end of a step, for ContactHoldExpected(), and of one that
   predicts for ContactUnpredictedEnergy().
 

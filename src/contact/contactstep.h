@@ -22,4 +22,5 @@ PetscErrorCode ContactStepTravel(ContactStep, const PetscReal *du, PetscReal t, 
 PetscErrorCode ContactStepChange(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *change);
 PetscErrorCode ContactStepWithin(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscBool *within);
 PetscErrorCode ContactStepForces(ContactStep, PetscInt rows, PetscInt m, const PetscInt *which, Mat *B);
+PetscErrorCode ContactStepMeets(ContactStep, const PetscBool *pressed, PetscBool *meets);
 PetscErrorCode ContactStepMarkPredicted(ContactStep, const PetscBool *pressed);

@@ -109,6 +109,7 @@ static PetscErrorCode RunSetUp(Run *run, const RunInput *input)
   PetscCall(ModelCreate(run->scene, run->mesh, &run->model));
   PetscCall(ProbesCreate(run->model, run->scene, &run->probes));
   if (!input->restart) {
+    if (input->task == RUN_CHECK && run->model->contact) ContactFitAll(run->model->contact);
     PetscCall(ModelPlace(run->model, input->task == RUN_SOLVE ? run->scene->stepping.initial : 0));
     TimingEnd(TIMING_SETUP);
     PetscCall(PrecheckModel(run->model, input->task == RUN_CHECK ? PETSC_TRUE : PETSC_FALSE, stdout));

@@ -35,7 +35,7 @@ typedef struct {
   PetscBool         global_frame;  /* one reference plane for all slave points */
   PetscReal         feature_angle; /* radians; fits end at edges that are sharper */
   PetscBool         fades;         /* points fade towards another flank, see FlankShare() */
-  PetscBool         far;           /* points press while they are far away, too, and are fitted there */
+  PetscBool         far;           /* points are fitted that are far away, too: they press there, or are reported */
 } FitSettings;
 
 int            FitDegreeCode(const FitSettings *, int degree);

@@ -89,7 +89,7 @@ static double BoundedStep(const Case *t, PetscInt most, PetscReal allowed, Petsc
   SolveTangent(t, b, x);
   for (int c = 0; c < N; c++) travel[c] = Gap(t, c, x);
   assert_int_equal(ActiveSetCreate(N, 1, N, t->term, travel, &pressing), 0);
-  ActiveSetBound(pressing, allowed);
+  ActiveSetBound(pressing, allowed, 0);
   for (assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0); m;
        assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0)) {
     assert_int_equal(ActiveSetLimit(pressing, most, &m, which), 0);

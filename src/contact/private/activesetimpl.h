@@ -6,11 +6,6 @@
    have not wander to where rounding leads them: of 5000 small bodies with large friction 121 found no set. */
 #define ACTIVE_SET_UNDAMPED 12
 
-/* A problem may take the work of so many dense solves with all its columns, whatever is allowed. A metal sheet that is
-   drawn to a square cup has half as many terms as unknowns. Its problems took up to 12 solves, or 75 and did not end;
-   where all were left after one, as the bound for each unknown says, Newton's method made no step. */
-#define ACTIVE_SET_SOLVES 16
-
 struct _n_Pressing {
   PetscInt       n, parts, m, most;
   ActiveSetTerm *terms;
@@ -21,6 +16,7 @@ struct _n_Pressing {
   PetscReal     *G, *excess;    /* m*parts*n, m */
   PetscReal     *change;        /* m: of the excess, by the last iteration */
   PetscReal      work, allowed; /* products that were computed, and how many may be */
+  PetscReal      solves;        /* dense solves with all columns that may be computed, if that is more */
   PetscReal      enough;        /* friction's excess that is no matter, whatever terms can bear (force per area) */
   PetscBool      searches;      /* sets have repeated themselves: each step ends where the energy is least along it */
   PetscBool     *slipped;       /* n: the term slipped where friction was looked at last */
