@@ -309,8 +309,8 @@ static PetscErrorCode LinearContactFails(Model model, Vec y, PetscBool *fails)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says whether what presses at the end of the linear step presses where it really ends. Where tools turn far, points
-   move on circles, and the linear step pushes a tool that a force holds away from them. */
+/* Says whether what presses at the end of a linear step that is carried along presses where it really ends. Where tools
+   turn far, points move on circles, and the linear step pushes a tool that a force holds away from them. */
 static PetscErrorCode LinearContactMeets(Model model, const LinearContact *s, const PetscBool *pressed, Vec y,
                                          PetscBool *meets)
 {
@@ -357,7 +357,7 @@ static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, P
   model->work->unsettled = model->work->beyond = (PetscBool) !*taken;
   if (!*taken) PetscCall(VecCopy(end, reach));
   if (*taken && part < 1) PetscCall(LinearContactFails(model, y, taken));
-  if (*taken && again) PetscCall(LinearContactMeets(model, s, pressed, end, taken));
+  if (*taken && again && carried) PetscCall(LinearContactMeets(model, s, pressed, end, taken));
   if (*taken) PetscCall(ContactStepMarkPredicted(s->contact, pressed));
   if (*taken) PetscCall(VecCopy(end, y));
   PetscCall(VecDestroy(&end));
@@ -427,8 +427,8 @@ static PetscErrorCode LinearContactTry(Model model, const PetscReal *u, const Pe
 
   Where the solution moves the surfaces farther than the terms were chosen for, the problem is solved once more, with
   the terms that it may reach. Where that solution goes too far in its turn, as with a body that has lost its
-  support, or ends where a pair that should press is open, the step stays as it is: a third solution took a loose key
-  in its seat past its contact, and the run took 319 iterations instead of 52.
+  support, or is carried along to where a pair that should press is open, the step stays as it is: a third solution
+  took a loose key in its seat past its contact, and the run took 319 iterations instead of 52.
 
   Source: Josephy, Newton's method for generalized equations, 1979. The convergence is of second order, whatever opens
   or closes.
