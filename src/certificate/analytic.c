@@ -59,8 +59,8 @@ static void Note(FindingKind kind, double depth, double allowed, double over_h, 
 
   Note:
   A straight motion past a round tool cuts a corner. The point has passed through it where it came in and went out on
-  opposite sides: nearer to the centre than the radius times the cosine of half the angle between their normals; where
-  the tool presses nowhere at either state, where it was deeper than it may stand.
+  opposite sides: nearer to the centre than the radius times the cosine of half the angle between their normals. Where
+  the tool presses nowhere at either state, it has also where it was deeper than it may stand.
 @*/
 void AnalyticPointFinding(const AnalyticTool *tool, const Point *point, Finding *worst)
 {
@@ -68,6 +68,7 @@ void AnalyticPointFinding(const AnalyticTool *tool, const Point *point, Finding 
   const double allowed = tool->penetration * point->size + tool->overlap + tip;
   Place        r[2], closest, at;
   double       start, end, least;
+  int          opposite, leapt;
 
   for (int state = 0; state < 2; state++) FromTool(tool, point->x[state], state, r[state]);
   start = GapOf(tool, r[0], 0);
@@ -76,11 +77,10 @@ void AnalyticPointFinding(const AnalyticTool *tool, const Point *point, Finding 
   if (tool->surface.shape == ANALYTIC_PLANE || tool->surface.inside || -end > allowed) return;
   (void)PieceClosest(2, (const Place *)r, (const Place){0, 0, 0}, closest);
   memcpy(at, closest, sizeof(at));
-  least = GapOf(tool, at, 1);
-  if ((!tool->apart || start < 0 || end < 0) &&
-      least + tool->surface.radius > sqrt((1 + STAND_OPPOSED) / 2) * tool->surface.radius)
-    return;
-  if (-least > allowed + ArcDepth(point)) Note(FINDING_PASSED, -least, allowed, 0, point, worst);
+  least    = GapOf(tool, at, 1);
+  opposite = least + tool->surface.radius <= sqrt((1 + STAND_OPPOSED) / 2) * tool->surface.radius;
+  leapt    = tool->apart && start >= 0 && end >= 0 && -least > allowed + ArcDepth(point);
+  if ((opposite && -least > allowed) || leapt) Note(FINDING_PASSED, -least, allowed, 0, point, worst);
 }
 
 /*@

@@ -243,12 +243,11 @@ static void JudgeAnalytic(Certificate certificate, const CertifiedPair *pair, co
   for (PetscInt k = 0; k < slave->n_pieces; k++) AnalyticPieceFinding(&tool, &slave->pieces[k], worst);
 }
 
-/* Finds where terms of a pair pressed, whether any did at all, and the overlap that the scene leaves in the pair. */
-static PetscErrorCode FindPressed(Certificate certificate, CertifiedPair *pair, PetscReal t, PetscReal *overlap)
+/* Finds where terms of a pair pressed, and the overlap that the scene leaves in it. */
+static PetscErrorCode FindPressed(Certificate certificate, const CertifiedPair *pair, PetscReal t, PetscReal *overlap)
 {
   const int partner = ContactPairPartner(certificate->contact, pair->pair);
   PetscReal other   = 0;
-  PetscBool apart   = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(certificate->pressed, certificate->mesh->n_nodes));
@@ -259,9 +258,17 @@ static PetscErrorCode FindPressed(Certificate certificate, CertifiedPair *pair, 
     PetscCall(ContactPairOverlap(certificate->contact, partner, t, &other));
   }
   *overlap = PetscMax(*overlap, other);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds whether a pair and its partner pressed nowhere at either state. */
+static PetscErrorCode FindApart(Certificate certificate, CertifiedPair *pair)
+{
+  const int partner = ContactPairPartner(certificate->contact, pair->pair);
+
+  PetscFunctionBeginUser;
   PetscCall(ContactPairApart(certificate->contact, pair->pair, &pair->apart));
-  if (partner >= 0) PetscCall(ContactPairApart(certificate->contact, partner, &apart));
-  pair->apart = (PetscBool)(pair->apart && apart);
+  if (pair->apart && partner >= 0) PetscCall(ContactPairApart(certificate->contact, partner, &pair->apart));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -305,6 +312,7 @@ static PetscErrorCode JudgePair(Certificate certificate, CertifiedPair *pair, co
     JudgeFolds(pair->side[s], s, worst);
   }
   if (pair->side[1] && !SidesMeet(pair, overlap)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FindApart(certificate, pair));
   for (int s = 0; s < sides; s++) PetscCall(SideMeasure(pair->side[s], certificate->pressed));
   if (!pair->side[1]) JudgeAnalytic(certificate, pair, u, t, overlap, worst);
   for (int s = 0; s < sides && pair->side[1]; s++) PetscCall(JudgeSide(certificate, pair, s, overlap, worst));

@@ -76,14 +76,6 @@ void PassageFinding(const Look *look, const Point *point, long second, const Eve
   KeepPassed(point, second, in, depth, allowed, worst);
 }
 
-static void JudgePassage(const Look *look, const Point *point, const Event *in, const Event *out, Finding *worst)
-{
-  const double depth =
-    fmin(BehindAt(look->dim, in->piece, point, out->at.s), BehindAt(look->dim, out->piece, point, in->at.s));
-
-  PassageFinding(look, point, 0, in, out, depth, worst);
-}
-
 /* Finds where a point crossed a piece, on the piece as it is at the end. Returns 0 where that cannot be told. */
 static int CrossedAt(int dim, const Event *event, const Point *point, Place at)
 {
@@ -133,6 +125,18 @@ static void JudgeGraze(Look *look, const Point *point, const Event *in, const Ev
   Between(from, to, 0.5, middle);
   depth = DepthAtEnd(look, middle, Distance(from, middle));
   if (depth > allowed) KeepPassed(point, 0, in, depth, allowed, worst);
+}
+
+/* Judges a point that came in and went out, or stands at the end behind what it would have come out of. */
+static void JudgePassage(Look *look, const Point *point, const Event *in, const Event *out, Finding *worst)
+{
+  const double depth =
+    fmin(BehindAt(look->dim, in->piece, point, out->at.s), BehindAt(look->dim, out->piece, point, in->at.s));
+
+  if (Cosine(in->piece, out->piece) > STAND_OPPOSED)
+    JudgeGraze(look, point, in, out, worst);
+  else
+    PassageFinding(look, point, 0, in, out, depth, worst);
 }
 
 /* Judges a point that has gone behind a piece and is not found behind any surface at the end. */
@@ -206,10 +210,7 @@ void PointFinding(Look *look, Point *point, Finding *worst)
     if (event->at.inward && !in.piece) {
       in = *event;
     } else if (!event->at.inward && in.piece) {
-      if (Cosine(in.piece, event->piece) > STAND_OPPOSED)
-        JudgeGraze(look, point, &in, event, worst);
-      else
-        JudgePassage(look, point, &in, event, worst);
+      JudgePassage(look, point, &in, event, worst);
       in.piece = NULL;
     }
   }

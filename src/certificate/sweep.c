@@ -175,15 +175,21 @@ void PieceAcross(const Place x[], int a, const double one[3], const double other
   for (int d = 0; d < 3; d++) across[d] = own > 0 ? 2 * own * mean[d] - normal[d] : normal[d];
 }
 
-/* Closest point of a segment; returns whether it is between the ends. */
-static int SegmentClosest(const Place a, const Place b, const Place p, Place closest)
+/* Where on the line from a to b the foot of p is: 0 at a, 1 at b; NAN where these are one. */
+static double Along(const Place a, const Place b, const Place p)
 {
-  double t[3], r[3], along, length2;
+  double t[3], r[3];
 
   Minus(b, a, t);
   Minus(p, a, r);
-  length2 = Dot(t, t);
-  along   = length2 > 0 ? Dot(r, t) / length2 : 0;
+  return Dot(r, t) / Dot(t, t);
+}
+
+/* Closest point of a segment; returns whether it is between the ends. */
+static int SegmentClosest(const Place a, const Place b, const Place p, Place closest)
+{
+  const double along = Along(a, b, p);
+
   Between(a, b, fmin(1, fmax(0, along)), closest);
   return along > 0 && along < 1;
 }
@@ -208,14 +214,12 @@ static int Barycentric(const Place x[], const Place p, double lambda[3])
 /* Is the foot of a place on the line or plane of a piece in it, or SWEEP_BORDER past its border? */
 static int OverPiece(int dim, const Place x[], const Place p)
 {
-  double lambda[3], t[3], r[3], along;
+  double lambda[3], along;
 
   if (dim == 3)
     return Barycentric(x, p, lambda) && lambda[0] >= -SWEEP_BORDER && lambda[1] >= -SWEEP_BORDER &&
            lambda[2] >= -SWEEP_BORDER;
-  Minus(x[1], x[0], t);
-  Minus(p, x[0], r);
-  along = Dot(r, t) / Dot(t, t);
+  along = Along(x[0], x[1], p);
   return along >= -SWEEP_BORDER && along <= 1 + SWEEP_BORDER;
 }
 
@@ -275,16 +279,14 @@ int PieceClosest(int dim, const Place x[], const Place p, Place closest)
 @*/
 int PieceCarry(int dim, const Place from[], const Place p, const Place to[], Place out)
 {
-  double lambda[3] = {0, 0, 0}, t[3], r[3];
+  double lambda[3] = {0, 0, 0};
 
   if (dim == 3) {
     if (!Barycentric(from, p, lambda)) return 0;
   } else {
-    Minus(from[1], from[0], t);
-    Minus(p, from[0], r);
-    if (!(Dot(t, t) > 0)) return 0;
-    lambda[1] = Dot(r, t) / Dot(t, t);
+    lambda[1] = Along(from[0], from[1], p);
     lambda[0] = 1 - lambda[1];
+    if (isnan(lambda[1])) return 0;
   }
   for (int d = 0; d < 3; d++) {
     out[d] = 0;

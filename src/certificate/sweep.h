@@ -7,8 +7,8 @@
    SweepPoint() finds when a moving point crosses a moving piece, SweepEdges() when a moving edge crosses a moving edge,
    SweepHinge() whether two pieces have turned through each other about what they share. PieceClosest() finds the point
    of a piece that is closest to a place, PieceCarry() where a place on it comes with it, PiecePierce() where an edge
-   stands through a piece. PieceHeight() measures how
-   far a piece is from a smooth surface with the normals of its vertices. PieceDivide() divides faces into pieces. */
+   stands through a piece. PieceHeight() measures how far a piece is from a smooth surface with the normals of its
+   vertices. PieceDivide() divides faces into pieces. */
 #pragma once
 #include "kernels/element.h"
 

@@ -291,20 +291,29 @@ PetscErrorCode ModelResidualAt(Model model, Vec x, PetscBool *ok, PetscReal *nor
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Evaluates the residual where the step y ends, as ModelResidualAt() does. The trial displacements stay. */
+static PetscErrorCode ResidualAfter(Model model, Vec y, PetscBool *ok, PetscReal *norm)
+{
+  Vec end;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(y, &end));
+  PetscCall(VecWAXPY(end, -1, y, model->x));
+  PetscCall(ModelResidualAt(model, end, ok, norm));
+  PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  PetscCall(VecDestroy(&end));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Says whether the step y as it is, which keeps what sticks and slips, does not converge. */
 static PetscErrorCode LinearContactFails(Model model, Vec y, PetscBool *fails)
 {
   PetscReal before, after;
   PetscBool ok;
-  Vec       end;
 
   PetscFunctionBeginUser;
   PetscCall(SNESGetFunctionNorm(model->snes, &before));
-  PetscCall(VecDuplicate(y, &end));
-  PetscCall(VecWAXPY(end, -1, y, model->x));
-  PetscCall(ModelResidualAt(model, end, &ok, &after));
-  PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
-  PetscCall(VecDestroy(&end));
+  PetscCall(ResidualAfter(model, y, &ok, &after));
   *fails = (PetscBool) !(after < LINEAR_CONTACT_CONVERGES * before);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -315,15 +324,10 @@ static PetscErrorCode LinearContactMeets(Model model, const LinearContact *s, co
                                          PetscBool *meets)
 {
   PetscReal norm;
-  Vec       end;
 
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(y, &end));
-  PetscCall(VecWAXPY(end, -1, y, model->x));
-  PetscCall(ModelResidualAt(model, end, meets, &norm));
+  PetscCall(ResidualAfter(model, y, meets, &norm));
   if (*meets) PetscCall(ContactStepMeets(s->contact, pressed, meets));
-  PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
-  PetscCall(VecDestroy(&end));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -180,11 +180,11 @@ static PetscErrorCode Start(OuterWork work)
   Collective
 
   Input Parameters:
-+ work - after OuterWorkBegin() and ProblemResidual() in the state
-. u_0  - local displacements u_0[n_nodes*dim] (length) of the accepted state before
-. t_0  - its load parameter
-. u    - local displacements of the state
-. t    - its load parameter
++ work  - after OuterWorkBegin() and ProblemResidual() in the state
+. u_0   - local displacements u_0[n_nodes*dim] (length) of the accepted state before
+. t_0   - its load parameter
+. u     - local displacements of the state
+. t     - its load parameter
 - taken - energy that springs against sliding have taken in the step; NaN: there are none
 @*/
 PetscErrorCode OuterWorkAdd(OuterWork work, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t,
